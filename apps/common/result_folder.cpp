@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/result_folder.hpp"
+
+#include "dem/contact/kernel.hpp"
+#include "dem/error.hpp"
+#include "dem/io/replace_file.hpp"
+
+#include <cstdlib>
+#include <ctime>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+void open_result_folder(const fs::path &folder, FolderUse use)
+{
+  std::error_code failure;
+  const bool exists = fs::exists(folder, failure) && !(fs::is_directory(folder) && fs::is_empty(folder));
+  if (exists && use == FolderUse::fresh)
+    throw InputError(fmt::format("{}: the results folder exists. Give --overwrite to replace it, --resume to go on from its "
+                                 "checkpoint, or --output for another one.",
+                                 folder.string()));
+  if (exists && use == FolderUse::overwrite)
+    {
+      if (!fs::exists(folder / "scene.toml"))
+        throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
+                                     "Choose another --output.",
+                                     folder.string()));
+      fs::remove_all(folder);
+    }
+  if (use == FolderUse::resume)
+    {
+      if (!fs::is_directory(folder / "checkpoint"))
+        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it", folder.string()));
+      return;
+    }
+  fs::create_directories(folder, failure);
+  if (failure || !fs::is_directory(folder))
+    throw InputError(fmt::format("{}: the output folder cannot be made ({}). Give a path you may write to with --output.",
+                                 folder.string(), failure.message()));
+  try
+    {
+      write_replacing(folder / ".writable", "");
+      fs::remove(folder / ".writable");
+    }
+  catch (const RunFailure &error)
+    {
+      throw InputError(fmt::format("{}: the output folder cannot be written to ({}). Give another one with --output.",
+                                   folder.string(), error.what()));
+    }
+}
+
+void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)
+{
+  write_replacing(folder / "scene.toml", to_toml(scene));
+  const std::string text =
+    fmt::format("command           {}\nversion           {}\ncompiler          {}\ninstruction set   {}\nseed              "
+                "{}\nstarted           {:%Y-%m-%d %H:%M:%S} UTC\n",
+                command_line, ISOSTAT_VERSION, __VERSION__, instruction_set(), scene.grading.seed,
+                fmt::gmtime(std::time(nullptr)));
+  write_replacing(folder / "provenance.txt", text);
+}
+
+std::string draw_figures(const fs::path &folder)
+{
+  const fs::path script = fs::path(ISOSTAT_SOURCE_DIR) / "scripts" / "plots.py";
+  const std::string command =
+    fmt::format("/usr/bin/python3 '{}' '{}' > '{}' 2>&1", script.string(), folder.string(), (folder / "figures.log").string());
+  if (std::system(command.c_str()) != 0)
+    return fmt::format("figures were not drawn; see {}", (folder / "figures.log").string());
+  return fmt::format("figures in {}", (folder / "figures").string());
+}
+} // namespace isostat

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/scene.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace isostat
+{
+enum class FolderUse
+{
+  fresh,     ///< must not exist yet
+  overwrite, ///< results that are there are removed first
+  resume     ///< goes on from the newest checkpoint
+};
+
+/// Makes the results folder, or refuses.
+/// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
+///         look like results; --resume without a checkpoint; a path that cannot be written
+void open_result_folder(const std::filesystem::path &folder, FolderUse use);
+
+/// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, instruction set, seed, time).
+void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
+
+/// Draws the figures of a results folder with scripts/plots.py. @return a line for the summary; never fails a run
+std::string draw_figures(const std::filesystem::path &folder);
+} // namespace isostat

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/run_output.hpp"
+
+#include "apps/common/interrupt.hpp"
+#include "dem/error.hpp"
+#include "dem/io/hdf5.hpp"
+#include "dem/io/snapshot_file.hpp"
+
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace
+{
+constexpr double progress_seconds = 10;
+
+double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+std::string duration_text(double s)
+{
+  return s < 90 ? fmt::format("{:.0f} s", s) : s < 5400 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.1f} h", s / 3600);
+}
+
+double &tally_field(EnergyBalance &t, int k)
+{
+  double *fields[] = {&t.boundary_work, &t.kinetic, &t.elastic, &t.sliding, &t.rolling, &t.released, &t.damping};
+  return *fields[k];
+}
+constexpr int n_tally = 7;
+
+std::size_t counter(const Checkpoint *checkpoint, const char *name)
+{
+  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
+}
+} // namespace
+
+void Progress::say(const std::string &line) const
+{
+  if (!quiet_)
+    std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void Progress::tick(const Assembly &assembly, const Observation &seen, double redundancy, double fraction)
+{
+  if (calls_ == 0)
+    first_step_ = last_step_ = assembly.step();
+  if (calls_++ % 256 != 0 || quiet_)
+    return;
+  const Clock::time_point now = Clock::now();
+  const double since = seconds(now - last_);
+  if (since < progress_seconds)
+    return;
+  if (assembly.step() < last_step_) // another assembly: preparation began anew
+    first_step_ = last_step_ = assembly.step();
+  if (first_fraction_ < 0 || fraction < first_fraction_)
+    {
+      first_fraction_ = fraction;
+      start_ = now;
+    }
+  std::string line = fmt::format("step {:>9}  {:>6.0f} steps/s", assembly.step(), (assembly.step() - last_step_) / since);
+  if (fraction >= 0)
+    line += fmt::format("  {:5.1f} %", 100 * fraction);
+  if (fraction > first_fraction_ && first_fraction_ >= 0)
+    line += fmt::format("  ETA {}", duration_text(seconds(now - start_) * (1 - fraction) / (fraction - first_fraction_)));
+  const double e = void_ratio(assembly.box(), assembly.solid_volume());
+  line += fmt::format("  eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa  e {:.4f}", 100 * seen.axial, seen.p / 1e3,
+                      seen.q / 1e3, e);
+  if (redundancy > 0)
+    line += fmt::format("  I_R {:.3f}", redundancy);
+  say(line);
+  last_ = now;
+  last_step_ = assembly.step();
+}
+
+bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &, const Observation &seen)
+{
+  progress_.tick(assembly, seen, 0, -1);
+  return !stop_requested();
+}
+
+RunOutput::RunOutput(fs::path folder, const Scene &scene, bool quiet, const Checkpoint *resumed)
+  : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)),
+    recorder_(folder_, history_columns(scene.output.energy), counter(resumed, "rows")),
+    grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
+    chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
+    n_snapshots_(counter(resumed, "snapshots")), progress_(quiet)
+{
+  if (resumed)
+    redundancy_ = resumed->numbers.at("redundancy");
+  if (scene.output.snapshots != "none")
+    fs::create_directories(folder_ / "snapshots");
+  if (scene.output.paraview)
+    fs::create_directories(folder_ / "paraview");
+}
+
+void RunOutput::record(const Assembly &assembly, const DriveState &state, const Observation &seen, bool snapshot)
+{
+  Snapshot now = assembly.snapshot();
+  const Micromechanics m = micromechanics(now);
+  redundancy_ = m.redundancy;
+  recorder_.append(history_row(assembly, state, seen, m, scene_.output.energy));
+  if (!snapshot)
+    return;
+  if (state.shear_started != 0)
+    now.strain = (assembly.box().edges().array() / state.origin.edges().array()).log();
+  store_snapshot(now);
+}
+
+void RunOutput::store_snapshot(const Snapshot &snapshot)
+{
+  const std::string name = fmt::format("{:04d}", n_snapshots_);
+  hdf5::File file = hdf5::File::create(folder_ / "snapshots" / ("snapshot_" + name + ".h5"));
+  file.root().set_attribute("format", std::string("isostat-snapshot"));
+  write_snapshot(file.root().create_group("snapshot"), snapshot);
+  file.commit();
+  if (scene_.output.paraview)
+    {
+      write_grains_vtp(folder_ / "paraview" / ("grains_" + name + ".vtp"), snapshot);
+      write_force_chains_vtp(folder_ / "paraview" / ("force_chains_" + name + ".vtp"), snapshot);
+      grains_.append(snapshot.time, "paraview/grains_" + name + ".vtp");
+      chains_.append(snapshot.time, "paraview/force_chains_" + name + ".vtp");
+    }
+  ++n_snapshots_;
+}
+
+void RunOutput::event(const std::string &line) { progress_.say(line); }
+
+bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, const Observation &seen)
+{
+  const auto stage = static_cast<std::size_t>(state.stage);
+  progress_.tick(assembly, seen, redundancy_, stage_fraction(scene_.stages[stage], state));
+  if (stop_requested())
+    {
+      save_checkpoint(assembly, state);
+      return false;
+    }
+  if (assembly.step() % 256 == 0 &&
+      seconds(Clock::now() - last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+    save_checkpoint(assembly, state);
+  return true;
+}
+
+void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
+{
+  recorder_.flush();
+  Checkpoint checkpoint{assembly.checkpoint(), {}, scene_text_};
+  auto &numbers = checkpoint.numbers;
+  state.for_each([&](const std::string &name, double value) { numbers["drive_" + name] = value; });
+  EnergyBalance tally = assembly.tally;
+  for (int k = 0; k < n_tally; ++k)
+    numbers[fmt::format("tally_{}", k)] = tally_field(tally, k);
+  const auto memory = assembly.wall_memory();
+  for (std::size_t k = 0; k < memory.size(); ++k)
+    numbers[fmt::format("wall_{:02d}", k)] = memory[k];
+  numbers["rows"] = static_cast<double>(recorder_.n_rows());
+  numbers["snapshots"] = static_cast<double>(n_snapshots_);
+  numbers["redundancy"] = redundancy_;
+  write_checkpoint(folder_ / "checkpoint", checkpoint);
+  last_checkpoint_ = Clock::now();
+}
+
+void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state)
+{
+  const auto &numbers = checkpoint.numbers;
+  state.for_each([&](const std::string &name, double &value) { value = numbers.at("drive_" + name); });
+  for (int k = 0; k < n_tally; ++k)
+    tally_field(assembly.tally, k) = numbers.at(fmt::format("tally_{}", k));
+  auto memory = assembly.wall_memory();
+  for (std::size_t k = 0; k < memory.size(); ++k)
+    memory[k] = numbers.at(fmt::format("wall_{:02d}", k));
+  assembly.set_wall_memory(memory);
+}
+
+double stage_fraction(const Stage &stage, const DriveState &state)
+{
+  if (stage.kind == StageKind::undrained_cyclic)
+    {
+      if (state.liquefied != 0 && stage.reversals_after_liquefaction > 0)
+        return (state.reversals - state.liquefaction_reversals) / static_cast<double>(stage.reversals_after_liquefaction);
+      return state.reversals / (2.0 * static_cast<double>(stage.max_cycles));
+    }
+  return is_shear(stage.kind) && stage.strain > 0 ? std::abs(state.axial) / stage.strain : -1;
+}
+} // namespace isostat

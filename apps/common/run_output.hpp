@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/common/history.hpp"
+#include "dem/io/checkpoint.hpp"
+#include "dem/io/vtp.hpp"
+
+#include <chrono>
+#include <filesystem>
+
+namespace isostat
+{
+/// Progress on stderr: one line every few seconds with rate, ETA and the state.
+class Progress
+{
+public:
+  explicit Progress(bool quiet) : quiet_(quiet) {}
+  void say(const std::string &line) const;
+  /// Looks at the clock every 256 calls.   @param fraction  of the work done, 0..1, or negative if unknown
+  void tick(const Assembly &assembly, const Observation &seen, double redundancy, double fraction);
+
+private:
+  bool quiet_;
+  std::uint64_t calls_ = 0, first_step_ = 0, last_step_ = 0;
+  double first_fraction_ = -1;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), last_ = start_;
+};
+
+/// Observer of preparation: progress and interrupts only.
+class PreparationOutput : public RunObserver
+{
+public:
+  explicit PreparationOutput(bool quiet) : progress_(quiet) {}
+  void record(const Assembly &, const DriveState &, const Observation &, bool) override {}
+  void event(const std::string &line) override { progress_.say(line); }
+  bool after_step(const Assembly &assembly, const DriveState &, const Observation &seen) override;
+
+private:
+  Progress progress_;
+};
+
+/// Everything a run leaves behind: history, snapshots, ParaView files, events, checkpoints. Never changes the run.
+class RunOutput : public RunObserver
+{
+public:
+  RunOutput(std::filesystem::path folder, const Scene &scene, bool quiet, const Checkpoint *resumed = nullptr);
+
+  void record(const Assembly &, const DriveState &, const Observation &, bool snapshot) override;
+  void event(const std::string &line) override;
+  bool after_step(const Assembly &, const DriveState &, const Observation &) override;
+
+  void save_checkpoint(const Assembly &assembly, DriveState state);
+  void finish() { recorder_.flush(); }
+
+private:
+  void store_snapshot(const Snapshot &snapshot);
+
+  std::filesystem::path folder_;
+  const Scene &scene_;
+  std::string scene_text_;
+  Recorder recorder_;
+  PvdCollection grains_, chains_;
+  std::uint64_t n_snapshots_ = 0;
+  double redundancy_ = 0;
+  Progress progress_;
+  std::chrono::steady_clock::time_point last_checkpoint_ = std::chrono::steady_clock::now();
+};
+
+/// Puts a checkpoint's numbers back into assembly and driver state.
+void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state);
+
+/// How much of the present stage is done, 0..1; negative if it cannot be told.
+double stage_fraction(const Stage &stage, const DriveState &state);
+} // namespace isostat

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/test_summary.hpp"
+
+#include "dem/drive/programme.hpp"
+#include "dem/io/csv_table.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+enum Column
+{
+  stage,
+  eps,
+  liquefied,
+  p,
+  q,
+  ir,
+  indicator,
+  work,
+  residual
+};
+
+CsvTable read_history(const std::filesystem::path &folder, bool energy)
+{
+  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)", "q (Pa)", "IR (-)", "indicator (-)"};
+  if (energy)
+    names.insert(names.end(), {"W_boundary (J)", "residual (J)"});
+  return CsvTable(folder / "history.csv", names);
+}
+
+double liquefaction_ratio(const Scene &scene)
+{
+  for (const Stage &s : scene.stages)
+    if (is_shear(s.kind))
+      return s.liquefaction_ratio;
+  return 0.01;
+}
+
+/// Rows at which p'/p0 comes back above the ratio after liquefaction.
+void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
+{
+  bool below = false;
+  double sum = 0;
+  for (std::size_t row = summary.onset_row; summary.liquefied && row < history.n_rows(); ++row)
+    {
+      const bool now_below = history(row, p) < limit;
+      summary.redundancy_least = std::min(summary.redundancy_least, history(row, ir));
+      if (below && !now_below)
+        {
+          sum += history(row, ir);
+          summary.n_recoveries += 1;
+        }
+      below = now_below;
+    }
+  summary.redundancy_recovered = summary.n_recoveries > 0 ? sum / summary.n_recoveries : 0;
+}
+
+void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
+{
+  bool started = false;
+  summary.least_p = summary.p0;
+  for (std::size_t row = 0; row < history.n_rows(); ++row)
+    {
+      if (!is_shear(scene.stages[static_cast<std::size_t>(history(row, stage))].kind))
+        continue;
+      if (!started)
+        {
+          summary.first_row = row;
+          summary.redundancy_initial = history(row, ir);
+          started = true;
+        }
+      if (!summary.liquefied && history(row, liquefied) != 0)
+        {
+          summary.liquefied = true;
+          summary.onset_row = row;
+          summary.redundancy_at_onset = summary.redundancy_least = history(row, ir);
+        }
+      summary.greatest_strain = std::max(summary.greatest_strain, std::abs(history(row, eps)));
+      summary.greatest_q = std::max(summary.greatest_q, std::abs(history(row, q)));
+      summary.least_p = std::min(summary.least_p, history(row, p));
+      if (!summary.liquefied)
+        summary.greatest_indicator = std::max(summary.greatest_indicator, history(row, indicator));
+    }
+}
+
+double energy_residual(const CsvTable &history)
+{
+  double done = 0, worst = 0;
+  for (std::size_t row = 1; row < history.n_rows(); ++row)
+    {
+      done += std::abs(history(row, work) - history(row - 1, work));
+      worst = std::max(worst, std::abs(history(row, residual)));
+    }
+  return done > 0 ? worst / done : 0;
+}
+} // namespace
+
+TestSummary summarise(const std::filesystem::path &folder, const Scene &scene, const Specimen &specimen,
+                      const DriveState &state, double seconds)
+{
+  TestSummary summary;
+  const auto number = [&](const char *name, double otherwise) {
+    const auto found = specimen.numbers.find(name);
+    return found == specimen.numbers.end() ? otherwise : found->second;
+  };
+  summary.title = scene.title;
+  summary.grains = specimen.state.grains.n_grains();
+  summary.void_ratio = number("void_ratio", 0);
+  summary.relative_density = number("relative_density", 0);
+  summary.preparation_friction = number("preparation_friction_deg", -1);
+  summary.p0 = state.p0;
+  summary.seconds = seconds;
+  summary.reversals = state.reversals;
+  summary.worst_overshoot = state.worst_overshoot;
+  summary.cyclic = std::any_of(scene.stages.begin(), scene.stages.end(),
+                               [](const Stage &s) { return s.kind == StageKind::undrained_cyclic; });
+  summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
+  summary.strain_before = state.greatest_strain_before;
+  const CsvTable history = read_history(folder, scene.output.energy);
+  add_path(history, scene, summary);
+  add_recoveries(history, liquefaction_ratio(scene) * state.p0, summary);
+  if (scene.output.energy)
+    summary.energy_residual = energy_residual(history);
+  return summary;
+}
+
+std::string to_text(const TestSummary &s, const Scene &scene)
+{
+  std::string text = fmt::format("\n{}\n  specimen                 {} grains, e = {:.4f}, D_r = {:.3f}", s.title, s.grains,
+                                 s.void_ratio, s.relative_density);
+  if (s.preparation_friction >= 0)
+    text += fmt::format(", prepared at {:.2f} deg", s.preparation_friction);
+  text += fmt::format("\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
+                      s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
+  const std::string rate = scene.motion.strain_rate ?
+                             fmt::format("fixed at {:g} 1/s", *scene.motion.strain_rate) :
+                             fmt::format("from tolerance {:g} (between {:g} and {:g} 1/s)", scene.motion.quasi_static_tolerance,
+                                         scene.motion.rate_floor, scene.motion.rate_ceiling);
+  text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
+                      s.greatest_indicator);
+  text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
+  if (s.cyclic && s.liquefied)
+    text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
+                        2 * s.cycles_to_liquefaction);
+  if (s.liquefied)
+    text += fmt::format("\n  strain before it         {:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
+                        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
+                        100 * s.strain_before, s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered,
+                        s.n_recoveries);
+  else
+    text += "\n  liquefaction             none";
+  if (s.cyclic)
+    text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals, s.worst_overshoot / 1e3);
+  text += fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, least p'    {:.2f} kPa, {:.3f} kPa",
+                      100 * s.greatest_strain, s.greatest_q / 1e3, s.least_p / 1e3);
+  if (s.energy_residual >= 0)
+    text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
+  return text + "\n";
+}
+
+std::string to_json(const TestSummary &s)
+{
+  std::string title;
+  for (char c : s.title)
+    title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  const std::string liquefaction =
+    s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
+                              "\"IR_least\": {:.10g}, \"IR_recovered\": {:.10g}}}",
+                              s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
+                              s.redundancy_least, s.redundancy_recovered) :
+                  "null";
+  return fmt::format("{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
+                     "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
+                     "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n  "
+                     "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
+                     title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds,
+                     s.first_row, s.reversals, s.worst_overshoot,
+                     s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null", liquefaction);
+}
+} // namespace isostat

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/drive/drive_state.hpp"
+#include "dem/io/specimen_file.hpp"
+#include "dem/scene.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace isostat
+{
+/// What a person wants to know of a finished test, from its history.csv and the driver's state.
+struct TestSummary
+{
+  std::string title;
+  std::size_t grains = 0;
+  double void_ratio = 0, relative_density = 0, preparation_friction = -1; ///< degrees; negative: unknown
+  double p0 = 0;                                                          ///< Pa
+  double steps = 0, seconds = 0;
+  double reversals = 0, worst_overshoot = 0;
+  bool cyclic = false, liquefied = false;
+  double cycles_to_liquefaction = 0; ///< reversals / 2
+  double strain_before = 0;          ///< largest |axial strain| before liquefaction
+  double redundancy_initial = 0, redundancy_at_onset = 0, redundancy_least = 0;
+  double redundancy_recovered = 0; ///< mean I_R in the first rows after p'/p0 has come back above the ratio
+  double n_recoveries = 0;
+  double greatest_strain = 0, greatest_q = 0, least_p = 0;
+  double energy_residual = -1; ///< |residual| / sum of |boundary work|; negative: not measured
+  double greatest_indicator = 0;
+  std::size_t first_row = 0, onset_row = 0;
+};
+
+TestSummary summarise(const std::filesystem::path &folder, const Scene &scene, const Specimen &specimen,
+                      const DriveState &state, double seconds);
+
+/// For the terminal.
+std::string to_text(const TestSummary &summary, const Scene &scene);
+/// For summary.json: read by scripts/plots.py.
+std::string to_json(const TestSummary &summary);
+} // namespace isostat

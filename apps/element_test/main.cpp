@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, from a scene file to figures.
+//
+//        | sigma_y              prepare   cloud -> isotropic compression -> friction -> balance   (or a file)
+//     ___v___                   programme stages of the scene: compress, friction, rebalance, undrained-monotonic,
+//    |o O o O|<- sigma_x                  undrained-cyclic, drained, constant-p, hold
+//    |O o O o|                  leaves    history.csv/.h5, snapshots, ParaView files, figures, a printed summary
+//    |_______|  y axial
+//
+//   element_test apps/scenes/quick_cyclic_liquefies.toml
+//   element_test apps/scenes/cyclic_dr64.toml --set motion.quasi_static_tolerance=0.02 --output results/coarse
+//   element_test apps/scenes/cyclic_dr64.toml --resume
+#include "apps/common/interrupt.hpp"
+#include "apps/common/main_guard.hpp"
+#include "apps/common/result_folder.hpp"
+#include "apps/common/run_output.hpp"
+#include "apps/common/test_summary.hpp"
+#include "dem/io/replace_file.hpp"
+#include "dem/prepare/specimen.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+
+struct Options
+{
+  std::string scene, output, command_line;
+  std::vector<std::string> set;
+  bool validate = false, print_defaults = false, overwrite = false, resume = false, quiet = false, no_figures = false;
+};
+
+/// The state of a run: fresh from the specimen, or from a checkpoint.
+struct Run
+{
+  std::unique_ptr<Assembly> assembly;
+  DriveState state;
+  std::unique_ptr<Checkpoint> resumed;
+};
+
+Run start(const Scene &scene, const Specimen &specimen, const fs::path &folder, bool resume)
+{
+  Run run;
+  if (resume)
+    {
+      run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
+      if (run.resumed->scene != to_toml(scene))
+        throw InputError(fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
+                                     "of --validate). Resume with the scene and --set values of the first run.",
+                                     folder.string(), (folder / "scene.toml").string()));
+      run.assembly = std::make_unique<Assembly>(run.resumed->state);
+      restore(*run.resumed, *run.assembly, run.state);
+    }
+  else
+    {
+      Snapshot initial = specimen.state;
+      initial.law = scene.contact;
+      run.assembly = std::make_unique<Assembly>(initial);
+    }
+  run.assembly->measure_energy = scene.output.energy;
+  return run;
+}
+
+void run_test(const Options &options)
+{
+  const Scene scene = read_scene(options.scene, options.set);
+  if (options.validate)
+    {
+      fmt::print("{}", to_toml(scene));
+      return;
+    }
+  const fs::path folder = !options.output.empty()       ? fs::path(options.output) :
+                          !scene.output.folder.empty() ? fs::path(scene.output.folder) :
+                                                          fs::path("results") / fs::path(options.scene).stem();
+  open_result_folder(folder, options.resume    ? FolderUse::resume :
+                             options.overwrite ? FolderUse::overwrite :
+                                                 FolderUse::fresh);
+  catch_signals();
+  if (!options.resume)
+    write_provenance(folder, scene, options.command_line);
+  PreparationOutput preparation(options.quiet);
+  const fs::path cache = folder.has_parent_path() ? folder.parent_path() / scene.specimen.cache : fs::path(scene.specimen.cache);
+  const Specimen specimen = obtain_specimen(scene, cache, preparation);
+
+  Run run = start(scene, specimen, folder, options.resume);
+  RunOutput output(folder, scene, options.quiet, run.resumed.get());
+  const auto begin = std::chrono::steady_clock::now();
+  RunOutcome outcome = RunOutcome::finished;
+  try
+    {
+      outcome = run_programme(scene.motion, scene.specimen, scene.output, scene.stages, *run.assembly, run.state, output);
+    }
+  catch (const RunFailure &failure)
+    {
+      output.finish();
+      const bool kept = fs::exists(folder / "checkpoint" / "last.h5");
+      throw RunFailure(fmt::format("{}\n  last good checkpoint: {}", failure.what(),
+                                   kept ? (folder / "checkpoint" / "last.h5").string() : "none was written yet"));
+    }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (outcome == RunOutcome::interrupted)
+    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
+  output.finish();
+
+  TestSummary summary = summarise(folder, scene, specimen, run.state, seconds);
+  summary.steps = static_cast<double>(run.assembly->step());
+  write_replacing(folder / "summary.json", to_json(summary));
+  const std::string text = to_text(summary, scene);
+  write_replacing(folder / "summary.txt", text);
+  fmt::print("{}", text);
+  if (!options.no_figures)
+    fmt::print("  {}\n", draw_figures(folder));
+}
+
+int parse_and_run(int argc, char **argv)
+{
+  CLI::App app{"True-triaxial element tests on spheres: drained, undrained monotonic, undrained cyclic"};
+  Options options;
+  app.add_option("scene", options.scene, "scene file (TOML); see docs/scene_reference.md");
+  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  app.add_option("--set", options.set, "override a key, e.g. --set motion.damping=0.3 (repeatable)");
+  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
+  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
+  auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
+  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  for (int k = 0; k < argc; ++k)
+    options.command_line += (k ? " " : "") + std::string(argv[k]);
+  try
+    {
+      app.parse(argc, argv);
+    }
+  catch (const CLI::ParseError &error)
+    {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+  return guarded([&] {
+    if (options.print_defaults)
+      fmt::print("{}", default_scene());
+    else if (options.scene.empty())
+      throw InputError("no scene given. Try element_test apps/scenes/quick_cyclic_liquefies.toml, or --help.");
+    else
+      run_test(options);
+  });
+}
+} // namespace
+
+int main(int argc, char **argv) { return parse_and_run(argc, argv); }

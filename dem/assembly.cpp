@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/assembly.hpp"
+
+#include "dem/error.hpp"
+#include "dem/motion/leapfrog.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double explosion_step = 0.01; // of the smallest radius, per step
+
+double sign_of_wall(int wall) { return wall % 2 ? 1.0 : -1.0; } // outward direction
+
+double wall_overlap(const Packing &packing, const RigidBox &box, std::uint32_t i, int wall)
+{
+  const double x = packing.position[4 * i + wall / 2];
+  return packing.radius(i) - (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]);
+}
+} // namespace
+
+Assembly::Assembly(const Snapshot &initial)
+  : packing_(initial.grains), box_(initial.box), law_(initial.law), contacts_(initial.law.active()),
+    action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0), solid_volume_(initial.grains.solid_volume()),
+    d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
+{
+  verlet_.update(packing_, box_, 0.0, contacts_);
+  std::size_t pair = 0;
+  for (const Contact &c : initial.contacts)
+    {
+      while (pair < contacts_.n_pairs() &&
+             std::pair(contacts_.first()[pair], contacts_.second()[pair]) < std::pair(c.first, c.second))
+        ++pair;
+      if (pair < contacts_.n_pairs() && contacts_.first()[pair] == c.first && contacts_.second()[pair] == c.second)
+        contacts_.set_history(pair, c.history);
+    }
+}
+
+void Assembly::set_law(const LawParams &law)
+{
+  law_ = law;
+  contacts_.set_features(law.active());
+}
+
+void Assembly::compute_forces()
+{
+  verlet_.update(packing_, box_, greatest_step_, contacts_);
+  add_contact_forces(law_, packing_, time_step, contacts_, action_.data(), measure_energy ? &dissipation_ : nullptr);
+  add_wall_forces();
+  if (gravity != Vec3::Zero())
+    add_gravity();
+  if (measure_energy)
+    sum_dissipation();
+}
+
+void Assembly::add_wall_forces()
+{
+  previous_wall_force_ = wall_force_;
+  for (int wall = 0; wall < 6; ++wall)
+    {
+      const int axis = wall / 2;
+      const double inward = -sign_of_wall(wall);
+      double sum = 0, stiffness = 0;
+      for (std::uint32_t i : verlet_.near_wall()[wall])
+        {
+          const double overlap = wall_overlap(packing_, box_, i, wall);
+          const double kn = overlap > 0 ? wall_stiffness(law_, packing_.radius(i)) : 0.0;
+          const double fn = kn * overlap;
+          stiffness += kn;
+          action_[8 * i + axis] += inward * fn;
+          sum += fn;
+        }
+      wall_force_[wall] = sum;
+      wall_stiffness_sum_[axis] = (wall % 2 ? wall_stiffness_sum_[axis] : 0.0) + stiffness;
+    }
+}
+
+void Assembly::add_gravity()
+{
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    for (int k = 0; k < 3; ++k)
+      action_[8 * i + k] += gravity[k] * packing_.mass(i);
+}
+
+void Assembly::sum_dissipation()
+{
+  // in pair order, so that the sums do not depend on the list either
+  for (std::size_t p = 0; p < contacts_.n_pairs() && !dissipation_.sliding.empty(); ++p)
+    {
+      tally.sliding += dissipation_.sliding[p];
+      tally.rolling += dissipation_.rolling[p];
+      tally.released += dissipation_.released[p];
+    }
+  for (int wall = 0; wall < 6; ++wall)
+    tally.boundary_work -= 0.5 * (previous_wall_force_[wall] + wall_force_[wall]) * wall_displacement_[wall];
+}
+
+void Assembly::move(const RigidBox &next_box)
+{
+  const double speed_limit = explosion_step * min_radius_ / time_step;
+  const MotionReport report =
+    integrate(packing_, action_.data(), time_step, damping, speed_limit, measure_energy);
+  if (report.exploded)
+    report_explosion(speed_limit);
+  tally.damping += report.damping_loss;
+  double wall_step = 0;
+  for (int wall = 0; wall < 6; ++wall)
+    {
+      const int axis = wall / 2;
+      const double moved = wall % 2 ? next_box.upper[axis] - box_.upper[axis] : next_box.lower[axis] - box_.lower[axis];
+      wall_displacement_[wall] = sign_of_wall(wall) * moved; // outward
+      wall_step = std::max(wall_step, std::abs(moved));
+    }
+  greatest_step_ = report.greatest_speed * time_step + wall_step;
+  box_ = next_box;
+  ++step_;
+  time_ += time_step;
+}
+
+void Assembly::report_explosion(double speed_limit) const
+{
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      const double speed = packing_.linear_velocity(i).norm();
+      if (!(speed < speed_limit))
+        throw RunFailure(fmt::format(
+          "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (1 % of the smallest radius per step of {:.3g} "
+          "s): the packing explodes. Lower motion.time_step_safety, the strain rate or the fixed time step.",
+          step_, packing_.id[i], speed, speed_limit, time_step));
+    }
+  throw RunFailure(fmt::format("step {}: a grain component exceeds {:.3g} m/s", step_, speed_limit));
+}
+
+Vec3 Assembly::wall_stress() const
+{
+  Vec3 stress;
+  for (int axis = 0; axis < 3; ++axis)
+    stress[axis] = -0.5 * (wall_force_[2 * axis] + wall_force_[2 * axis + 1]) / box_.area(axis);
+  return stress;
+}
+
+Vec3 Assembly::contact_stress() const
+{
+  Vec3 sum = Vec3::Zero();
+  const bool shear = contacts_.features().friction;
+  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+    {
+      const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
+      const Vec3 branch = packing_.centre(j) - packing_.centre(i);
+      const double reach = packing_.radius(i) + packing_.radius(j), distance2 = branch.squaredNorm();
+      if (distance2 >= reach * reach)
+        continue;
+      const double distance = std::sqrt(distance2);
+      const double kn = contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal;
+      Vec3 force = branch * (kn * (reach - distance) / distance);
+      if (shear)
+        force += contacts_.history(p).shear_force;
+      sum -= force.cwiseProduct(branch); // push-apart is compression: negative
+    }
+  for (int wall = 0; wall < 6; ++wall)
+    for (std::uint32_t i : verlet_.near_wall()[wall])
+      {
+        const double overlap = wall_overlap(packing_, box_, i, wall);
+        if (overlap > 0)
+          sum[wall / 2] -= wall_stiffness(law_, packing_.radius(i)) * overlap * (packing_.radius(i) - overlap);
+      }
+  return sum / box_.volume();
+}
+
+double Assembly::unbalanced_force_ratio() const
+{
+  std::vector<std::uint8_t> in_contact(packing_.n_grains(), 0);
+  double force_sum = 0;
+  std::size_t n_contacts = 0;
+  auto count = [&](double fn) {
+    force_sum += fn;
+    ++n_contacts;
+  };
+  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+    {
+      const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
+      const double reach = packing_.radius(i) + packing_.radius(j);
+      const double distance = (packing_.centre(j) - packing_.centre(i)).norm();
+      if (distance >= reach)
+        continue;
+      count(contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal * (reach - distance));
+      in_contact[i] = in_contact[j] = 1;
+    }
+  for (int wall = 0; wall < 6; ++wall)
+    for (std::uint32_t i : verlet_.near_wall()[wall])
+      if (const double overlap = wall_overlap(packing_, box_, i, wall); overlap > 0)
+        {
+          count(wall_stiffness(law_, packing_.radius(i)) * overlap);
+          in_contact[i] = 1;
+        }
+  double resultant = 0;
+  std::size_t n_active = 0;
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    if (in_contact[i])
+      {
+        resultant += Vec3(&action_[8 * i]).norm();
+        ++n_active;
+      }
+  return n_contacts && force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
+}
+
+std::array<double, 12> Assembly::wall_memory() const
+{
+  std::array<double, 12> memory;
+  std::copy(wall_force_.begin(), wall_force_.end(), memory.begin());
+  std::copy(wall_displacement_.begin(), wall_displacement_.end(), memory.begin() + 6);
+  return memory;
+}
+
+void Assembly::set_wall_memory(const std::array<double, 12> &memory)
+{
+  std::copy_n(memory.begin(), 6, wall_force_.begin());
+  std::copy_n(memory.begin() + 6, 6, wall_displacement_.begin());
+}
+
+Snapshot Assembly::checkpoint() const
+{
+  Snapshot s;
+  s.grains = packing_;
+  s.box = box_;
+  s.law = law_;
+  s.time = time_;
+  s.step = step_;
+  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+    {
+      const ContactHistory h = contacts_.history(p);
+      if (h.normal != Vec3::Zero())
+        s.contacts.push_back({contacts_.first()[p], contacts_.second()[p], 0.0, 0.0, h});
+    }
+  return s;
+}
+
+Snapshot Assembly::snapshot() const
+{
+  Snapshot s;
+  s.grains = packing_;
+  s.box = box_;
+  s.law = law_;
+  s.time = time_;
+  s.step = step_;
+  s.contacts.reserve(contacts_.n_pairs());
+  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+    {
+      const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
+      const Vec3 branch = packing_.centre(j) - packing_.centre(i);
+      const double distance = branch.norm(), overlap = packing_.radius(i) + packing_.radius(j) - distance;
+      if (!(overlap > 0))
+        continue;
+      const double kn = contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal;
+      Contact contact{i, j, overlap, kn * overlap, contacts_.history(p)};
+      contact.history.normal = branch / distance;
+      s.contacts.push_back(contact);
+    }
+  for (int wall = 0; wall < 6; ++wall)
+    for (std::uint32_t i : verlet_.near_wall()[wall])
+      if (const double overlap = wall_overlap(packing_, box_, i, wall); overlap > 0)
+        s.wall_contacts.push_back(
+          {i, static_cast<std::uint8_t>(wall), overlap, wall_stiffness(law_, packing_.radius(i)) * overlap});
+  return s;
+}
+
+EnergyBalance Assembly::energy() const
+{
+  EnergyBalance balance = tally;
+  const StoredEnergy stored = stored_energy(snapshot());
+  balance.kinetic = stored.kinetic();
+  balance.elastic = stored.elastic();
+  return balance;
+}
+} // namespace isostat

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/contact/law.hpp"
+
+namespace isostat
+{
+/// Pairs of grains that may touch, and what their contacts remember, as arrays of structures of arrays:
+///
+///     block b:  8 pairs;  first[8b .. 8b+7], second[8b .. 8b+7]
+///     history:  component c of lane l in block b at  (b * n_components + c) * 8 + l
+///     components: n' (3), fs (3), [mb (3) with rolling], [mt (3) with twisting]; none at all without friction
+///
+/// Pairs are sorted by (first, second), first < second. Pairs that do not touch carry zeros and add exact zeros to the
+/// sums, so results do not depend on how many such pairs the list holds. Lanes behind the last pair point at the
+/// packing's padding grains.
+class ContactList
+{
+public:
+  static constexpr std::size_t lanes = 8;
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+  ContactList() = default;
+  explicit ContactList(LawFeatures active) : features_(active) {}
+
+  std::size_t n_pairs() const { return n_pairs_; }
+  std::size_t n_blocks() const { return first_.size() / lanes; }
+  std::size_t n_components() const { return n_components(features_); }
+  LawFeatures features() const { return features_; }
+  const std::uint32_t *first() const { return first_.data(); }
+  const std::uint32_t *second() const { return second_.data(); }
+  double *history_data() { return history_.data(); }
+  /// 1 where a block may hold history; lets the loop skip blocks that do not touch without clearing them again.
+  std::uint8_t *occupied() { return occupied_.data(); }
+
+  ContactHistory history(std::size_t pair) const;
+  void set_history(std::size_t pair, const ContactHistory &history);
+
+  /// Replaces the pairs; history goes over to pairs that stay, the rest starts from zero.
+  /// @param sorted_pairs  by (first, second)   @param n_grains  index of the first padding grain
+  void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains);
+
+  /// Switches parts of the law on or off; history of parts that stay is kept.
+  void set_features(LawFeatures active);
+
+  static std::size_t n_components(LawFeatures on)
+  {
+    return on.friction ? 6u + (on.rolling ? 3u : 0u) + (on.twisting ? 3u : 0u) : 0u;
+  }
+  std::size_t bytes() const { return 8 * first_.size() + 8 * history_.size() + occupied_.size(); }
+
+private:
+  double *component(std::size_t pair, std::size_t c)
+  {
+    return &history_[((pair / lanes) * n_components() + c) * lanes + pair % lanes];
+  }
+  const double *component(std::size_t pair, std::size_t c) const
+  {
+    return const_cast<ContactList *>(this)->component(pair, c);
+  }
+
+  LawFeatures features_;
+  std::size_t n_pairs_ = 0;
+  AlignedVector<std::uint32_t> first_, second_;
+  AlignedVector<double> history_;
+  std::vector<std::uint8_t> occupied_;
+};
+} // namespace isostat

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/programme.hpp"
+
+#include "dem/drive/rate_control.hpp"
+#include "dem/drive/servo.hpp"
+#include "dem/drive/strain_path.hpp"
+#include "dem/drive/time_step.hpp"
+#include "dem/measure/stress.hpp"
+
+#include "dem/error.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::uint64_t balance_interval = 200, rate_interval = 50, least_balance_steps = 1000;
+
+/// One stage at work: scene settings beside the state that a checkpoint keeps.
+class StageRunner
+{
+public:
+  StageRunner(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output, const Stage &stage,
+              Assembly &assembly, DriveState &state, RunObserver &observer)
+    : motion_(motion), specimen_(specimen), output_(output), stage_(stage), assembly_(assembly), state_(state),
+      observer_(observer), rate_control_(motion, stage.strain_rate)
+  {}
+
+  RunOutcome run()
+  {
+    if (state_.steps_in_stage == 0)
+      begin();
+    if (stage_.kind == StageKind::friction)
+      return RunOutcome::finished;
+    assembly_.time_step = state_.time_step;
+    for (bool finished = false; !finished;)
+      {
+        update_time_step(motion_, is_shear(stage_.kind), assembly_, state_);
+        assembly_.compute_forces();
+        const Observation seen = look();
+        const Verdict verdict = judge(seen);
+        finished = verdict.finished;
+        record_if_due(seen, verdict);
+        assembly_.move(finished ? assembly_.box() : next_box(seen));
+        state_.steps_in_stage += 1;
+        if (!observer_.after_step(assembly_, state_, seen) && !finished)
+          return RunOutcome::interrupted;
+      }
+    return RunOutcome::finished;
+  }
+
+private:
+  void begin()
+  {
+    state_.reference = assembly_.box();
+    state_.axial = state_.signed_rate = state_.slope = state_.slope_axial = 0;
+    state_.servo_step.setZero();
+    state_.balanced_checks = 0;
+    state_.direction = stage_.extension ? -1 : 1;
+    state_.rate = rate_control_.initial_rate();
+    if (stage_.kind == StageKind::friction)
+      {
+        LawParams law = assembly_.law();
+        law.friction = stage_.friction;
+        law.features.friction = stage_.friction > 0;
+        assembly_.set_law(law);
+      }
+  }
+
+  Observation look()
+  {
+    const StressInvariants stress = invariants(assembly_.wall_stress());
+    if (is_shear(stage_.kind) && state_.shear_started == 0)
+      {
+        state_.shear_started = 1;
+        state_.origin = assembly_.box();
+        state_.p0 = stress.p;
+      }
+    if (is_shear(stage_.kind) && state_.steps_in_stage == 0)
+      {
+        state_.lateral_target = -assembly_.wall_stress();
+        state_.slope_q = stress.q;
+      }
+    return {stress.p, stress.q, axial_strain(assembly_, state_), assembly_.step()};
+  }
+
+  Verdict judge(const Observation &seen)
+  {
+    Verdict verdict;
+    if (stage_.kind == StageKind::undrained_monotonic || stage_.kind == StageKind::undrained_cyclic)
+      verdict = observe_undrained(stage_, seen, state_);
+    else if (is_shear(stage_.kind))
+      verdict.finished = std::abs(state_.axial) >= stage_.strain;
+    else
+      verdict.finished = in_balance();
+    if (stage_.max_steps > 0 && state_.steps_in_stage + 1 >= static_cast<double>(stage_.max_steps))
+      verdict.finished = true;
+    return verdict;
+  }
+
+  /// Servo and hold stages: two checks in a row with stresses on target and forces in balance.
+  bool in_balance()
+  {
+    const auto steps = static_cast<std::uint64_t>(state_.steps_in_stage);
+    if (steps < least_balance_steps || steps % balance_interval != 0)
+      return false;
+    const double stress_tolerance = stage_.kind == StageKind::compress ? 0.01 : 0.002;
+    const bool on_target = stage_.kind == StageKind::hold || stress_error(assembly_, target()) < stress_tolerance;
+    const bool balanced = on_target && assembly_.unbalanced_force_ratio() < stage_.balance;
+    state_.balanced_checks = balanced ? state_.balanced_checks + 1 : 0;
+    if (steps > 20'000'000)
+      throw RunFailure(fmt::format("step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, wanted {:.3g})",
+                                   assembly_.step(), to_string(stage_.kind), steps, assembly_.unbalanced_force_ratio(),
+                                   stage_.balance));
+    return state_.balanced_checks >= 2;
+  }
+
+  Vec3 target() const
+  {
+    return Vec3::Constant(stage_.pressure > 0 ? stage_.pressure : specimen_.pressure);
+  }
+
+  RigidBox next_box(const Observation &seen)
+  {
+    if (is_shear(stage_.kind))
+      return sheared_box(seen);
+    if (stage_.kind == StageKind::hold)
+      return assembly_.box();
+    // the approach is fast, the last of the pressure slow
+    const double cap = specimen_.compaction_rate * (seen.p < 0.05 * target()[0] ? 1.0 : 0.25);
+    return about_centre(servo_edges(assembly_, target(), {true, true, true}, cap, state_));
+  }
+
+  RigidBox sheared_box(const Observation &seen)
+  {
+    if (static_cast<std::uint64_t>(state_.steps_in_stage) % rate_interval == 0)
+      rate_control_.update(assembly_, seen.p, state_);
+    update_slope(state_, seen.q);
+    const double limit = stage_.kind == StageKind::undrained_cyclic ? stage_.deviator_amplitude : 0.0;
+    const double dt = assembly_.time_step;
+    state_.signed_rate = next_rate(state_, seen.q, limit, ramp_steps(assembly_) * dt, dt);
+    state_.axial += state_.signed_rate * dt;
+    const StrainPath path{state_.reference};
+    if (stage_.kind == StageKind::undrained_monotonic || stage_.kind == StageKind::undrained_cyclic)
+      return path.box(isochoric(state_.axial));
+
+    Vec3 target = state_.lateral_target; // drained: lateral stresses stay; constant p': they balance the axial one
+    if (stage_.kind == StageKind::constant_p)
+      target.setConstant(std::max(0.0, 0.5 * (3 * state_.lateral_target.mean() + assembly_.wall_stress()[1])));
+    Vec3 edges = servo_edges(assembly_, target, {true, false, true}, 4 * state_.rate, state_);
+    edges[1] = state_.reference.edges()[1] * std::exp(-state_.axial);
+    return about_centre(edges);
+  }
+
+  RigidBox about_centre(const Vec3 &edges) const
+  {
+    const Vec3 centre = state_.reference.centre();
+    return {centre - 0.5 * edges, centre + 0.5 * edges};
+  }
+
+  void record_if_due(const Observation &seen, const Verdict &verdict)
+  {
+    if (!verdict.event.empty())
+      observer_.event(verdict.event);
+    const bool edge = state_.steps_in_stage == 0 || verdict.finished;
+    const double since = static_cast<double>(seen.step) - state_.recorded_step;
+    const bool due = edge || verdict.notable || std::abs(seen.p - state_.recorded_p) >= output_.record_stress ||
+                     std::abs(seen.q - state_.recorded_q) >= output_.record_stress ||
+                     std::abs(seen.axial - state_.recorded_strain) >= output_.record_strain ||
+                     since >= static_cast<double>(output_.record_steps);
+    if (!due)
+      return;
+    const bool by_strain = output_.snapshots == "strain" &&
+                           std::abs(seen.axial - state_.snapshot_strain) >= output_.snapshot_strain;
+    const bool snapshot = is_shear(stage_.kind) && output_.snapshots != "none" && (edge || verdict.notable || by_strain);
+    if (snapshot)
+      state_.snapshot_strain = seen.axial;
+    state_.recorded_p = seen.p;
+    state_.recorded_q = seen.q;
+    state_.recorded_strain = seen.axial;
+    state_.recorded_step = static_cast<double>(seen.step);
+    observer_.record(assembly_, state_, seen, snapshot);
+  }
+
+  const MotionSpec &motion_;
+  const SpecimenSpec &specimen_;
+  const OutputSpec &output_;
+  const Stage &stage_;
+  Assembly &assembly_;
+  DriveState &state_;
+  RunObserver &observer_;
+  RateControl rate_control_;
+};
+} // namespace
+
+RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output,
+                         const std::vector<Stage> &stages, Assembly &assembly, DriveState &state,
+                         RunObserver &observer)
+{
+  while (state.stage < static_cast<double>(stages.size()))
+    {
+      const Stage &stage = stages[static_cast<std::size_t>(state.stage)];
+      assembly.damping = motion.damping;
+      StageRunner runner(motion, specimen, output, stage, assembly, state, observer);
+      if (runner.run() == RunOutcome::interrupted)
+        return RunOutcome::interrupted;
+      state.stage += 1;
+      state.steps_in_stage = 0;
+    }
+  return RunOutcome::finished;
+}
+
+double axial_strain(const Assembly &assembly, const DriveState &state)
+{
+  return state.shear_started != 0 ? std::log(state.origin.edges()[1] / assembly.box().edges()[1]) : 0.0;
+}
+
+bool is_shear(StageKind kind)
+{
+  return kind == StageKind::undrained_monotonic || kind == StageKind::undrained_cyclic || kind == StageKind::drained ||
+         kind == StageKind::constant_p;
+}
+
+std::string to_string(StageKind kind)
+{
+  switch (kind)
+    {
+      case StageKind::compress:
+        return "compress";
+      case StageKind::friction:
+        return "friction";
+      case StageKind::rebalance:
+        return "rebalance";
+      case StageKind::undrained_monotonic:
+        return "undrained-monotonic";
+      case StageKind::undrained_cyclic:
+        return "undrained-cyclic";
+      case StageKind::drained:
+        return "drained";
+      case StageKind::constant_p:
+        return "constant-p";
+      case StageKind::hold:
+        return "hold";
+    }
+  return "?";
+}
+} // namespace isostat

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/rate_control.hpp"
+
+#include "dem/measure/unbalanced.hpp"
+
+#include <algorithm>
+
+namespace isostat
+{
+RateControl::RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate)
+  : fixed_(stage_rate ? stage_rate : motion.strain_rate), tolerance_(motion.quasi_static_tolerance),
+    floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
+{}
+
+double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
+{
+  const double solid_p = 0.01 * p0;
+  double eta = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density,
+                                    std::max(mean_stress, 0.001 * p0));
+  if (mean_stress > solid_p)
+    {
+      const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
+      eta = std::max({eta, difference.cwiseAbs().maxCoeff() / mean_stress, assembly.unbalanced_force_ratio()});
+    }
+  return eta;
+}
+
+void RateControl::update(const Assembly &assembly, double mean_stress, DriveState &state) const
+{
+  state.indicator = quasi_static_indicator(assembly, mean_stress, state.p0, state.rate);
+  if (fixed_)
+    {
+      state.rate = *fixed_;
+      return;
+    }
+  const double factor = std::clamp(std::sqrt(tolerance_ / std::max(state.indicator, 1e-12)), 0.7, 1.2);
+  state.rate = std::clamp(state.rate * factor, floor_, ceiling_);
+}
+
+double next_rate(const DriveState &state, double q, double q_limit, double ramp_time, double time_step)
+{
+  const double acceleration = state.rate / ramp_time;
+  const double change = acceleration * time_step;
+  const double next = state.signed_rate + std::clamp(state.direction * state.rate - state.signed_rate, -change, change);
+  if (q_limit <= 0 || state.slope <= 0 || next * state.direction <= 0)
+    return next;
+  const double strain_left = std::max(0.0, (q_limit - state.direction * q) / state.slope);
+  const double slowest = 0.1 * state.rate;
+  const double braked = std::sqrt(slowest * slowest + 2 * acceleration * strain_left);
+  return state.direction * std::min(std::abs(next), braked);
+}
+
+double ramp_steps(const Assembly &assembly)
+{
+  return 10 * assembly.box().edges().maxCoeff() / assembly.d50();
+}
+
+void update_slope(DriveState &state, double q)
+{
+  if (std::fmod(state.steps_in_stage, 20) != 0)
+    return;
+  const double strain = std::abs(state.axial - state.slope_axial);
+  state.slope = strain > 0 ? std::abs(q - state.slope_q) / strain : 0;
+  state.slope_q = q;
+  state.slope_axial = state.axial;
+}
+} // namespace isostat

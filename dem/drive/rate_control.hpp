@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/assembly.hpp"
+#include "dem/drive/drive_state.hpp"
+#include "dem/scene.hpp"
+
+namespace isostat
+{
+/// Chooses the strain rate from a quasi-static tolerance (DESIGN 4), or keeps a fixed one.
+///
+/// The indicator is what inertia adds to a quasi-static answer:
+///     eta = max( |sigma_wall - sigma_contact| / p,  unbalanced-force ratio,  10 I ),   p = max(p', 0.01 p0),
+/// the first two only above p' = 0.01 p0: below, the packing is no solid and has nothing to be in balance with. I is the
+/// inertial number eps_dot d50 sqrt(rho/p), with p no less than 0.001 p0; the factor 10 makes I = 1e-3 as bad as a 1 %
+/// imbalance. Every `interval` steps
+///     rate <- rate clamp(sqrt(tolerance/eta), 0.7, 1.2)   within [floor, ceiling].
+class RateControl
+{
+public:
+  RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate);
+
+  /// The rate a stage starts with, 1/s.
+  double initial_rate() const { return fixed_ ? *fixed_ : floor_; }
+  /// Updates state.rate and state.indicator.     @pre compute_forces()
+  void update(const Assembly &assembly, double mean_stress, DriveState &state) const;
+
+private:
+  std::optional<double> fixed_;
+  double tolerance_, floor_, ceiling_;
+};
+
+/// eta above; also where the rate is fixed it is recorded.
+double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);
+
+/// Axial rate for the next step, 1/s: goes towards direction * rate within `ramp_time`, and brakes with the same
+/// deceleration so that q arrives at +-q_limit at a tenth of the rate: a load reversal is no jump either.
+/// @param q  Pa   @param q_limit  Pa; 0: no braking   @param ramp_time  s   @param time_step  s
+double next_rate(const DriveState &state, double q, double q_limit, double ramp_time, double time_step);
+
+/// Ten times the steps in which a wave crosses the packing, in steps: how long loads ramp.
+double ramp_steps(const Assembly &assembly);
+
+/// Keeps state.slope = |dq/d axial strain| over windows of 20 steps, for the braking.
+void update_slope(DriveState &state, double q);
+} // namespace isostat

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/time_step.hpp"
+
+#include "dem/error.hpp"
+#include "dem/motion/critical_step.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::uint64_t servo_interval = 200, shear_interval = 2000;
+constexpr int power_iterations = 300;
+
+void check_fixed_step(double fixed, const Assembly &assembly)
+{
+  const double bound = critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
+  if (fixed <= bound)
+    return;
+  const double critical = critical_step_by_power_iteration(assembly.law(), assembly.packing(), assembly.box(),
+                                                           assembly.contacts(), power_iterations);
+  if (fixed > critical)
+    throw RunFailure(fmt::format("step {}: unstable: motion.time_step = {:.4g} s exceeds the critical step {:.4g} s of "
+                                 "the closed contacts. Set it below {:.4g} s or leave it out.",
+                                 assembly.step(), fixed, critical, bound));
+}
+} // namespace
+
+void update_time_step(const MotionSpec &motion, bool shearing, Assembly &assembly, DriveState &state)
+{
+  const std::uint64_t interval = shearing ? shear_interval : servo_interval;
+  if (state.time_step > 0 && static_cast<std::uint64_t>(state.steps_in_stage) % interval != 0)
+    return;
+  if (motion.time_step)
+    check_fixed_step(*motion.time_step, assembly);
+  state.time_step = motion.time_step ? *motion.time_step :
+                                       motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
+                                                                                     assembly.box(), assembly.contacts());
+  assembly.time_step = state.time_step;
+}
+} // namespace isostat

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/assembly.hpp"
+#include "dem/drive/drive_state.hpp"
+#include "dem/scene.hpp"
+
+namespace isostat
+{
+/// Sets assembly.time_step and state.time_step when a review is due (every 200 steps of a servo stage, 2,000 of a shear
+/// stage): safety times the bound of the critical step, or the scene's fixed step.
+/// @throws RunFailure when a fixed step exceeds the true critical step (power iteration; only looked at where the step
+///         is above the bound): the run would be unstable, not merely inaccurate
+/// tested: tests/verification/critical_step_test.cpp
+void update_time_step(const MotionSpec &motion, bool shearing, Assembly &assembly, DriveState &state);
+} // namespace isostat

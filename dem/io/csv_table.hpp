@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/types.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace isostat
+{
+/// Throws an InputError that begins with file:line.
+[[noreturn]] void reject(const std::filesystem::path &file, std::size_t line, const std::string &what);
+
+/// All of a file, unpacked if it is gzipped. Throws InputError if it is missing or its gzip data are damaged.
+std::string read_text(const std::filesystem::path &path);
+/// Lines without their ends (\n or \r\n).
+std::vector<std::string_view> split_lines(std::string_view text);
+/// Words between blanks, tabs and commas.
+std::vector<std::string_view> split_words(std::string_view line);
+/// The number that a field spells out: the whole field, the same in every locale, to the last bit; otherwise false.
+bool parse(std::string_view field, double &value);
+
+/// Chosen columns of a comma separated table, as numbers. The first line of the file names the columns.
+/// Every mistake is an InputError with file:line.   tested: tests/dem/io/text_tables_test.cpp
+class CsvTable
+{
+public:
+  /// Reads the whole file, plain or gzipped.
+  /// @param columns  names, in the order in which they are asked for; they may stand anywhere, others are ignored
+  /// @param may_be_nan  the one column whose values may be nan
+  CsvTable(const std::filesystem::path &path, const std::vector<std::string> &columns,
+           const std::string &may_be_nan = "");
+
+  const std::filesystem::path &path() const { return path_; }
+  std::size_t n_rows() const { return lines_.size(); }
+  /// Line of the file in which a row stands, counted from 1.
+  std::size_t line(std::size_t row) const { return lines_[row]; }
+  double operator()(std::size_t row, std::size_t column) const { return values_[row * n_columns_ + column]; }
+  /// Three columns that follow each other.
+  Vec3 vector(std::size_t row, std::size_t column) const { return Vec3(&values_[row * n_columns_ + column]); }
+  /// A value that must be a whole number, |value| < 2^32; `name` is for the message.
+  std::int64_t integer(std::size_t row, std::size_t column, const char *name) const;
+
+private:
+  std::filesystem::path path_;
+  std::size_t n_columns_;
+  std::vector<std::size_t> lines_;
+  std::vector<double> values_;
+};
+} // namespace isostat

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rules that bind several keys of a scene.
+#include "dem/io/scene_reader.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+/// The keys of a group exclude each other.
+void check_group(const SceneDocument &document, Group group, bool one_needed)
+{
+  const Key *given = nullptr;
+  std::string names;
+  std::string_view section;
+  for (const Key &key : scene_schema())
+    {
+      if (key.group != group)
+        continue;
+      section = key.section();
+      names += (names.empty() ? "" : ", ") + std::string(key.name());
+      if (!document.find(key.path))
+        continue;
+      if (given)
+        document.refuse(key.path,
+                        fmt::format("excludes {} ({}). Keep one of them.", given->path, document.where(given->path)));
+      given = &key;
+    }
+  if (one_needed && !given)
+    document.refuse(section,
+                    fmt::format("must have exactly one of {}. Give for example relative_density = 0.64.", names));
+}
+
+void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
+{
+  if (specimen.domain == "periodic-cell")
+    document.refuse("specimen.domain", "is not available yet. Use \"rigid-box\".");
+  if (specimen.e_min >= specimen.e_max)
+    document.refuse(document.find("specimen.e_min") ? "specimen.e_min" : "specimen.e_max",
+                    fmt::format("e_min must be below e_max, but they are {} and {}. Correct one of them.",
+                                number_text(specimen.e_min), number_text(specimen.e_max)));
+  if (document.find("specimen.file") && specimen.file.empty())
+    document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
+}
+
+void check_contact(const SceneDocument &document, const Scene &scene)
+{
+  for (const char *path : {"contact.rolling", "contact.twisting"})
+    if (document.find(path) && !document.find("contact.friction"))
+      document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (scene.stages[i].friction > 0 && !scene.contact.features.friction)
+      document.refuse(fmt::format("stage.{}.friction", i),
+                      "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
+}
+
+void check_motion(const SceneDocument &document, const MotionSpec &motion)
+{
+  if (motion.rate_floor > motion.rate_ceiling)
+    document.refuse(document.find("motion.rate_floor") ? "motion.rate_floor" : "motion.rate_ceiling",
+                    fmt::format("rate_floor must not exceed rate_ceiling, but they are {} 1/s and {} 1/s. Correct one "
+                                "of them.",
+                                number_text(motion.rate_floor), number_text(motion.rate_ceiling)));
+}
+} // namespace
+
+void check_scene(const SceneDocument &document, const Scene &scene)
+{
+  check_group(document, Group::size_curve, false);
+  check_group(document, Group::preparation, true);
+  check_group(document, Group::rate, false);
+  check_specimen(document, scene.specimen);
+  check_contact(document, scene);
+  check_motion(document, scene.motion);
+}
+} // namespace isostat

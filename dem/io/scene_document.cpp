@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/scene_document.hpp"
+
+#include "dem/error.hpp"
+#include "dem/io/scene_schema.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <sstream>
+
+namespace isostat
+{
+namespace
+{
+std::vector<std::string> split(std::string_view path)
+{
+  std::vector<std::string> words;
+  while (true)
+    {
+      const std::size_t dot = path.find('.');
+      words.emplace_back(path.substr(0, dot));
+      if (dot == std::string_view::npos)
+        return words;
+      path.remove_prefix(dot + 1);
+    }
+}
+
+std::optional<std::size_t> as_index(std::string_view word)
+{
+  std::size_t index = 0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), index);
+  if (read.ec != std::errc{} || read.ptr != word.data() + word.size())
+    return {};
+  return index;
+}
+
+/// The node under a table (by key) or an array (by number), null if there is none.
+const toml::node *child(const toml::node &node, const std::string &word)
+{
+  if (const toml::table *table = node.as_table())
+    return table->get(word);
+  if (const toml::array *array = node.as_array())
+    if (const auto index = as_index(word))
+      return array->get(*index);
+  return nullptr;
+}
+
+bool lies_in(std::string_view path, std::string_view ancestor)
+{
+  return path.starts_with(ancestor) && (path.size() == ancestor.size() || path[ancestor.size()] == '.');
+}
+
+/// A value as it stands in the file, text without its quotes unless it is inside an array.
+std::string value_text(const toml::node &node, bool inside = false)
+{
+  if (const auto *text = node.as_string())
+    return inside ? "\"" + text->get() + "\"" : text->get();
+  if (const auto *real = node.as_floating_point(); real && std::isfinite(real->get()))
+    return number_text(real->get());
+  std::ostringstream stream;
+  if (const toml::array *array = node.as_array())
+    {
+      for (const toml::node &element : *array)
+        stream << (stream.str().empty() ? "[" : ", ") << value_text(element, true);
+      stream << (array->empty() ? "[]" : "]");
+    }
+  else
+    stream << toml::node_view(node);
+  return stream.str();
+}
+
+/// The first line with which the text makes toml++ give up without saying where.
+std::size_t line_of_assertion(const std::string &text)
+{
+  std::size_t line = 1;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1), ++line)
+    try
+      {
+        [[maybe_unused]] const toml::table table = toml::parse(std::string_view(text).substr(0, end + 1));
+      }
+    catch (const toml::parse_error &)
+      {}
+    catch (const TomlAssertion &)
+      {
+        break;
+      }
+  return line;
+}
+
+/// A value of --set: TOML if it is that, plain text if not.
+toml::table parse_override(const std::string &value)
+{
+  try
+    {
+      toml::table holder = toml::parse("value = " + value);
+      if (holder.size() == 1) // more: the text holds line breaks
+        return holder;
+    }
+  catch (const toml::parse_error &)
+    {}
+  toml::table holder;
+  holder.insert_or_assign("value", value);
+  return holder;
+}
+} // namespace
+
+SceneDocument::SceneDocument(const std::string &text, const std::string &name,
+                             const std::vector<std::string> &overrides)
+    : name_(name)
+{
+  try
+    {
+      root_ = toml::parse(text, name);
+    }
+  catch (const toml::parse_error &error)
+    {
+      throw InputError(
+          fmt::format("{}:{}: is not valid TOML: {}.", name, error.source().begin.line, error.description()));
+    }
+  catch (const TomlAssertion &)
+    {
+      throw InputError(fmt::format("{}:{}: is not valid TOML: a key or table header is cut off here.", name,
+                                   line_of_assertion(text)));
+    }
+  for (const std::string &override : overrides)
+    apply(override);
+}
+
+void SceneDocument::apply(const std::string &override)
+{
+  const std::size_t equals = override.find('=');
+  std::string path = override.substr(0, equals);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  std::erase_if(path, is_blank);
+  if (equals == std::string::npos || path.empty())
+    throw InputError(fmt::format("--set {}: must be key=value. Give for example --set motion.damping=0.3", override));
+  std::string value = override.substr(equals + 1);
+  while (!value.empty() && is_blank(value.front()))
+    value.erase(0, 1);
+
+  overridden_.push_back(path);
+  make_room(path);
+  toml::table *parent = parent_of(path);
+  parent->insert_or_assign(split(path).back(), *parse_override(value).get("value"));
+}
+
+/// An override of one of several keys that exclude each other takes the place of the one in the file.
+void SceneDocument::make_room(const std::string &path)
+{
+  const Key *key = find_key(path);
+  if (!key || key->group == Group::none)
+    return;
+  toml::table *section = root_[key->section()].as_table();
+  for (const Key &other : scene_schema())
+    if (section && other.group == key->group && &other != key &&
+        std::find(overridden_.begin(), overridden_.end(), other.path) == overridden_.end())
+      section->erase(other.name());
+}
+
+toml::table *SceneDocument::parent_of(const std::string &path)
+{
+  const std::vector<std::string> words = split(path);
+  toml::node *node = &root_;
+  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    {
+      toml::table *table = node->as_table();
+      if (table && !table->contains(words[i]) && words[i] != "stage")
+        table->insert(words[i], toml::table{});
+      if (const toml::array *array = node->as_array(); array && !as_index(words[i]))
+        throw InputError(fmt::format("--set {}: stages are addressed by number. Write stage.0 for the first.", path));
+      if (const toml::array *array = node->as_array(); array && *as_index(words[i]) >= array->size())
+        throw InputError(fmt::format("--set {}: there is no stage {}; {} has {}, counted from 0.", path, words[i],
+                                     name_, array->size()));
+      toml::node *next = const_cast<toml::node *>(child(*node, words[i]));
+      if (!next)
+        throw InputError(fmt::format("--set {}: {} has no {}.", path, name_, words[i]));
+      node = next;
+    }
+  if (node->is_array_of_tables())
+    throw InputError(fmt::format("--set {}: a stage is set key by key. Write for example stage.0.strain=0.02.", path));
+  if (!node->is_table())
+    throw InputError(fmt::format("--set {}: {} is a value that holds no keys. Set it as a whole.", path,
+                                 path.substr(0, path.rfind('.'))));
+  return node->as_table();
+}
+
+const toml::node *SceneDocument::find(std::string_view path) const
+{
+  const toml::node *node = &root_;
+  for (const std::string &word : split(path))
+    if (node)
+      node = child(*node, word);
+  return node;
+}
+
+std::string SceneDocument::where(std::string_view path) const
+{
+  for (const std::string &set : overridden_)
+    if (lies_in(path, set))
+      return "--set " + set;
+  const toml::node *node = find(path);
+  while (!node && path.find('.') != std::string_view::npos)
+    {
+      path = path.substr(0, path.rfind('.'));
+      node = find(path);
+    }
+  if (!node || node->source().begin.line == 0)
+    return name_;
+  return fmt::format("{}:{}", name_, node->source().begin.line);
+}
+
+void SceneDocument::refuse(std::string_view path, std::string_view problem) const
+{
+  const toml::node *node = find(path);
+  const bool has_value = node && !node->is_table() && !node->is_array_of_tables();
+  throw InputError(fmt::format("{}: {}{}; {}", where(path), path, has_value ? " = " + value_text(*node) : "", problem));
+}
+} // namespace isostat

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Look-ups in the schema and its wording.
+#include "dem/io/scene_schema.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+std::string bound_text(const Key &key, double bound)
+{
+  return key.kind == Kind::quantity ? format_bound(bound, key.dimension, key.unit) : number_text(bound);
+}
+
+std::string quoted(std::string_view text)
+{
+  std::string result = "\"";
+  for (const char c : text)
+    {
+      const auto code = static_cast<unsigned char>(c);
+      if (c == '"' || c == '\\')
+        result += fmt::format("\\{}", c);
+      else if (code < 0x20 || code == 0x7f)
+        result += fmt::format("\\u{:04X}", code);
+      else
+        result += c;
+    }
+  return result + "\"";
+}
+
+std::string enumerate(const std::vector<std::string> &words)
+{
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
+
+/// Levenshtein distance: insertions, deletions and substitutions that turn one word into the other.
+std::size_t typing_errors(std::string_view a, std::string_view b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+    {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= b.size(); ++j)
+        {
+          const std::size_t above = row[j];
+          row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+          diagonal = above;
+        }
+    }
+  return row[b.size()];
+}
+
+std::string_view last_word(std::string_view path) { return path.substr(path.rfind('.') + 1); }
+} // namespace
+
+bool Range::contains(double x) const
+{
+  return std::isfinite(x) && (low_excluded ? x > low : x >= low) && (high_excluded ? x < high : x <= high);
+}
+
+std::string_view Key::section() const
+{
+  const std::string_view whole = path;
+  const std::size_t dot = whole.find('.');
+  return dot == std::string_view::npos ? std::string_view() : whole.substr(0, dot);
+}
+
+std::string_view Key::name() const
+{
+  const std::string_view whole = path;
+  return whole.substr(whole.find('.') + 1);
+}
+
+const Key *find_key(std::string_view path)
+{
+  for (const Key &key : scene_schema())
+    if (key.path == path)
+      return &key;
+  return nullptr;
+}
+
+std::string schema_path(std::string_view path)
+{
+  constexpr std::string_view prefix = "stage.";
+  if (!path.starts_with(prefix))
+    return std::string(path);
+  std::size_t end = prefix.size();
+  while (end < path.size() && std::isdigit(static_cast<unsigned char>(path[end])))
+    ++end;
+  if (end == prefix.size() || (end < path.size() && path[end] != '.'))
+    return std::string(path);
+  return "stage" + std::string(path.substr(end));
+}
+
+std::string nearest_path(std::string_view unknown)
+{
+  std::string best;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  const std::string_view word = last_word(unknown);
+  const auto offer = [&](std::string_view path) {
+    // a word in the wrong section is nearer than another word in the right one, and so is a part of a longer word
+    const bool other_section = path.substr(0, path.find('.')) != unknown.substr(0, unknown.find('.'));
+    std::size_t errors = std::min(2 * typing_errors(unknown, path), 2 * typing_errors(word, last_word(path)) + 1);
+    if (word.size() > 2 && last_word(path).find(word) != std::string_view::npos)
+      errors = std::min<std::size_t>(errors, 3 + other_section);
+    if (errors < fewest)
+      {
+        fewest = errors;
+        best = path;
+      }
+  };
+  for (const Key &key : scene_schema())
+    offer(key.path);
+  for (const Section &section : scene_sections())
+    offer(section.name);
+  return best;
+}
+
+std::string file_text(const Key &key, std::string_view value)
+{
+  const bool words = key.kind == Kind::quantity || key.kind == Kind::choice || key.kind == Kind::text;
+  return words ? quoted(value) : std::string(value);
+}
+
+std::string example(const Key &key) { return file_text(key, key.value); }
+
+std::string range_text(const Key &key)
+{
+  const Range &range = key.range;
+  const bool below = std::isfinite(range.low), above = std::isfinite(range.high);
+  if (below && above)
+    return fmt::format("in {}{}, {}{}", range.low_excluded ? '(' : '[', bound_text(key, range.low),
+                       bound_text(key, range.high), range.high_excluded ? ')' : ']');
+  if (below)
+    return fmt::format("{} {}", range.low_excluded ? ">" : ">=", bound_text(key, range.low));
+  if (above)
+    return fmt::format("{} {}", range.high_excluded ? "<" : "<=", bound_text(key, range.high));
+  return key.kind == Kind::integer ? ">= 0" : "";
+}
+
+std::string choices_text(const Key &key)
+{
+  std::vector<std::string> words;
+  for (const char *choice : key.choices)
+    words.push_back(quoted(choice));
+  return enumerate(words);
+}
+
+std::string stages_text(const Key &key)
+{
+  std::vector<std::string> words;
+  const auto names = stage_kind_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (key.belongs_to(static_cast<StageKind>(i)))
+      words.push_back(names[i]);
+  return words.size() == names.size() ? "any" : enumerate(words);
+}
+} // namespace isostat

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/io/hdf5.hpp"
+#include "dem/measure/snapshot.hpp"
+
+namespace isostat
+{
+/// Stores a snapshot, bit by bit, in an empty group. N grains, C contacts, W wall contacts; every dataset carries
+/// `unit`:
+///
+///     @time s  @step -  @density kg/m3        box (2,3) lower, upper   strain (3)
+///     law/            @young ... as in LawParams, features as 0 or 1
+///     grains/         position (N,4) x y z radius    velocity (N,4) vx vy vz 1/mass    spin (N,4) wx wy wz 1/inertia
+///     id (N) contacts/       first second overlap normal_force (C)   normal shear_force bending_moment twisting_moment
+///     (C,3) wall_contacts/  grain wall overlap normal_force (W)
+///
+/// Padding records of the packing are not stored.
+/// tested: tests/dem/io/snapshot_file_test.cpp (round trip to the bit)
+void write_snapshot(hdf5::Group group, const Snapshot &snapshot);
+
+/// The snapshot that write_snapshot stored; order of grains and contacts as stored, padding as make_packing makes it.
+/// Throws InputError if an item is missing, sizes disagree, or a contact names a grain or wall that does not exist.
+/// Values are not judged here: the snapshot of a failed run may well be looked at.
+Snapshot read_snapshot(const hdf5::Group &group);
+} // namespace isostat

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/specimen_file.hpp"
+
+#include "dem/error.hpp"
+#include "dem/io/hdf5.hpp"
+#include "dem/io/snapshot_file.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+const std::string format_name = "isostat-specimen";
+
+std::string grain_fault(const Packing &grains)
+{
+  if (grains.n_grains() == 0)
+    return "it has no grains; expected at least one";
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    {
+      for (const auto *records : {&grains.position, &grains.velocity, &grains.spin})
+        for (std::size_t k = 4 * i; k < 4 * i + 4; ++k)
+          if (!std::isfinite((*records)[k]))
+            return fmt::format("grain {} (id {}) has a value of {} in its {}; expected finite numbers", i, grains.id[i],
+                               (*records)[k],
+                               records == &grains.position   ? "position"
+                               : records == &grains.velocity ? "velocity"
+                                                             : "spin");
+      const double r = grains.radius(i), inverse_mass = grains.velocity[4 * i + 3],
+                   inverse_inertia = grains.spin[4 * i + 3];
+      if (!(r > 0 && inverse_mass > 0 && inverse_inertia > 0))
+        return fmt::format("grain {} (id {}) has radius {} m, 1/mass {} 1/kg, 1/inertia {} 1/(kg m2); expected all > 0",
+                           i, grains.id[i], r, inverse_mass, inverse_inertia);
+    }
+  return {};
+}
+
+std::string contact_fault(const Snapshot &state)
+{
+  for (std::size_t i = 0; i < state.contacts.size(); ++i)
+    {
+      const Contact &c = state.contacts[i];
+      const ContactHistory &h = c.history;
+      if (!(std::isfinite(c.overlap) && std::isfinite(c.normal_force) && h.normal.allFinite() &&
+            h.shear_force.allFinite() && h.bending_moment.allFinite() && h.twisting_moment.allFinite()))
+        return fmt::format("contact {} (grains {} and {}) holds a value that is not finite", i, c.first, c.second);
+    }
+  for (std::size_t i = 0; i < state.wall_contacts.size(); ++i)
+    if (!(std::isfinite(state.wall_contacts[i].overlap) && std::isfinite(state.wall_contacts[i].normal_force)))
+      return fmt::format("wall contact {} (grain {}) holds a value that is not finite", i,
+                         state.wall_contacts[i].grain);
+  return {};
+}
+
+/// What makes a state unfit to start from; empty if nothing.
+std::string fault(const Snapshot &state)
+{
+  const LawParams &law = state.law;
+  for (double value : {law.young, law.stiffness_ratio, law.friction, law.rolling_stiffness, law.rolling_limit,
+                       law.twisting_stiffness, state.time})
+    if (!std::isfinite(value))
+      return fmt::format("a law parameter or the time is {}; expected finite numbers", value);
+  if (!(std::isfinite(state.grains.density) && state.grains.density > 0))
+    return fmt::format("grain density = {} kg/m3; expected > 0", state.grains.density);
+  if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
+    return fmt::format("the box has edges {} x {} x {} m; expected all > 0", state.box.edges().x(),
+                       state.box.edges().y(), state.box.edges().z());
+  if (!state.strain.allFinite())
+    return "its strain is not finite";
+  const std::string grains = grain_fault(state.grains);
+  return grains.empty() ? contact_fault(state) : grains;
+}
+
+void check_header(const hdf5::Group &root)
+{
+  const std::string file = root.file_path().string();
+  if (!root.has_attribute("format"))
+    throw InputError(
+        fmt::format("{}: HDF5, but without the attribute format = \"{}\"; another program wrote it. Give a "
+                    "specimen made by Isostat",
+                    file, format_name));
+  const std::string format = root.attribute<std::string>("format");
+  if (format != format_name)
+    throw InputError(fmt::format("{}: format = \"{}\", expected \"{}\"; give a specimen made by Isostat", file, format,
+                                 format_name));
+  const auto version = root.attribute<std::uint64_t>("schema_version");
+  if (version != specimen_schema_version)
+    throw InputError(fmt::format("{}: schema_version = {}, this program reads {}; prepare the specimen again with this "
+                                 "version, or read it with the one that wrote it",
+                                 file, version, specimen_schema_version));
+}
+} // namespace
+
+void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
+{
+  if (const std::string found = fault(specimen.state); !found.empty())
+    throw RunFailure(fmt::format("{}: the specimen is not written: {}", path.string(), found));
+  hdf5::File file = hdf5::File::create(path);
+  hdf5::Group root = file.root();
+  root.set_attribute("format", format_name);
+  root.set_attribute("schema_version", specimen_schema_version);
+  hdf5::Group provenance = root.create_group("provenance"), numbers = root.create_group("numbers");
+  for (const auto &[key, text] : specimen.provenance)
+    provenance.set_attribute(key, text);
+  for (const auto &[key, value] : specimen.numbers)
+    numbers.set_attribute(key, value);
+  write_snapshot(root.create_group("snapshot"), specimen.state);
+  file.commit();
+}
+
+Specimen read_specimen(const std::filesystem::path &path)
+{
+  const hdf5::File file = hdf5::File::open(path);
+  const hdf5::Group root = file.root();
+  check_header(root);
+  Specimen specimen;
+  const hdf5::Group provenance = root.group("provenance"), numbers = root.group("numbers");
+  for (const std::string &key : provenance.attribute_names())
+    specimen.provenance[key] = provenance.attribute<std::string>(key);
+  for (const std::string &key : numbers.attribute_names())
+    specimen.numbers[key] = numbers.attribute<double>(key);
+  specimen.state = read_snapshot(root.group("snapshot"));
+  if (const std::string found = fault(specimen.state); !found.empty())
+    throw InputError(fmt::format("{}: {}. Prepare the specimen again", path.string(), found));
+  return specimen;
+}
+} // namespace isostat

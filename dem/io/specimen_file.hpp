@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/measure/snapshot.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace isostat
+{
+/// A prepared packing with the story of how it was made; the starting point of element tests and RVEs.
+struct Specimen
+{
+  Snapshot state;
+  std::map<std::string, std::string> provenance; ///< title, recipe, key hash, versions: text that explains the file
+  std::map<std::string, double> numbers;         ///< void ratio, relative density, pressure (Pa), seed ...; any value
+};
+
+constexpr std::uint64_t specimen_schema_version = 1;
+
+/// Writes an HDF5 file: root attributes format = "isostat-specimen" and schema_version, groups `provenance` and
+/// `numbers` (one attribute each entry), group `snapshot` as in snapshot_file.hpp. Written aside and renamed. Throws
+/// RunFailure if the state is one that read_specimen would refuse, or the file cannot be written.
+/// @param path  its folder must exist
+/// tested: tests/dem/io/specimen_file_test.cpp
+void write_specimen(const std::filesystem::path &path, const Specimen &specimen);
+
+/// Reads and checks a specimen: right format and schema version, sizes that agree, at least one grain, a box with
+/// volume, finite numbers in the state, positive radii, masses and inertias. Every failure is an InputError that names
+/// the file, what was found, what was expected, and the remedy.
+Specimen read_specimen(const std::filesystem::path &path);
+} // namespace isostat

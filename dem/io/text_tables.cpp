@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/text_tables.hpp"
+
+#include "dem/error.hpp"
+#include "dem/io/csv_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <unordered_map>
+#include <utility>
+
+namespace isostat
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+fs::path find_table(const fs::path &folder, const std::string &prefix, const std::string &what, const std::string &tag)
+{
+  const std::string name = fmt::format("{}_{}_{}.csv", prefix, what, tag);
+  for (const char *ending : {"", ".gz"})
+    if (std::error_code ignored; fs::exists(folder / (name + ending), ignored))
+      return folder / (name + ending);
+  throw InputError(fmt::format("{}: neither {} nor {}.gz is there; check folder, prefix (\"{}\") and tag (\"{}\")",
+                               folder.string(), name, name, prefix, tag));
+}
+
+RigidBox read_box(const fs::path &path)
+{
+  const CsvTable table(path, {"wall", "pos"});
+  RigidBox box;
+  std::array<bool, 6> seen{};
+  for (std::size_t i = 0; i < table.n_rows(); ++i)
+    {
+      const std::int64_t wall = table.integer(i, 0, "wall");
+      if (wall < 0 || wall > 5 || std::exchange(seen[wall], true))
+        reject(path, table.line(i), fmt::format("wall = {}; expected 0..5 (x-,x+,y-,y+,z-,z+), each once", wall));
+      (wall % 2 == 0 ? box.lower : box.upper)[wall / 2] = table(i, 1);
+    }
+  if (!std::all_of(seen.begin(), seen.end(), [](bool s) { return s; }))
+    throw InputError(fmt::format("{}: {} walls; expected six", path.string(), table.n_rows()));
+  if (!(box.edges().array() > 0).all())
+    throw InputError(fmt::format("{}: edges {} x {} x {} m; expected pos of the + walls above that of the - walls",
+                                 path.string(), box.edges().x(), box.edges().y(), box.edges().z()));
+  return box;
+}
+
+void check_sphere(const fs::path &path, std::size_t line, const Vec3 &centre, double radius)
+{
+  if (!(radius > 0))
+    reject(path, line, fmt::format("radius r = {}; expected > 0 (m)", radius));
+  if (!centre.allFinite() || !std::isfinite(radius))
+    reject(path, line, "centre or radius is not finite; expected numbers (m)");
+}
+
+void check_inside(const fs::path &path, std::size_t line, const Vec3 &centre, const RigidBox &box)
+{
+  for (int k = 0; k < 3; ++k)
+    if (!(centre[k] >= box.lower[k] && centre[k] <= box.upper[k]))
+      reject(path, line,
+             fmt::format("centre {} = {} m lies outside the box, [{}, {}] m; are the units m, and is it the box "
+                         "of this packing?",
+                         "xyz"[k], centre[k], box.lower[k], box.upper[k]));
+}
+
+using IndexOfId = std::unordered_map<std::int64_t, std::uint32_t>;
+
+Packing read_particles(const fs::path &path, const RigidBox &box, double density, IndexOfId &index_of_id)
+{
+  const CsvTable table(path, {"id", "x", "y", "z", "r", "vx", "vy", "vz", "wx", "wy", "wz"});
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < table.n_rows(); ++i)
+    {
+      const std::int64_t id = table.integer(i, 0, "id");
+      if (id < 0 || !index_of_id.emplace(id, static_cast<std::uint32_t>(i)).second)
+        reject(path, table.line(i), fmt::format("id = {}; expected a number >= 0 that no other grain has", id));
+      check_sphere(path, table.line(i), table.vector(i, 1), table(i, 4));
+      check_inside(path, table.line(i), table.vector(i, 1), box);
+      centres.push_back(table.vector(i, 1));
+      radii.push_back(table(i, 4));
+    }
+  if (centres.empty())
+    throw InputError(fmt::format("{}: no grains; expected one line each below the header", path.string()));
+  Packing grains = make_packing(centres, radii, density);
+  for (const auto &[id, i] : index_of_id)
+    grains.id[i] = static_cast<std::uint32_t>(id);
+  for (std::size_t i = 0; i < table.n_rows(); ++i)
+    {
+      grains.set_linear_velocity(i, table.vector(i, 5));
+      grains.set_angular_velocity(i, table.vector(i, 8));
+    }
+  return grains;
+}
+
+enum ContactColumn
+{
+  id1,
+  id2,
+  un,
+  nx,
+  kn = nx + 3,
+  fn,
+  fsx,
+  mbx = fsx + 3,
+  mtx = mbx + 3
+};
+
+/// u, or fn/kn where the table has none (tables written before the first force evaluation).
+double overlap_of(const CsvTable &table, std::size_t row)
+{
+  if (!std::isnan(table(row, un)))
+    return table(row, un);
+  if (!(table(row, kn) > 0))
+    reject(table.path(), table.line(row), fmt::format("kn = {}; expected > 0 where un is nan", table(row, kn)));
+  return table(row, fn) / table(row, kn);
+}
+
+WallContact wall_row(const CsvTable &table, std::size_t row, std::uint32_t grain, std::int64_t wall_id)
+{
+  return {grain, static_cast<std::uint8_t>(-wall_id - 1), overlap_of(table, row), table(row, fn)};
+}
+
+Contact grain_row(const CsvTable &table, std::size_t row, std::uint32_t first, std::uint32_t second)
+{
+  if (std::abs(table.vector(row, nx).squaredNorm() - 1) > 1e-6)
+    reject(table.path(), table.line(row), "(nx, ny, nz) is not a unit vector; expected length 1 within 1e-6");
+  ContactHistory h{table.vector(row, nx), table.vector(row, fsx), table.vector(row, mbx), table.vector(row, mtx)};
+  if (first > second) // seen from the other grain everything is opposite
+    h = {-h.normal, -h.shear_force, -h.bending_moment, -h.twisting_moment};
+  return {std::min(first, second), std::max(first, second), overlap_of(table, row), table(row, fn), h};
+}
+
+void read_contacts(const fs::path &path, const IndexOfId &index_of_id, Snapshot &snapshot)
+{
+  const CsvTable table(
+      path,
+      {"id1", "id2", "un", "nx", "ny", "nz", "kn", "fn", "fsx", "fsy", "fsz", "mbx", "mby", "mbz", "mtx", "mty", "mtz"},
+      "un");
+  for (std::size_t row = 0; row < table.n_rows(); ++row)
+    {
+      const std::int64_t a = table.integer(row, id1, "id1"), b = table.integer(row, id2, "id2");
+      const auto is_wall = [](std::int64_t id) { return id < 0 && id >= -6; };
+      const auto is_grain = [&](std::int64_t id) { return index_of_id.contains(id); };
+      if (a == b || !((is_grain(a) && is_grain(b)) || (is_wall(a) && is_grain(b)) || (is_grain(a) && is_wall(b))))
+        reject(path, table.line(row),
+               fmt::format("contact of {} and {}; expected two different ids of the grain table, or one "
+                           "of the walls -1..-6 and a grain",
+                           a, b));
+      if (table(row, fn) < 0)
+        reject(path, table.line(row), fmt::format("fn = {}; expected >= 0 (N, repulsion)", table(row, fn)));
+      if (table(row, fn) == 0)
+        continue;
+      if (is_wall(a) || is_wall(b))
+        snapshot.wall_contacts.push_back(wall_row(table, row, index_of_id.at(std::max(a, b)), std::min(a, b)));
+      else
+        snapshot.contacts.push_back(grain_row(table, row, index_of_id.at(a), index_of_id.at(b)));
+    }
+  const auto by_pair = [](const Contact &c) { return std::pair(c.first, c.second); };
+  const auto by_wall = [](const WallContact &c) { return std::pair(std::uint32_t{c.wall}, c.grain); };
+  std::ranges::sort(snapshot.contacts, {}, by_pair);
+  std::ranges::sort(snapshot.wall_contacts, {}, by_wall);
+  if (std::ranges::adjacent_find(snapshot.contacts, {}, by_pair) != snapshot.contacts.end() ||
+      std::ranges::adjacent_find(snapshot.wall_contacts, {}, by_wall) != snapshot.wall_contacts.end())
+    throw InputError(fmt::format("{}: a contact is listed twice; expected each once", path.string()));
+}
+
+/// The six numbers of a comment `# box xlo xhi ylo yhi zlo zhi`; false for any other comment.
+bool read_box_comment(const fs::path &path, std::size_t line, std::string_view text, RigidBox &box)
+{
+  std::vector<std::string_view> words = split_words(text.substr(text.find('#') + 1));
+  if (words.empty() || words[0] != "box")
+    return false;
+  std::array<double, 6> v{};
+  bool good = words.size() == 7;
+  for (std::size_t k = 0; good && k < 6; ++k)
+    good = parse(words[k + 1], v[k]) && std::isfinite(v[k]) && (k % 2 == 0 || v[k] > v[k - 1]);
+  if (!good)
+    reject(path, line, fmt::format("\"{}\"; expected # box xlo xhi ylo yhi zlo zhi, each pair rising (m)", text));
+  box = {Vec3(v[0], v[2], v[4]), Vec3(v[1], v[3], v[5])};
+  return true;
+}
+
+/// x y z r; false for a line that is no such thing.
+bool parse_sphere(std::string_view text, std::array<double, 4> &sphere)
+{
+  const std::vector<std::string_view> words = split_words(text);
+  bool good = words.size() == 4;
+  for (std::size_t k = 0; good && k < 4; ++k)
+    good = parse(words[k], sphere[k]);
+  return good;
+}
+
+/// A line of words only, such as `x y z r`.
+bool is_header(std::string_view text)
+{
+  double ignored = 0;
+  return std::ranges::none_of(split_words(text), [&](std::string_view word) { return parse(word, ignored); });
+}
+
+RigidBox bounding_box(const std::vector<Vec3> &centres, const std::vector<double> &radii)
+{
+  RigidBox box{centres[0], centres[0]};
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    {
+      box.lower = box.lower.cwiseMin(centres[i] - Vec3::Constant(radii[i]));
+      box.upper = box.upper.cwiseMax(centres[i] + Vec3::Constant(radii[i]));
+    }
+  return box;
+}
+
+void check_density(double density)
+{
+  if (!(density > 0 && std::isfinite(density)))
+    throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
+}
+} // namespace
+
+Snapshot import_tables(const fs::path &path, const LawParams &law, double density)
+{
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    return import_yade_tables(path, "comp", "step0", law, density);
+  return import_spheres(path, law, density);
+}
+
+Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, const std::string &tag,
+                            const LawParams &law, double density)
+{
+  check_density(density);
+  Snapshot snapshot;
+  snapshot.law = law;
+  snapshot.box = read_box(find_table(folder, prefix, "walls", tag));
+  IndexOfId index_of_id;
+  snapshot.grains = read_particles(find_table(folder, prefix, "particles", tag), snapshot.box, density, index_of_id);
+  read_contacts(find_table(folder, prefix, "contacts", tag), index_of_id, snapshot);
+  return snapshot;
+}
+
+Snapshot import_spheres(const fs::path &path, const LawParams &law, double density)
+{
+  check_density(density);
+  const std::string text = read_text(path);
+  const std::vector<std::string_view> lines = split_lines(text);
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  std::vector<std::size_t> line_of;
+  Snapshot snapshot;
+  bool box_given = false, header_seen = false;
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    {
+      const std::vector<std::string_view> words = split_words(lines[l]);
+      if (words.empty())
+        continue;
+      if (words[0].front() == '#')
+        {
+          box_given = read_box_comment(path, l + 1, lines[l], snapshot.box) || box_given;
+          continue;
+        }
+      std::array<double, 4> s{};
+      if (!parse_sphere(lines[l], s))
+        {
+          if (centres.empty() && !std::exchange(header_seen, true) && is_header(lines[l]))
+            continue;
+          reject(path, l + 1, fmt::format("\"{}\"; expected four numbers x y z r (m)", lines[l]));
+        }
+      check_sphere(path, l + 1, Vec3(s.data()), s[3]);
+      centres.emplace_back(s.data());
+      radii.push_back(s[3]);
+      line_of.push_back(l + 1);
+    }
+  if (centres.empty())
+    throw InputError(fmt::format("{}: no spheres; expected lines x y z r (m)", path.string()));
+  if (!box_given)
+    snapshot.box = bounding_box(centres, radii);
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    check_inside(path, line_of[i], centres[i], snapshot.box);
+  snapshot.law = law;
+  snapshot.grains = make_packing(centres, radii, density);
+  return snapshot;
+}
+} // namespace isostat

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/measure/snapshot.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace isostat
+{
+/// A packing from text: a folder is read by import_yade_tables with prefix "comp" and tag "step0", a file by
+/// import_spheres.
+Snapshot import_tables(const std::filesystem::path &path, const LawParams &law, double density);
+
+/// A packing with contact history, from three tables of comma separated columns named in the first line, each plain or
+/// gzipped (.csv or .csv.gz):
+///
+///     <prefix>_particles_<tag>   id,x,y,z,r,vx,vy,vz,wx,wy,wz
+///     <prefix>_contacts_<tag>    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2
+///     <prefix>_walls_<tag>       wall (0..5 = x-,x+,y-,y+,z-,z+),pos
+///
+/// Columns may stand in any order; others are ignored. Units m, m/s, rad/s, N, N m. In the contact table the ids -1..-6
+/// are the walls x-..z+. Where `un` is nan the overlap is fn/kn. Rows with fn = 0 do not touch and are left out.
+/// Storage order of the grains is that of the table; contacts are sorted, and turned so that first < second.
+///
+/// Such tables hold the state *after* a move: forces and history belong to the positions one step before those in the
+/// table. A run starts from them with a force evaluation at the new positions. Time, step and strain are 0.
+/// Stiffnesses follow from `law`; the columns are not compared with it.
+/// @param law  friction and stiffness are the caller's   @param density  grain density, kg/m3
+/// Every mistake is an InputError that begins with file:line.
+/// tested: tests/dem/io/text_tables_test.cpp
+Snapshot import_yade_tables(const std::filesystem::path &folder, const std::string &prefix, const std::string &tag,
+                            const LawParams &law, double density);
+
+/// Resting spheres without contacts from lines `x y z r` (m; separated by blanks, tabs or commas), plain or gzipped.
+/// Lines that begin with # are comments; the first other line may be a header of words. The box is that of a comment
+/// `# box xlo xhi ylo yhi zlo zhi`, otherwise the bounding box of the spheres.
+Snapshot import_spheres(const std::filesystem::path &path, const LawParams &law, double density);
+} // namespace isostat

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/vtp.hpp"
+
+#include "dem/error.hpp"
+#include "dem/io/replace_file.hpp"
+
+#include <cstring>
+#include <fmt/format.h>
+#include <numbers>
+#include <numeric>
+#include <pugixml.hpp>
+#include <span>
+#include <sstream>
+
+namespace isostat
+{
+namespace
+{
+std::string base64(const std::string &bytes)
+{
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3)
+    {
+      std::uint32_t group = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+      for (std::size_t k = 0; k < 4; ++k)
+        text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+  return text;
+}
+
+template <typename T>
+constexpr const char *vtk_type = nullptr;
+template <>
+constexpr const char *vtk_type<double> = "Float64";
+template <>
+constexpr const char *vtk_type<std::int64_t> = "Int64";
+template <>
+constexpr const char *vtk_type<std::uint32_t> = "UInt32";
+template <>
+constexpr const char *vtk_type<std::uint8_t> = "UInt8";
+
+/// One array, inline: its length in bytes (UInt64) and its bytes, encoded together.
+template <typename T>
+void add_array(pugi::xml_node parent, const char *name, const std::vector<T> &values, int n_components = 1)
+{
+  const std::uint64_t n_bytes = values.size() * sizeof(T);
+  std::string bytes(sizeof n_bytes + n_bytes, '\0');
+  std::memcpy(bytes.data(), &n_bytes, sizeof n_bytes);
+  if (n_bytes > 0)
+    std::memcpy(bytes.data() + sizeof n_bytes, values.data(), n_bytes);
+  pugi::xml_node array = parent.append_child("DataArray");
+  array.append_attribute("type") = vtk_type<T>;
+  array.append_attribute("Name") = name;
+  array.append_attribute("NumberOfComponents") = n_components;
+  array.append_attribute("format") = "binary";
+  array.text() = base64(bytes).c_str();
+}
+
+pugi::xml_node vtk_file(pugi::xml_document &document, const char *type)
+{
+  pugi::xml_node root = document.append_child("VTKFile");
+  root.append_attribute("type") = type;
+  root.append_attribute("version") = "1.0";
+  root.append_attribute("byte_order") = "LittleEndian";
+  root.append_attribute("header_type") = "UInt64";
+  return root;
+}
+
+void save(const pugi::xml_document &document, const std::filesystem::path &path)
+{
+  std::ostringstream text;
+  document.save(text, " ");
+  write_replacing(path, text.str());
+}
+
+/// The first three of each four-wide record.
+std::vector<double> vectors(const AlignedVector<double> &records, std::size_t n)
+{
+  std::vector<double> values;
+  values.reserve(3 * n);
+  for (std::size_t i = 0; i < n; ++i)
+    values.insert(values.end(), &records[4 * i], &records[4 * i] + 3);
+  return values;
+}
+
+std::vector<std::int64_t> counting(std::int64_t n, std::int64_t first)
+{
+  std::vector<std::int64_t> values(n);
+  std::iota(values.begin(), values.end(), first);
+  return values;
+}
+
+/// Piece with its points; `Verts` or `Lines` and the data follow.
+pugi::xml_node add_piece(pugi::xml_document &document, const Packing &grains, std::size_t n_verts, std::size_t n_lines)
+{
+  pugi::xml_node piece = vtk_file(document, "PolyData").append_child("PolyData").append_child("Piece");
+  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(grains.n_grains());
+  piece.append_attribute("NumberOfVerts") = static_cast<unsigned long long>(n_verts);
+  piece.append_attribute("NumberOfLines") = static_cast<unsigned long long>(n_lines);
+  piece.append_attribute("NumberOfStrips") = 0;
+  piece.append_attribute("NumberOfPolys") = 0;
+  add_array(piece.append_child("Points"), "position", vectors(grains.position, grains.n_grains()), 3);
+  return piece;
+}
+
+std::vector<std::uint32_t> coordination(const Snapshot &snapshot)
+{
+  std::vector<std::uint32_t> count(snapshot.grains.n_grains(), 0);
+  for (const Contact &c : snapshot.contacts)
+    {
+      ++count[c.first];
+      ++count[c.second];
+    }
+  for (const WallContact &c : snapshot.wall_contacts)
+    ++count[c.grain];
+  return count;
+}
+} // namespace
+
+std::vector<double> grain_pressure(const Snapshot &snapshot)
+{
+  const Packing &grains = snapshot.grains;
+  std::vector<double> pressure(grains.n_grains(), 0.0);
+  const auto add = [&](std::uint32_t i, double overlap, double force) {
+    const double r = grains.radius(i);
+    pressure[i] += force * (r - 0.5 * overlap) / (4 * std::numbers::pi * r * r * r);
+  };
+  for (const Contact &c : snapshot.contacts)
+    {
+      add(c.first, c.overlap, c.normal_force);
+      add(c.second, c.overlap, c.normal_force);
+    }
+  for (const WallContact &c : snapshot.wall_contacts)
+    add(c.grain, c.overlap, c.normal_force);
+  return pressure;
+}
+
+void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapshot)
+{
+  const Packing &grains = snapshot.grains;
+  const std::size_t n = grains.n_grains();
+  pugi::xml_document document;
+  pugi::xml_node piece = add_piece(document, grains, n, 0);
+  pugi::xml_node verts = piece.append_child("Verts");
+  add_array(verts, "connectivity", counting(n, 0));
+  add_array(verts, "offsets", counting(n, 1));
+  std::vector<double> radius(n);
+  for (std::size_t i = 0; i < n; ++i)
+    radius[i] = grains.radius(i);
+  pugi::xml_node data = piece.append_child("PointData");
+  add_array(data, "id", grains.id);
+  add_array(data, "radius", radius);
+  add_array(data, "velocity", vectors(grains.velocity, n), 3);
+  add_array(data, "spin", vectors(grains.spin, n), 3);
+  add_array(data, "coordination", coordination(snapshot));
+  add_array(data, "pressure", grain_pressure(snapshot));
+  save(document, path);
+}
+
+void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &snapshot)
+{
+  const Packing &grains = snapshot.grains;
+  const std::size_t n = snapshot.contacts.size();
+  std::vector<std::int64_t> ends, offsets;
+  std::vector<double> normal_force, shear_force;
+  std::vector<std::uint8_t> sliding, rolling;
+  for (const Contact &c : snapshot.contacts)
+    {
+      const double shear = c.history.shear_force.norm(), bending = c.history.bending_moment.norm();
+      const double length = rolling_length(snapshot.law, grains.radius(c.first), grains.radius(c.second));
+      ends.insert(ends.end(), {c.first, c.second});
+      offsets.push_back(static_cast<std::int64_t>(ends.size()));
+      normal_force.push_back(c.normal_force);
+      shear_force.push_back(shear);
+      sliding.push_back(is_sliding(shear, c.normal_force, snapshot.law));
+      rolling.push_back(is_rolling(bending, c.normal_force, length, snapshot.law));
+    }
+  pugi::xml_document document;
+  pugi::xml_node piece = add_piece(document, grains, 0, n);
+  pugi::xml_node lines = piece.append_child("Lines");
+  add_array(lines, "connectivity", ends);
+  add_array(lines, "offsets", offsets);
+  pugi::xml_node data = piece.append_child("CellData");
+  add_array(data, "normal_force", normal_force);
+  add_array(data, "shear_force", shear_force);
+  add_array(data, "sliding", sliding);
+  add_array(data, "rolling", rolling);
+  save(document, path);
+}
+
+PvdCollection::PvdCollection(std::filesystem::path path, std::size_t resume_entries) : path_(std::move(path))
+{
+  if (resume_entries == 0)
+    return;
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_file(path_.c_str());
+  if (!parsed)
+    throw InputError(fmt::format("{}: cannot be resumed: {}; restore the file or start the run anew", path_.string(),
+                                 parsed.description()));
+  for (pugi::xml_node entry : document.child("VTKFile").child("Collection").children("DataSet"))
+    if (entries_.size() < resume_entries)
+      entries_.emplace_back(entry.attribute("timestep").value(), entry.attribute("file").value());
+  if (entries_.size() < resume_entries)
+    throw InputError(fmt::format("{}: {} entries, expected at least {}; restore the file or resume from an earlier "
+                                 "checkpoint",
+                                 path_.string(), entries_.size(), resume_entries));
+}
+
+void PvdCollection::append(double time, const std::string &file)
+{
+  entries_.emplace_back(fmt::format("{}", time), file);
+  pugi::xml_document document;
+  pugi::xml_node collection = vtk_file(document, "Collection").append_child("Collection");
+  for (const auto &[timestep, name] : entries_)
+    {
+      pugi::xml_node entry = collection.append_child("DataSet");
+      entry.append_attribute("timestep") = timestep.c_str();
+      entry.append_attribute("part") = "0";
+      entry.append_attribute("file") = name.c_str();
+    }
+  save(document, path_);
+}
+} // namespace isostat

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/measure/snapshot.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isostat
+{
+/// Pressure in each grain, Pa, compression positive: the mean stress of the grain's own volume under its contact
+/// forces,
+///     p = sum fn (r - u/2) / (4 pi r^3)        (Weber's stress of one grain; tangential forces have no part in the
+///     trace)
+/// Walls count like grains. A grain without contact has 0.   tested: tests/dem/io/vtp_test.cpp
+std::vector<double> grain_pressure(const Snapshot &snapshot);
+
+/// Writes the grains as points (ParaView: "Point Gaussian" or "Glyph", scaled by radius) with point data id, radius,
+/// velocity, spin, coordination (contacts with grains and walls) and pressure. VTK XML PolyData, base64, written aside
+/// and renamed. Throws RunFailure.
+/// tested: tests/dem/io/vtp_test.cpp
+void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
+
+/// Writes the force chains: one line between the centres of each touching pair, with cell data normal_force and
+/// shear_force (N, magnitudes), sliding and rolling (0 or 1). Contacts with walls are not drawn.
+void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
+
+/// The list of (time, file) that ParaView opens as one animation (.pvd). Rewritten, aside and renamed, at each append.
+class PvdCollection
+{
+public:
+  /// @param path  of the .pvd; it appears with the first append
+  /// @param resume_entries  how many of the entries in an existing file to keep; 0: start anew. InputError if there are
+  ///                        fewer, or the file is not a .pvd
+  explicit PvdCollection(std::filesystem::path path, std::size_t resume_entries = 0);
+
+  /// @param time  s   @param file  path of the .vtp as seen from the folder of the .pvd
+  void append(double time, const std::string &file);
+  std::size_t n_entries() const { return entries_.size(); }
+
+private:
+  std::filesystem::path path_;
+  std::vector<std::pair<std::string, std::string>> entries_; ///< time as text, file
+};
+} // namespace isostat

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/measure/snapshot.hpp"
+
+namespace isostat
+{
+/// Energy that a packing holds at one moment, J.
+struct StoredEnergy
+{
+  double translation = 0; ///< sum 1/2 m v^2
+  double rotation = 0;    ///< sum 1/2 I w^2
+  double normal = 0;      ///< grain-grain contacts, sum 1/2 fn^2/kn
+  double shear = 0;       ///< sum 1/2 fs^2/ks
+  double rolling = 0;     ///< sum 1/2 mb^2/kr
+  double twisting = 0;    ///< sum 1/2 mt^2/kt
+  double wall = 0;        ///< grain-wall contacts, sum 1/2 fn^2/(E R)
+
+  double kinetic() const { return translation + rotation; }
+  double elastic() const { return normal + shear + rolling + twisting + wall; }
+  double total() const { return kinetic() + elastic(); }
+};
+
+/// Kinetic and elastic energy (contact law of DESIGN 3; springs are linear, so each holds 1/2 force^2/stiffness).
+/// Velocities are those of the half step before the positions: the kinetic part is half a step old. A spring that the
+/// law has switched off holds nothing.      cost four squares per contact
+/// tested: tests/dem/measure/energy_test.cpp (each spring alone, moving grain, law without rolling)
+StoredEnergy stored_energy(const Snapshot &snapshot);
+
+/// Where the work done on a packing went since the start of a stage, J. Filled by the time loop, which alone sees the
+/// increments; nothing here can be found from one snapshot but kinetic and elastic.
+struct EnergyBalance
+{
+  double boundary_work = 0; ///< done by the walls on the grains; > 0 when they compress
+  double kinetic = 0;       ///< change of StoredEnergy::kinetic()
+  double elastic = 0;       ///< change of StoredEnergy::elastic()
+  double sliding = 0;       ///< dissipated by the return of fs, >= 0
+  double rolling = 0;       ///< dissipated by the return of mb, >= 0
+  double released = 0;      ///< elastic energy of fs, mb, mt forgotten when contacts open, >= 0
+  double damping = 0;       ///< taken out by local damping, >= 0
+
+  double dissipated() const { return sliding + rolling + released + damping; }
+  /// boundary work = stored + dissipated (DESIGN 6). What is left over: the error of the time step, and of a law that
+  /// is not exactly energy-conjugate (its lever arms differ by the overlap).
+  double residual() const { return boundary_work - (kinetic + elastic) - dissipated(); }
+};
+} // namespace isostat

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/measure/snapshot.hpp"
+
+namespace isostat
+{
+/// How far the packing is from rest:
+///
+///     U = mean over grains in contact |sum of contact forces on the grain| / mean over contacts |F|
+///
+/// Grain-grain and wall contacts, F = fn n + fs; no damping force enters. Grains that touch nothing do not count.
+/// YADE averages over them too, hence reads lower by the factor (N - N_floating)/N (checked on a packing of
+/// 1,000 grains); with many floating grains, as in liquefied sand, that flatters.
+/// @return [-]; 0 in equilibrium and where there are no contacts     cost one addition per contact and side
+/// tested: tests/dem/measure/unbalanced_test.cpp (row in balance and not, shear, floating grain, no contacts)
+double unbalanced_force(const Snapshot &snapshot);
+
+/// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004); DESIGN 4
+/// @param strain_rate  1/s, its magnitude counts     @param d50  m     @param density  of the grains, kg/m3
+/// @param pressure  p', Pa, compression positive
+/// @return [-]; infinite where p' <= 0 and the packing is strained: nothing is quasi-static without pressure
+/// tested: tests/dem/measure/unbalanced_test.cpp
+double inertial_number(double strain_rate, double d50, double density, double pressure);
+} // namespace isostat

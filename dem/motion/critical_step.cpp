@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/motion/critical_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat
+{
+namespace
+{
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+/// One closed contact as an elastic element.
+struct Element
+{
+  std::uint32_t first, second;
+  Vec3 normal;
+  double radius1, radius2;
+  ContactStiffness k;
+};
+
+std::vector<Element> closed_contacts(const LawParams &law, const Packing &packing, const ContactList &contacts)
+{
+  std::vector<Element> elements;
+  elements.reserve(contacts.n_pairs());
+  for (std::size_t p = 0; p < contacts.n_pairs(); ++p)
+    {
+      const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
+      const Vec3 branch = packing.centre(j) - packing.centre(i);
+      const double r1 = packing.radius(i), r2 = packing.radius(j), distance = branch.norm();
+      if (distance < r1 + r2)
+        elements.push_back({i, j, branch / distance, r1, r2, contact_stiffness(law, r1, r2)});
+    }
+  return elements;
+}
+
+Mat3 cross_matrix(const Vec3 &n)
+{
+  Mat3 m;
+  m << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+  return m;
+}
+
+/// Stiffness block of one body: `sign` -1 for the first, +1 for the second grain of the contact.
+Mat6 body_block(const Element &e, double radius, double sign)
+{
+  const Mat3 nn = e.normal * e.normal.transpose(), tangential = Mat3::Identity() - nn;
+  const Mat3 coupling = sign * e.k.shear * radius * cross_matrix(e.normal);
+  Mat6 block;
+  block.topLeftCorner<3, 3>() = e.k.normal * nn + e.k.shear * tangential;
+  block.topRightCorner<3, 3>() = coupling;
+  block.bottomLeftCorner<3, 3>() = coupling.transpose();
+  block.bottomRightCorner<3, 3>() =
+    (e.k.shear * radius * radius + e.k.rolling) * tangential + e.k.twisting * nn;
+  return block;
+}
+
+template <typename Visit>
+void for_wall_contacts(const LawParams &law, const Packing &packing, const RigidBox &box, const Visit &visit)
+{
+  for (std::size_t i = 0; i < packing.n_grains(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      {
+        const double x = packing.position[4 * i + axis], r = packing.radius(i);
+        if (x - box.lower[axis] < r)
+          visit(i, axis, wall_stiffness(law, r));
+        if (box.upper[axis] - x < r)
+          visit(i, axis, wall_stiffness(law, r));
+      }
+}
+
+/// Upper bound of the largest eigenvalue of a symmetric positive matrix: |B^8|_F^(1/8).
+double eigenvalue_bound(const Mat6 &b)
+{
+  const double scale = b.trace();
+  if (!(scale > 0))
+    return 0;
+  Mat6 power = b / scale;
+  for (int k = 0; k < 3; ++k)
+    power = (power * power).eval();
+  return scale * std::pow(power.norm(), 0.125);
+}
+
+/// lambda of a grain held by three contacts with its equals along x, y and z.
+double least_eigenvalue(const LawParams &law, const Packing &packing)
+{
+  const double r = packing.min_radius();
+  const ContactStiffness k = contact_stiffness(law, r, r);
+  const double mass = 4.0 / 3.0 * M_PI * r * r * r * packing.density, inertia = 0.4 * mass * r * r;
+  return std::max((k.normal + 2 * k.shear) / mass, (2 * (k.shear * r * r + k.rolling) + k.twisting) / inertia);
+}
+
+/// y = M^-1/2 K M^-1/2 x on 6 components per grain.
+struct ScaledStiffness
+{
+  const Packing &packing;
+  const std::vector<Element> &elements;
+  const std::vector<Vec3> &wall_stiffness_of;
+
+  void apply(const std::vector<Vec6> &x, std::vector<Vec6> &y) const
+  {
+    const std::size_t n = packing.n_grains();
+    auto scaled = [&](std::size_t i, const Vec6 &v) {
+      Vec6 s = v;
+      s.head<3>() *= std::sqrt(packing.velocity[4 * i + 3]);
+      s.tail<3>() *= std::sqrt(packing.spin[4 * i + 3]);
+      return s;
+    };
+    std::vector<Vec6> u(n);
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        u[i] = scaled(i, x[i]);
+        y[i].setZero();
+        y[i].head<3>() = wall_stiffness_of[i].cwiseProduct(u[i].head<3>());
+      }
+    for (const Element &e : elements)
+      {
+        const Vec3 &n0 = e.normal;
+        const Vec6 &a = u[e.first], &b = u[e.second];
+        const Vec3 spin_arm = e.radius1 * a.tail<3>() + e.radius2 * b.tail<3>();
+        const Vec3 slip = b.head<3>() - a.head<3>() - spin_arm.cross(n0);
+        const Vec3 along = slip.dot(n0) * n0;
+        const Vec3 force = e.k.normal * along + e.k.shear * (slip - along);
+        const Vec3 spin = b.tail<3>() - a.tail<3>(), spin_along = spin.dot(n0) * n0;
+        const Vec3 moment = e.k.rolling * (spin - spin_along) + e.k.twisting * spin_along;
+        const Vec3 couple = n0.cross(force);
+        y[e.first].head<3>() -= force;
+        y[e.second].head<3>() += force;
+        y[e.first].tail<3>() += -e.radius1 * couple - moment;
+        y[e.second].tail<3>() += -e.radius2 * couple + moment;
+      }
+    for (std::size_t i = 0; i < n; ++i)
+      y[i] = scaled(i, y[i]);
+  }
+};
+} // namespace
+
+double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
+                           const ContactList &contacts)
+{
+  std::vector<Mat6, Eigen::aligned_allocator<Mat6>> blocks(packing.n_grains(), Mat6::Zero());
+  for (const Element &e : closed_contacts(law, packing, contacts))
+    {
+      blocks[e.first] += body_block(e, e.radius1, -1);
+      blocks[e.second] += body_block(e, e.radius2, +1);
+    }
+  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += 0.5 * k; });
+  double greatest = least_eigenvalue(law, packing);
+  for (std::size_t i = 0; i < packing.n_grains(); ++i)
+    {
+      Vec6 scale;
+      scale.head<3>().setConstant(std::sqrt(packing.velocity[4 * i + 3]));
+      scale.tail<3>().setConstant(std::sqrt(packing.spin[4 * i + 3]));
+      const Mat6 scaled = scale.asDiagonal() * blocks[i] * scale.asDiagonal();
+      if (scaled.trace() > greatest) // the largest eigenvalue is below the trace
+        greatest = std::max(greatest, eigenvalue_bound(scaled));
+    }
+  return 2 / std::sqrt(2 * greatest);
+}
+
+double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,
+                                        const ContactList &contacts, int iterations)
+{
+  const std::size_t n = packing.n_grains();
+  std::vector<Vec3> walls(n, Vec3::Zero());
+  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { walls[i][axis] += k; });
+  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  const ScaledStiffness stiffness{packing, elements, walls};
+  std::vector<Vec6> x(n), y(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (int c = 0; c < 6; ++c)
+      x[i][c] = std::sin(1.0 + 12.9898 * (6 * i + c)); // no mode is orthogonal to this
+  double eigenvalue = 0;
+  for (int k = 0; k < iterations; ++k)
+    {
+      stiffness.apply(x, y);
+      double xx = 0, xy = 0, yy = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          xx += x[i].squaredNorm();
+          xy += x[i].dot(y[i]);
+          yy += y[i].squaredNorm();
+        }
+      eigenvalue = xy / xx; // Rayleigh quotient
+      for (std::size_t i = 0; i < n; ++i)
+        x[i] = y[i] / std::sqrt(yy);
+    }
+  return 2 / std::sqrt(eigenvalue);
+}
+} // namespace isostat

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/contact/history.hpp"
+#include "dem/domain/rigid_box.hpp"
+#include "dem/packing.hpp"
+
+namespace isostat
+{
+/// A time step that leapfrog can bear, from the stiffness of the contacts that are closed (DESIGN 4).
+///
+/// With K the 6N x 6N stiffness of all contacts (normal, shear, rolling, twisting) and M the masses and inertias, each
+/// contact being an elastic element between two bodies gives
+///     v'Kv <= 2 sum_i v_i' D_i v_i,   so   omega_max^2 <= 2 max_i lambda_max(M_i^-1/2 D_i M_i^-1/2),
+/// D_i the 6x6 diagonal block of grain i (walls, which do not move freely, count half). lambda_max is bounded from above
+/// by |B^8|_F^(1/8), which exceeds it by at most 12 %. Grains with few contacts count as if they had three.
+/// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
+/// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
+double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
+                           const ContactList &contacts);
+
+/// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured with.
+/// @param iterations  each costs two passes over the contacts; converges from below to omega_max
+double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,
+                                        const ContactList &contacts, int iterations);
+} // namespace isostat

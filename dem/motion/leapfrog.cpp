@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/motion/leapfrog.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "dem/motion/leapfrog.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace isostat
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+using D4 = hn::CappedTag<double, 4>; // a grain record; two halves where vectors are narrower
+using V4 = hn::Vec<D4>;
+
+struct Advance
+{
+  double dt, damping;
+
+  /// v + dt A with damping; `velocity` keeps its fourth lane because the force's is 0. Adds to `loss` if asked.
+  template <bool Measure>
+  HWY_INLINE V4 velocity(V4 v, V4 force, V4 inverse_mass, V4 &loss) const
+  {
+    const D4 d;
+    const V4 step = hn::Set(d, dt), half = hn::Set(d, 0.5);
+    const V4 a = hn::Mul(force, inverse_mass);
+    const V4 mid = hn::MulAdd(hn::Mul(half, step), a, v);
+    const V4 power = hn::Mul(a, mid);
+    const V4 magnitude = hn::Set(d, damping);
+    const V4 signed_damping = hn::IfThenElseZero(hn::Ne(power, hn::Zero(d)), hn::CopySign(magnitude, power));
+    const V4 damped = hn::NegMulAdd(a, signed_damping, a);
+    if constexpr (Measure)
+      {
+        const V4 true_mid = hn::MulAdd(hn::Mul(half, step), damped, v);
+        loss = hn::MulAdd(hn::Mul(hn::Mul(force, signed_damping), true_mid), step, loss);
+      }
+    return hn::MulAdd(step, damped, v);
+  }
+};
+
+template <bool Measure>
+MotionReport integrate_all(Packing &packing, double *action, double dt, double damping, double speed_limit)
+{
+  const D4 d;
+  const Advance advance{dt, damping};
+  constexpr std::size_t width = hn::MaxLanes(D4());
+  const V4 limit2 = hn::Set(d, speed_limit * speed_limit), step = hn::Set(d, dt);
+  V4 loss = hn::Zero(d), greatest = hn::Zero(d);
+  auto sane = hn::Ge(greatest, greatest);
+  double *x = packing.position.data(), *v = packing.velocity.data(), *w = packing.spin.data();
+  const std::size_t n = packing.n_grains();
+  for (std::size_t i = 0; i < n; ++i, x += 4, v += 4, w += 4, action += 8)
+    {
+      const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
+      for (std::size_t half = 0; half < 4; half += width)
+        {
+          const V4 v_new = advance.velocity<Measure>(hn::Load(d, v + half), hn::Load(d, action + half), inverse_mass, loss);
+          const V4 w_new =
+            advance.velocity<Measure>(hn::Load(d, w + half), hn::Load(d, action + 4 + half), inverse_inertia, loss);
+          hn::Store(v_new, d, v + half);
+          hn::Store(w_new, d, w + half);
+          hn::Store(hn::Zero(d), d, action + half);
+          hn::Store(hn::Zero(d), d, action + 4 + half);
+          // the record's fourth lane (1/mass) is no velocity
+          const auto moving = hn::FirstN(d, 3 - half);
+          const V4 speed = hn::IfThenElseZero(moving, v_new);
+          hn::Store(hn::MulAdd(step, speed, hn::Load(d, x + half)), d, x + half);
+          const V4 speed2 = hn::Mul(speed, speed);
+          greatest = hn::Max(greatest, speed2);
+          sane = hn::And(sane, hn::Lt(speed2, limit2)); // false for not-a-number, too
+        }
+    }
+  MotionReport report;
+  report.greatest_speed = std::sqrt(3 * hn::GetLane(hn::MaxOfLanes(d, greatest)));
+  report.exploded = !hn::AllTrue(d, sane);
+  if constexpr (Measure)
+    report.damping_loss = hn::GetLane(hn::SumOfLanes(d, loss));
+  return report;
+}
+
+MotionReport Integrate(Packing &packing, double *action, double dt, double damping, double speed_limit)
+{
+  return integrate_all<false>(packing, action, dt, damping, speed_limit);
+}
+MotionReport IntegrateMeasured(Packing &packing, double *action, double dt, double damping, double speed_limit)
+{
+  return integrate_all<true>(packing, action, dt, damping, speed_limit);
+}
+} // namespace HWY_NAMESPACE
+} // namespace isostat
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isostat
+{
+HWY_EXPORT(Integrate);
+HWY_EXPORT(IntegrateMeasured);
+
+MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
+                       bool measure_damping)
+{
+  return measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, action, dt, damping, speed_limit) :
+                           HWY_DYNAMIC_DISPATCH(Integrate)(packing, action, dt, damping, speed_limit);
+}
+} // namespace isostat
+#endif

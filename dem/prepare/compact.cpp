@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/prepare/compact.hpp"
+
+#include "dem/error.hpp"
+
+namespace isostat
+{
+namespace
+{
+constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
+
+/// Runs servo stages on a state and returns what they end with.
+Snapshot run_stages(const Snapshot &initial, const std::vector<Stage> &stages, double damping,
+                    const SpecimenSpec &specimen, RunObserver &observer)
+{
+  MotionSpec motion;
+  motion.damping = damping;
+  OutputSpec output;
+  output.snapshots = "none";
+  Assembly assembly(initial);
+  DriveState state;
+  if (run_programme(motion, specimen, output, stages, assembly, state, observer) == RunOutcome::interrupted)
+    throw Interrupted("interrupted while the specimen was prepared; nothing is kept of it");
+  assembly.compute_forces();
+  Snapshot end = assembly.snapshot();
+  end.step = 0;
+  end.time = 0;
+  return end;
+}
+
+Stage servo_stage(StageKind kind, double pressure, double balance)
+{
+  Stage stage;
+  stage.kind = kind;
+  stage.pressure = pressure;
+  stage.balance = balance;
+  return stage;
+}
+} // namespace
+
+Snapshot compact(const Cloud &cloud, LawParams law, double friction, const SpecimenSpec &specimen,
+                 RunObserver &observer)
+{
+  law.friction = friction;
+  Snapshot start;
+  start.grains = cloud.packing;
+  start.box = cloud.box;
+  start.law = law;
+  return run_stages(start, {servo_stage(StageKind::compress, specimen.pressure, compressed_balance)}, specimen.damping,
+                    specimen, observer);
+}
+
+Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
+                   RunObserver &observer)
+{
+  Snapshot start = compacted;
+  start.law = law;
+  const Snapshot balanced =
+    run_stages(start, {servo_stage(StageKind::rebalance, specimen.pressure, rebalanced)}, specimen.damping, specimen,
+               observer);
+  return run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+}
+} // namespace isostat

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/prepare/relative_density.hpp"
+
+#include "dem/error.hpp"
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+
+/// Void ratio error as a function of preparation friction; keeps the best compression.
+class Search
+{
+public:
+  Search(const Cloud &cloud, const LawParams &law, double target, double tolerance, const SpecimenSpec &specimen,
+         RunObserver &observer)
+    : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), specimen_(specimen), observer_(observer)
+  {}
+
+  /// e - target, and exactly 0 within the tolerance: that ends the root search.
+  double operator()(double friction)
+  {
+    const Snapshot state = compact(cloud_, law_, friction, specimen_, observer_);
+    const double e = void_ratio(state.box, state.grains.solid_volume());
+    ++best.compressions;
+    observer_.event(fmt::format("compression {}: preparation friction {:.3f} deg gives e = {:.4f} (target {:.4f})",
+                                best.compressions, degrees(friction), e, target_));
+    if (best.state.contacts.empty() || std::abs(e - target_) < std::abs(best.void_ratio - target_))
+      {
+        best.state = state;
+        best.friction = friction;
+        best.void_ratio = e;
+      }
+    return std::abs(e - target_) <= tolerance_ ? 0.0 : e - target_;
+  }
+
+  PreparedDensity best;
+
+private:
+  const Cloud &cloud_;
+  const LawParams &law_;
+  double target_, tolerance_;
+  const SpecimenSpec &specimen_;
+  RunObserver &observer_;
+};
+} // namespace
+
+PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &law, double target, double tolerance,
+                                          const SpecimenSpec &specimen, RunObserver &observer)
+{
+  Search search(cloud, law, target, tolerance, specimen, observer);
+  const double guess = std::tan(8 * std::numbers::pi / 180), loosest = std::tan(std::numbers::pi / 3);
+  const double at_guess = search(guess);
+  if (at_guess == 0)
+    return search.best;
+  const double other = at_guess > 0 ? 0.0 : loosest;
+  const double at_other = search(other);
+  if (at_other == 0)
+    return search.best;
+  if (at_guess * at_other > 0)
+    throw InputError(fmt::format("specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
+                                 "compression {} gives {:.4f}. Choose a {} density, or another grading or pressure.",
+                                 target, other == 0 ? "without friction" : "with 60 deg of friction",
+                                 target + at_other, other == 0 ? "lower" : "higher"));
+  const double low = std::min(guess, other), high = std::max(guess, other);
+  const double at_low = low == guess ? at_guess : at_other, at_high = low == guess ? at_other : at_guess;
+  std::uintmax_t evaluations = 20;
+  boost::math::tools::toms748_solve([&](double friction) { return search(friction); }, low, high, at_low, at_high,
+                                    [](double a, double b) { return std::abs(b - a) < 1e-5; }, evaluations);
+  if (std::abs(search.best.void_ratio - target) > tolerance)
+    throw RunFailure(fmt::format("no preparation friction gives void ratio {:.4f} within {:.4f}; nearest {:.4f} at {:.3f} "
+                                 "deg. Raise specimen.density_tolerance or the number of grains.",
+                                 target, tolerance, search.best.void_ratio, degrees(search.best.friction)));
+  return search.best;
+}
+} // namespace isostat

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/prepare/compact.hpp"
+
+namespace isostat
+{
+/// D_r = (e_max - e)/(e_max - e_min)      (paper, Eq. 1)
+inline double relative_density(double void_ratio, double e_min, double e_max)
+{
+  return (e_max - void_ratio) / (e_max - e_min);
+}
+inline double void_ratio_at(double relative_density, double e_min, double e_max)
+{
+  return e_max - relative_density * (e_max - e_min);
+}
+
+/// A compacted packing and the friction that made it.
+struct PreparedDensity
+{
+  Snapshot state;
+  double friction = 0;     ///< preparation friction, tan(phi)
+  double void_ratio = 0;
+  int compressions = 0;    ///< how many the search took
+};
+
+/// Finds the preparation friction whose isotropic compression ends at a void ratio, within tolerance: bracketed root
+/// search (TOMS 748) on e(tan phi) between 0 and 60 degrees, each evaluation a full compression of the same cloud.
+/// @param target, tolerance  void ratios [-]
+/// @throws InputError when the target lies outside what the cloud gives between frictionless and 60 degrees; names both
+/// cost: 3 to 7 compressions
+/// tested: tests/dem/prepare/relative_density_test.cpp
+PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &law, double target, double tolerance,
+                                          const SpecimenSpec &specimen, RunObserver &observer);
+} // namespace isostat

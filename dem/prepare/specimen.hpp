@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/drive/programme.hpp"
+#include "dem/io/specimen_file.hpp"
+#include "dem/scene.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+/// The specimen that a scene asks for: read from a file or folder of tables, taken from the cache, or prepared
+/// (cloud -> compression at a preparation friction -> friction of shearing -> rebalance) and put into the cache.
+/// @param cache  folder of prepared specimens, named by a hash of their recipe; the recipe itself is compared as well
+/// @throws InputError  a density that cannot be reached, a file that is not a specimen
+/// @throws Interrupted
+Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer);
+
+/// All that a prepared specimen depends on, as text: the key of the cache and part of its provenance.
+std::string specimen_recipe(const Scene &scene);
+} // namespace isostat

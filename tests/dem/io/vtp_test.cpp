@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/vtp.hpp"
+
+#include "dem/error.hpp"
+#include "tests/dem/io/temporary_folder.hpp"
+
+#include <cstring>
+#include <gmock/gmock.h>
+#include <numbers>
+#include <pugixml.hpp>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+
+class Vtp : public TemporaryFolder
+{
+protected:
+  /// The piece of a well-formed file, its arrays all of the length their header says.
+  pugi::xml_node load(const std::filesystem::path &path)
+  {
+    EXPECT_TRUE(document.load_file(path.c_str()));
+    EXPECT_STREQ(document.child("VTKFile").attribute("header_type").value(), "UInt64");
+    EXPECT_FALSE(std::filesystem::exists(path.string() + ".tmp"));
+    return document.child("VTKFile").child("PolyData").child("Piece");
+  }
+  pugi::xml_document document;
+};
+
+/// Decodes base64 written by any correct encoder (bit by bit, unlike the encoder).
+std::string decoded(const std::string &text)
+{
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned value = 0, bits = 0;
+  for (char c : text)
+    {
+      if (c == '=')
+        break;
+      value = (value << 6 | static_cast<unsigned>(digits.find(c))) & 0xffff;
+      if ((bits += 6) >= 8)
+        bytes += static_cast<char>(value >> (bits -= 8) & 0xff);
+    }
+  return bytes;
+}
+
+template <typename T>
+std::vector<T> array(pugi::xml_node parent, const char *name)
+{
+  const pugi::xml_node node = parent.find_child_by_attribute("DataArray", "Name", name);
+  EXPECT_TRUE(node) << name;
+  const std::string text = node.text().get(), bytes = decoded(text);
+  EXPECT_EQ(text.size() % 4, 0u);
+  std::uint64_t n_bytes = 0;
+  std::memcpy(&n_bytes, bytes.data(), sizeof n_bytes);
+  EXPECT_EQ(bytes.size(), sizeof n_bytes + n_bytes) << name;
+  std::vector<T> values(n_bytes / sizeof(T));
+  std::memcpy(values.data(), bytes.data() + sizeof n_bytes, n_bytes);
+  return values;
+}
+
+TEST_F(Vtp, GrainsKeepTheirNumbers)
+{
+  const Snapshot s = small_snapshot();
+  write_grains_vtp(folder / "g.vtp", s);
+  const pugi::xml_node piece = load(folder / "g.vtp");
+  EXPECT_EQ(piece.attribute("NumberOfPoints").as_int(), 3);
+  EXPECT_EQ(piece.attribute("NumberOfVerts").as_int(), 3);
+  const std::vector<double> position = array<double>(piece.child("Points"), "position");
+  ASSERT_EQ(position.size(), 9u);
+  EXPECT_EQ(Vec3(&position[6]), s.grains.centre(2));
+  const pugi::xml_node data = piece.child("PointData");
+  EXPECT_EQ(array<std::uint32_t>(data, "id"), s.grains.id);
+  EXPECT_EQ(array<double>(data, "radius"), (std::vector<double>{0.16, 0.15, 0.16}));
+  EXPECT_EQ(array<double>(data, "velocity")[4], s.grains.linear_velocity(1).y());
+  EXPECT_EQ(array<double>(data, "spin")[8], s.grains.angular_velocity(2).z());
+  EXPECT_EQ(array<std::uint32_t>(data, "coordination"), (std::vector<std::uint32_t>{2, 2, 1}));
+  EXPECT_EQ(array<std::int64_t>(piece.child("Verts"), "offsets"), (std::vector<std::int64_t>{1, 2, 3}));
+}
+
+TEST_F(Vtp, ForceChainsKeepTheirNumbers)
+{
+  Snapshot s = small_snapshot();
+  write_force_chains_vtp(folder / "c.vtp", s);
+  const pugi::xml_node piece = load(folder / "c.vtp");
+  EXPECT_EQ(piece.attribute("NumberOfLines").as_int(), 2);
+  EXPECT_EQ(array<std::int64_t>(piece.child("Lines"), "connectivity"), (std::vector<std::int64_t>{0, 1, 1, 2}));
+  EXPECT_EQ(array<std::int64_t>(piece.child("Lines"), "offsets"), (std::vector<std::int64_t>{2, 4}));
+  const pugi::xml_node data = piece.child("CellData");
+  EXPECT_EQ(array<double>(data, "normal_force"), (std::vector<double>{12.3, 4.5}));
+  EXPECT_EQ(array<double>(data, "shear_force")[0], 8.61);
+  EXPECT_EQ(array<std::uint8_t>(data, "sliding"), (std::vector<std::uint8_t>{1, 0})); // 8.61 = 0.7 * 12.3
+  EXPECT_EQ(array<std::uint8_t>(data, "rolling"), (std::vector<std::uint8_t>{0, 0}));
+  s.contacts.clear();
+  write_force_chains_vtp(folder / "c.vtp", s);
+  EXPECT_EQ(load(folder / "c.vtp").attribute("NumberOfLines").as_int(), 0);
+}
+
+/// Two opposite forces on a grain: sigma = f (r - u/2) 2 / V along one axis, p a third of it.
+TEST_F(Vtp, GrainPressureOfASquashedSphere)
+{
+  Snapshot s;
+  s.grains = make_packing({Vec3::Zero()}, {0.5}, 2650);
+  s.wall_contacts = {{0, 0, 0.1, 6.0}, {0, 1, 0.1, 6.0}};
+  const double volume = 4.0 / 3 * std::numbers::pi * 0.125;
+  EXPECT_NEAR(grain_pressure(s)[0], 2 * 6.0 * 0.45 / volume / 3, 1e-12);
+}
+
+TEST_F(Vtp, CollectionGrowsAndResumes)
+{
+  const auto path = folder / "grains.pvd";
+  PvdCollection first(path);
+  first.append(0, "fields/a.vtp");
+  first.append(0.1, "fields/b & c.vtp");
+  const std::string two = get(path);
+  first.append(0.2, "fields/d.vtp");
+  const std::string three = get(path);
+  ASSERT_TRUE(document.load_file(path.c_str()));
+  const pugi::xml_node list = document.child("VTKFile").child("Collection");
+  EXPECT_EQ(std::distance(list.begin(), list.end()), 3);
+  EXPECT_STREQ(list.first_child().next_sibling().attribute("file").value(), "fields/b & c.vtp");
+  EXPECT_EQ(list.last_child().attribute("timestep").as_double(), 0.2);
+
+  PvdCollection resumed(path, 2);
+  EXPECT_EQ(resumed.n_entries(), 2u);
+  resumed.append(0.2, "fields/d.vtp");
+  EXPECT_EQ(get(path), three);
+  PvdCollection anew(path);
+  anew.append(0, "fields/a.vtp");
+  anew.append(0.1, "fields/b & c.vtp");
+  EXPECT_EQ(get(path), two);
+  EXPECT_THAT(message_of<InputError>([&] { PvdCollection(path, 5); }), HasSubstr("2 entries, expected at least 5"));
+  EXPECT_THAT(message_of<InputError>([&] { PvdCollection(put("bad.pvd", "<VTKFile"), 1); }), HasSubstr("bad.pvd"));
+}
+
+TEST_F(Vtp, UnwritablePlacesAreRunFailures)
+{
+  const auto file = put("a_file", "x");
+  EXPECT_THAT(message_of<RunFailure>([&] { write_grains_vtp(file / "g.vtp", small_snapshot()); }), HasSubstr("g.vtp"));
+  EXPECT_THROW(PvdCollection(file / "g.pvd").append(0, "a.vtp"), RunFailure);
+}
+} // namespace
+} // namespace isostat

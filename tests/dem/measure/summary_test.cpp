@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/measure/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+namespace isostat
+{
+namespace
+{
+constexpr double radius = 1e-4;
+constexpr int side = 4;
+
+/// Simple cubic lattice of side^3 equal grains in its box, each row along axis k squeezed by force[k]: in balance.
+Snapshot cubic_lattice(const Vec3 &force)
+{
+  Snapshot s;
+  const auto index = [](int i, int j, int k) { return static_cast<std::uint32_t>((i * side + j) * side + k); };
+  const double stiffness = s.law.young * radius; // grain-grain and wall alike: equal radii
+  const Vec3 overlap = force / stiffness;
+  std::vector<Vec3> centres;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      for (int k = 0; k < side; ++k)
+        {
+          const int place[3] = {i, j, k};
+          Vec3 centre;
+          for (int axis = 0; axis < 3; ++axis)
+            {
+              const std::uint32_t self = index(i, j, k);
+              centre[axis] = (2 * place[axis] + 1) * radius - (place[axis] + 1) * overlap[axis];
+              if (place[axis] == 0)
+                s.wall_contacts.push_back({self, std::uint8_t(2 * axis), overlap[axis], force[axis]});
+              if (place[axis] == side - 1)
+                s.wall_contacts.push_back({self, std::uint8_t(2 * axis + 1), overlap[axis], force[axis]});
+              else
+                {
+                  const std::uint32_t other = index(i + (axis == 0), j + (axis == 1), k + (axis == 2));
+                  s.contacts.push_back({self, other, overlap[axis], force[axis], {}});
+                  s.contacts.back().history.normal = Vec3::Unit(axis);
+                }
+            }
+          centres.push_back(centre);
+        }
+  s.grains = make_packing(centres, std::vector<double>(centres.size(), radius), 2650);
+  s.box.upper = Vec3::Constant(2 * side * radius) - (side + 1) * overlap;
+  return s;
+}
+} // namespace
+
+TEST(Micromechanics, CubicLatticeInBalance)
+{
+  const Vec3 force(1, 3, 1);
+  const Snapshot s = cubic_lattice(force);
+  const Micromechanics m = micromechanics(s);
+  Vec3 pressure;
+  for (int k = 0; k < 3; ++k)
+    pressure[k] = side * side * force[k] / s.box.area(k);
+  const double p = pressure.mean(), q = pressure[1] - 0.5 * (pressure[0] + pressure[2]);
+  EXPECT_NEAR(m.p_wall, p, 1e-13 * p);
+  EXPECT_NEAR(m.q_wall, q, 1e-13 * p);
+  EXPECT_NEAR(m.p_contact, p, 1e-13 * p);
+  EXPECT_NEAR(m.q_contact, q, 1e-13 * p);
+  // V/V_s = 6/pi for touching spheres, less what the five overlaps of a row shorten each edge
+  const Vec3 shortening = (side + 1) * force / (s.law.young * radius) / (2 * side * radius);
+  const double ratio = 6 / std::numbers::pi * (Vec3::Ones() - shortening).prod();
+  EXPECT_NEAR(m.void_ratio, ratio - 1, 1e-13);
+  EXPECT_DOUBLE_EQ(m.n_contacts, 3 * side * side * (side - 1));
+  EXPECT_DOUBLE_EQ(m.coordination, 6.0 * (side - 1) / side);
+  EXPECT_DOUBLE_EQ(m.redundancy, m.coordination / 2);
+  EXPECT_DOUBLE_EQ(m.coordination_mechanical, m.coordination); // no rattlers
+  EXPECT_EQ(m.share_nsr, 1);
+  EXPECT_EQ(m.n_without_contacts, 0);
+  EXPECT_DOUBLE_EQ(m.n_wall_contacts, 6 * side * side);
+  for (double f : {m.fabric_xx, m.fabric_yy, m.fabric_zz})
+    EXPECT_NEAR(f, 1.0 / 3, 1e-15);
+  EXPECT_NEAR(m.a_contact, 0, 1e-14);
+  EXPECT_NEAR(m.a_normal, 7.5 * (0.6 - 0.2), 1e-13); // X/f0 = diag(1, 3, 1)/5
+  EXPECT_NEAR(m.unbalanced, 0, 1e-15);
+  EXPECT_EQ(m.kinetic_energy, 0);
+  const double springs = side * side * (side + 1) * 0.5 * force.squaredNorm() / (s.law.young * radius);
+  EXPECT_NEAR(m.elastic_energy, springs, 1e-13 * springs);
+}
+
+TEST(Micromechanics, ColumnsAndRowsBelongTogether)
+{
+  const Micromechanics m = micromechanics(cubic_lattice(Vec3(1, 2, 3)));
+  const auto &columns = Micromechanics::columns();
+  const std::vector<double> row = m.row();
+  ASSERT_EQ(row.size(), columns.size());
+  EXPECT_EQ(row.size() * sizeof(double), sizeof(Micromechanics)); // every value has a column
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    {
+      EXPECT_TRUE(names.insert(columns[i].first).second) << columns[i].first << " appears twice";
+      EXPECT_FALSE(columns[i].second.empty());
+      const double expected = columns[i].first == "IR"     ? m.redundancy
+                              : columns[i].first == "q_LW" ? m.q_contact
+                                                           : row[i];
+      EXPECT_EQ(row[i], expected);
+    }
+  EXPECT_TRUE(names.contains("IR") && names.contains("q_LW"));
+  EXPECT_EQ(columns.front(), (std::pair<std::string, std::string>{"p", "Pa"}));
+}
+
+TEST(Micromechanics, LooseGrainsGiveZerosNotNaN)
+{
+  Snapshot s = cubic_lattice(Vec3(1, 1, 1));
+  s.contacts.clear();
+  s.wall_contacts.clear();
+  Micromechanics m = micromechanics(s);
+  EXPECT_GT(m.void_ratio, 0);
+  EXPECT_EQ(m.n_without_contacts, side * side * side);
+  m.void_ratio = m.n_without_contacts = m.n_floating = 0;
+  for (double value : m.row())
+    EXPECT_EQ(value, 0);
+}
+} // namespace isostat

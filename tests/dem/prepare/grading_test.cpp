@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/prepare/grading.hpp"
+
+#include "dem/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+GradingSpec table_spec(std::vector<std::pair<double, double>> table)
+{
+  GradingSpec spec;
+  spec.curve.clear();
+  spec.table = std::move(table);
+  return spec;
+}
+
+/// Percent by mass of the sample in spheres not larger than d.
+double sampled_percent_finer(const std::vector<double> &diameters, double d)
+{
+  double finer = 0, total = 0;
+  for (double x : diameters)
+    {
+      total += x * x * x;
+      if (x <= d)
+        finer += x * x * x;
+    }
+  return 100 * finer / total;
+}
+
+/// The message of the InputError that the curve of `spec` raises; empty if there is none.
+std::string complaint(const GradingSpec &spec)
+{
+  try
+    {
+      grading_curve(spec);
+    }
+  catch (const InputError &e)
+    {
+      return e.what();
+    }
+  return "";
+}
+
+bool contains(const std::string &text, const std::string &part) { return text.find(part) != std::string::npos; }
+
+// Nominal values of the sand (DESIGN 5): d50 = 0.14 mm, Cu = 1.5. The sheet is read to a few percent.
+TEST(Grading, KarlsruheFineSandHasItsNominalNumbers)
+{
+  const GradingReport report = grading_report({});
+  EXPECT_EQ(report.name, "karlsruhe-fine-sand");
+  EXPECT_NEAR(report.d50, 0.14e-3, 0.03 * 0.14e-3);
+  EXPECT_NEAR(report.uniformity, 1.5, 0.04 * 1.5);
+  EXPECT_EQ(report.min_diameter, 0.0631e-3);
+  EXPECT_EQ(report.max_diameter, 0.3135e-3);
+}
+
+TEST(Grading, MassBelowTheFirstPointIsLeftOutAndReported)
+{
+  const GradingReport report = grading_report({});
+  EXPECT_DOUBLE_EQ(report.unresolved_fine, 1.53);
+  EXPECT_DOUBLE_EQ(report.unresolved_coarse, 0);
+  EXPECT_DOUBLE_EQ(report.finest_percent, 1.53);
+  EXPECT_DOUBLE_EQ(report.coarsest_percent, 100);
+  ASSERT_EQ(report.curve.percent_finer.size(), 7u);
+  EXPECT_EQ(report.curve.percent_finer.front(), 0);
+  EXPECT_NEAR(report.curve.percent_finer[3], 100 * (28.24 - 1.53) / (100 - 1.53), 1e-12);
+}
+
+TEST(Grading, InterpolatesLinearlyInTheLogarithmOfDiameter)
+{
+  const GradingCurve curve = grading_curve(table_spec({{1e-4, 0}, {1e-3, 50}, {2e-3, 100}}));
+  EXPECT_NEAR(d_at(curve, 25), std::sqrt(1e-4 * 1e-3), 1e-18);
+  EXPECT_NEAR(d_at(curve, 75), std::sqrt(1e-3 * 2e-3), 1e-18);
+  EXPECT_EQ(d_at(curve, 0), 1e-4);
+  EXPECT_EQ(d_at(curve, 50), 1e-3);
+  EXPECT_EQ(d_at(curve, 100), 2e-3);
+  for (double percent : {0.0, 3.0, 50.0, 61.0, 99.0, 100.0})
+    EXPECT_NEAR(percent_finer(curve, d_at(curve, percent)), percent, 1e-10);
+  EXPECT_NEAR(uniformity_coefficient(curve), d_at(curve, 60) / d_at(curve, 10), 1e-14);
+  EXPECT_EQ(percent_finer(curve, 1e-5), 0);
+  EXPECT_EQ(percent_finer(curve, 1e-2), 100);
+  EXPECT_THROW(d_at(curve, -1), InputError);
+  EXPECT_THROW(d_at(curve, 100.5), InputError);
+}
+
+TEST(Grading, CutKeepsTheShapeBetweenTheLimits)
+{
+  const GradingCurve whole = grading_curve(table_spec({{1e-4, 0}, {3e-4, 30}, {1e-3, 100}}));
+  GradingSpec spec = table_spec({{1e-4, 0}, {3e-4, 30}, {1e-3, 100}});
+  spec.finest_percent = 10;
+  spec.coarsest_percent = 90;
+  const GradingReport report = grading_report(spec);
+  EXPECT_EQ(report.finest_percent, 10);
+  EXPECT_EQ(report.coarsest_percent, 90);
+  EXPECT_EQ(report.curve.diameter.size(), 3u);
+  for (double percent : {0.0, 20.0, 25.0, 50.0, 100.0})
+    EXPECT_NEAR(d_at(report.curve, percent), d_at(whole, 10 + 0.8 * percent), 1e-16) << percent;
+}
+
+TEST(Grading, CutAtAPointOfTheCurveStartsThere)
+{
+  GradingSpec spec;
+  spec.finest_percent = 11.96;
+  spec.coarsest_percent = 99.75;
+  const GradingCurve curve = grading_curve(spec);
+  EXPECT_EQ(curve.diameter, (std::vector<double>{0.1002e-3, 0.1249e-3, 0.1581e-3, 0.2441e-3}));
+  spec.finest_percent = std::nextafter(11.96, 0.0);
+  const std::vector<double> sample = sample_diameters(grading_curve(spec), 100);
+  EXPECT_TRUE(std::all_of(sample.begin(), sample.end(), [](double d) { return d > 0.1e-3 && d < 0.25e-3; }));
+}
+
+// A point of the curve falls between two spheres of the sample: the error is of the order of half a sphere, and with
+// 10,000 the heaviest weighs 0.14 % of the mass. Seen: 0.02 %.
+TEST(Grading, SampleFollowsTheCurveByMass)
+{
+  const GradingCurve curve = grading_curve({});
+  const std::vector<double> sample = sample_diameters(curve, 10000);
+  ASSERT_EQ(sample.size(), 10000u);
+  EXPECT_TRUE(std::is_sorted(sample.begin(), sample.end(), std::greater<>()));
+  EXPECT_GE(sample.back(), curve.diameter.front());
+  EXPECT_LE(sample.front(), curve.diameter.back());
+  for (std::size_t k = 0; k < curve.diameter.size(); ++k)
+    EXPECT_NEAR(sampled_percent_finer(sample, curve.diameter[k]), curve.percent_finer[k], 0.1) << curve.diameter[k];
+}
+
+// One segment: N(> d)/N = (d^-3 - d1^-3)/(d0^-3 - d1^-3), so sphere i of n has d^-3 linear in (i + 1/2)/n.
+TEST(Grading, SampleOfOneSegmentIsTheClosedForm)
+{
+  const std::vector<double> sample = sample_diameters(grading_curve(table_spec({{1e-3, 0}, {2e-3, 100}})), 7);
+  for (std::size_t i = 0; i < 7; ++i)
+    {
+      const double inverse_cube = 0.125e9 + (static_cast<double>(i) + 0.5) / 7 * 0.875e9;
+      EXPECT_NEAR(sample[i], std::cbrt(1 / inverse_cube), 1e-17);
+    }
+}
+
+TEST(Grading, GapGradedCurveHasNoGrainsInTheGap)
+{
+  const GradingCurve curve = grading_curve(table_spec({{1e-4, 0}, {2e-4, 40}, {5e-4, 40}, {6e-4, 100}, {7e-4, 100}}));
+  EXPECT_EQ(curve.diameter.back(), 6e-4);
+  const std::vector<double> sample = sample_diameters(curve, 5000);
+  EXPECT_TRUE(std::none_of(sample.begin(), sample.end(), [](double d) { return d > 2e-4 && d < 5e-4; }));
+  EXPECT_NEAR(sampled_percent_finer(sample, 3e-4), 40, 0.5);
+}
+
+TEST(Grading, UpscalingReachesTheSolidVolume)
+{
+  const std::vector<double> sample = sample_diameters(grading_curve({}), 10000);
+  const double target = 0.33e-6, factor = upscaling_factor(sample, target);
+  double volume = 0;
+  for (double d : sample)
+    volume += std::numbers::pi / 6 * std::pow(factor * d, 3);
+  EXPECT_NEAR(volume / target, 1, 1e-12);
+}
+
+TEST(Grading, UnknownNameListsTheKnownOnes)
+{
+  GradingSpec spec;
+  spec.curve = "toyoura";
+  EXPECT_TRUE(contains(complaint(spec), "toyoura"));
+  EXPECT_TRUE(contains(complaint(spec), "karlsruhe-fine-sand"));
+}
+
+TEST(Grading, WrongTablesAreRefused)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 0}})), "two or more"));
+  EXPECT_TRUE(contains(complaint(table_spec({{2e-3, 0}, {1e-3, 100}})), "from fine to coarse"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 0}, {1e-3, 100}})), "from fine to coarse"));
+  EXPECT_TRUE(contains(complaint(table_spec({{0, 0}, {1e-3, 100}})), "table[0]"));
+  EXPECT_TRUE(contains(complaint(table_spec({{nan, 0}, {1e-3, 100}})), "table[0]"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 50}, {2e-3, 20}, {3e-3, 100}})), "must not fall"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, -1}, {2e-3, 100}})), "[0, 100]"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 0}, {2e-3, 101}})), "[0, 100]"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 0}, {2e-3, nan}})), "[0, 100]"));
+  EXPECT_TRUE(contains(complaint(table_spec({{1e-3, 40}, {2e-3, 40}})), "nothing is left"));
+}
+
+TEST(Grading, WrongCutsAreRefused)
+{
+  const auto cut = [](double finest, double coarsest) {
+    GradingSpec spec;
+    spec.finest_percent = finest;
+    spec.coarsest_percent = coarsest;
+    return complaint(spec);
+  };
+  EXPECT_EQ(cut(5, 95), "");
+  EXPECT_TRUE(contains(cut(-1, 100), "finest_percent = -1"));
+  EXPECT_TRUE(contains(cut(0, 101), "coarsest_percent = 101"));
+  EXPECT_TRUE(contains(cut(60, 40), "coarsest_percent = 40"));
+  EXPECT_TRUE(contains(cut(0, 1), "nothing is left"));
+  EXPECT_THROW(sample_diameters(grading_curve({}), 0), InputError);
+}
+} // namespace
+} // namespace isostat

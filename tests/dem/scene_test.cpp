@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene says; what is refused is in tests/dem/io/scene_error_test.cpp.
+#include "dem/scene.hpp"
+
+#include "dem/io/scene_schema.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <random>
+#include <set>
+
+namespace isostat
+{
+namespace
+{
+using Overrides = std::vector<std::string>;
+
+const std::string smallest = "[specimen]\nrelative_density = 0.64\n";
+
+const std::string sketch = R"(title = "Undrained cyclic triaxial test, Karlsruhe fine sand, D_r = 0.64"
+[grading]
+curve = "karlsruhe-fine-sand"
+truncate = [5, 99.75]
+grains = 10000
+cloud_edge = "10 mm"
+[contact]
+young = "10 GPa"
+stiffness_ratio = 0.3
+friction = "18 deg"
+rolling = { stiffness = 0.3, limit = 0.5 }
+twisting = { stiffness = 0.3 }
+[specimen]
+domain = "rigid-box"
+pressure = "200 kPa"
+relative_density = 0.64
+[motion]
+damping = 0.2
+quasi_static_tolerance = 0.02
+[[stage]]
+kind = "undrained-cyclic"
+direction = "extension"
+deviator_amplitude = "55 kPa"
+until = { reversals_after_liquefaction = 12, strain = 0.1 }
+[[stage]]
+kind = "undrained-monotonic"
+strain = 0.05
+strain_rate = "0.5 1/s"
+[output]
+snapshots = "none"
+)";
+
+std::string read_all(const std::string &path)
+{
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string cyclic_with(const std::string &line)
+{
+  return smallest + "[[stage]]\nkind = \"undrained-cyclic\"\n" + line + "\n";
+}
+
+TEST(Scene, ReadsTheSketchOfTheDesign)
+{
+  const Scene scene = parse_scene(sketch, "scene.toml");
+  EXPECT_EQ(scene.grading.grains, 10000u);
+  EXPECT_EQ(scene.grading.cloud_edge, 10e-3);
+  EXPECT_EQ(scene.grading.finest_percent, 5);
+  EXPECT_EQ(scene.grading.coarsest_percent, 99.75);
+  EXPECT_EQ(scene.contact.young, 1e10);
+  EXPECT_NEAR(scene.contact.friction, 0.32491969623290632616, 1e-16);
+  EXPECT_EQ(scene.contact.features, LawFeatures{});
+  EXPECT_EQ(scene.specimen.relative_density, 0.64);
+  EXPECT_FALSE(scene.specimen.void_ratio || scene.specimen.preparation_friction);
+  EXPECT_EQ(scene.motion.quasi_static_tolerance, 0.02);
+  ASSERT_EQ(scene.stages.size(), 2u);
+  EXPECT_EQ(scene.stages[0].kind, StageKind::undrained_cyclic);
+  EXPECT_TRUE(scene.stages[0].extension);
+  EXPECT_EQ(scene.stages[0].deviator_amplitude, 55e3);
+  EXPECT_EQ(scene.stages[0].reversals_after_liquefaction, 12u);
+  EXPECT_EQ(scene.stages[0].max_strain, 0.1);
+  EXPECT_EQ(scene.stages[0].max_cycles, 200u);
+  EXPECT_EQ(scene.stages[1].strain, 0.05);
+  EXPECT_EQ(scene.stages[1].strain_rate, 0.5);
+  EXPECT_EQ(scene.output.snapshots, "none");
+}
+
+/// The defaults of the schema are those of the structs, so a scene made in C++ and an empty file agree.
+TEST(Scene, DefaultsAreThoseOfTheStructs)
+{
+  Scene expected;
+  expected.specimen.relative_density = 0.64;
+  expected.contact.friction = 0;
+  expected.contact.features = {false, false, false};
+  EXPECT_EQ(parse_scene(smallest, "scene.toml"), expected);
+
+  Stage stage;
+  stage.kind = StageKind::undrained_cyclic;
+  expected.stages = {stage};
+  EXPECT_EQ(parse_scene(cyclic_with(""), "scene.toml"), expected);
+}
+
+TEST(Scene, WhatIsLeftOutOfContactIsSwitchedOff)
+{
+  const auto features = [](const std::string &contact) {
+    return parse_scene(smallest + "[contact]\n" + contact, "scene.toml").contact.features;
+  };
+  EXPECT_EQ(features(""), (LawFeatures{false, false, false}));
+  EXPECT_EQ(features("friction = \"18 deg\""), (LawFeatures{true, false, false}));
+  EXPECT_EQ(features("friction = \"18 deg\"\nrolling = {}"), (LawFeatures{true, true, false}));
+  EXPECT_EQ(features("friction = \"18 deg\"\ntwisting = { stiffness = 2 }"), (LawFeatures{true, false, true}));
+  EXPECT_EQ(features("friction = \"0 deg\"\nrolling = { limit = 0.1 }"), (LawFeatures{false, true, false}));
+}
+
+TEST(Scene, EveryStageKindParsesWithEachOfItsKeys)
+{
+  const auto names = stage_kind_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    {
+      const auto kind = static_cast<StageKind>(i);
+      std::string text =
+          smallest + fmt::format("[contact]\nfriction = \"18 deg\"\n[[stage]]\nkind = \"{}\"\n", names[i]);
+      for (const Key &key : scene_schema())
+        if (key.belongs_to(kind) && key.kind != Kind::table && key.name() != "kind")
+          text += fmt::format("{} = {}\n", key.name(), example(key));
+      EXPECT_NO_THROW(parse_scene(text, "scene.toml")) << text;
+    }
+}
+
+TEST(Scene, GradingTable)
+{
+  const std::string head = smallest + "[grading]\n";
+  const Scene scene =
+      parse_scene(head + "table = [[\"0.0631 mm\", 1.53], [\"125 um\", 28], [\"0.3135 mm\", 100]]", "s");
+  const SizeCurve expected{{0.0631e-3, 1.53}, {125e-6, 28}, {0.3135e-3, 100}};
+  EXPECT_EQ(scene.grading.table, expected);
+  EXPECT_EQ(scene.grading.curve, "");
+}
+
+TEST(SceneOverride, ReplacesValues)
+{
+  const Scene scene =
+      parse_scene(sketch, "scene.toml",
+                  {"motion.damping=0.3", "specimen.pressure=100kPa", "stage.1.strain=0.02", "title=\"New = title\"",
+                   "contact.rolling.limit = 0.4", "output.checkpoint=10 min", "grading.truncate=[1, 99]",
+                   "stage.0.until={ cycles = 3 }", "output.energy=true", "stage.0.direction=compression"});
+  EXPECT_EQ(scene.motion.damping, 0.3);
+  EXPECT_EQ(scene.specimen.pressure, 100e3);
+  EXPECT_EQ(scene.stages[1].strain, 0.02);
+  EXPECT_EQ(scene.title, "New = title");
+  EXPECT_EQ(scene.contact.rolling_limit, 0.4);
+  EXPECT_EQ(scene.output.checkpoint_minutes, 10);
+  EXPECT_EQ(scene.grading.finest_percent, 1);
+  EXPECT_EQ(scene.stages[0].max_cycles, 3u);
+  EXPECT_EQ(scene.stages[0].reversals_after_liquefaction, 10u);
+  EXPECT_TRUE(scene.output.energy);
+  EXPECT_FALSE(scene.stages[0].extension);
+  for (const char *pressure : {"200 kPa", "200kPa", "\"200 kPa\"", "'0.2 MPa'"})
+    EXPECT_EQ(parse_scene(sketch, "s", {std::string("specimen.pressure=") + pressure}).specimen.pressure, 200e3);
+}
+
+TEST(SceneOverride, TakesThePlaceOfWhatItExcludes)
+{
+  const Scene scene = parse_scene(sketch, "s", {"specimen.preparation_friction=10 deg", "motion.strain_rate=0.5/s"});
+  EXPECT_FALSE(scene.specimen.relative_density);
+  EXPECT_EQ(scene.specimen.preparation_friction, parse_quantity("10 deg", Dimension::angle).value);
+  EXPECT_EQ(scene.motion.strain_rate, 0.5);
+}
+
+/// A value the key can hold, with random digits.
+void scramble(const Key &key, const Field &field, std::mt19937_64 &random)
+{
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double high = std::min(key.range.high, 1e9);
+  double number = std::max(key.range.low, 0.0) + (high - std::max(key.range.low, 0.0)) * (0.1 + 0.8 * unit(random));
+  if (key.dimension == Dimension::angle && key.kind == Kind::quantity)
+    number = 0.01 + unit(random);
+  if (double *const *plain = std::get_if<double *>(&field))
+    **plain = number;
+  else if (std::optional<double> *const *maybe = std::get_if<std::optional<double> *>(&field); maybe && **maybe)
+    **maybe = number;
+  else if (std::uint64_t *const *count = std::get_if<std::uint64_t *>(&field))
+    **count = static_cast<std::uint64_t>(number) + 2;
+  else if (std::string *const *text = std::get_if<std::string *>(&field); text && key.kind == Kind::text)
+    **text = (*text)->empty() ? "" : "a \"b\" \\ c\n\t# \u00b5";
+}
+
+TEST(Scene, RoundTripToTheBit)
+{
+  std::mt19937_64 random(3);
+  std::string text = sketch + "folder = \"x\"\n";
+  for (const std::string stage :
+       {"compress\"\npressure = \"1 kPa\"", "friction\"\nfriction = \"9 deg\"", "rebalance\"",
+        "drained\"\nstrain = 0.1\nstrain_rate = \"1 1/s\"", "constant-p\"\nstrain = 0.1", "hold\""})
+    text += "[[stage]]\nkind = \"" + stage + "\n";
+  const Overrides variants[] = {{},
+                                {"motion.strain_rate=0.1/s", "specimen.preparation_friction=9 deg"},
+                                {"specimen.void_ratio=0.7", "grading.table=[['0.1 mm', 3], ['0.3 mm', 100]]"},
+                                {"specimen.file=a.h5", "motion.time_step=3 ns"}};
+  for (const Overrides &variant : variants)
+    for (int repeat = 0; repeat < 50; ++repeat)
+      {
+        Scene scene = parse_scene(text, "scene.toml", variant);
+        Stage unused;
+        for (const Key &key : scene_schema())
+          if (key.stages == 0 && key.name() != "quasi_static_tolerance")
+            scramble(key, key.field(scene, unused), random);
+          else
+            for (Stage &stage : scene.stages)
+              if (key.belongs_to(stage.kind))
+                scramble(key, key.field(scene, stage), random);
+        scene.specimen.e_max = scene.specimen.e_min * 1.37;
+        scene.motion.rate_ceiling = scene.motion.rate_floor * 3.1;
+        for (auto &[diameter, percent] : scene.grading.table)
+          diameter *= 1.0 / 3.0;
+        EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene) << to_toml(scene);
+      }
+}
+
+TEST(Scene, RoundTripWithPartsOfTheLawOff)
+{
+  for (const char *contact : {"", "friction = \"0 deg\"\nrolling = {}", "friction = \"12.3 deg\"",
+                              "friction = \"12.3 deg\"\ntwisting = { stiffness = 2 }"})
+    {
+      const Scene scene = parse_scene(smallest + "[contact]\n" + contact, "s");
+      EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene) << to_toml(scene);
+    }
+}
+
+TEST(Scene, PrintedDefaultsAreAScene)
+{
+  const Scene scene = parse_scene(default_scene(), "default.toml");
+  Scene expected;
+  expected.specimen.relative_density = 0.64;
+  expected.contact.friction = parse_quantity("18 deg", Dimension::angle).value;
+  expected.stages.resize(1);
+  expected.stages[0].kind = StageKind::undrained_cyclic;
+  EXPECT_EQ(scene, expected);
+
+  for (const Key &key : scene_schema())
+    EXPECT_NE(default_scene().find(std::string(key.name())), std::string::npos) << key.path;
+}
+
+TEST(Schema, EveryKeyIsDescribed)
+{
+  std::set<std::string> paths;
+  for (const Key &key : scene_schema())
+    {
+      EXPECT_TRUE(paths.insert(key.path).second) << key.path << " twice";
+      const std::string text = key.text;
+      EXPECT_TRUE(text.ends_with('.') || text.ends_with(',')) << key.path;
+      EXPECT_TRUE(key.field) << key.path;
+      EXPECT_EQ(key.stages != 0, key.section() == "stage") << key.path;
+      EXPECT_TRUE(key.presence == Presence::standard || *key.value) << key.path << " needs an example";
+      EXPECT_TRUE(key.kind != Kind::quantity || *key.unit) << key.path;
+    }
+}
+
+TEST(Manual, EqualsTheFileInDocs)
+{
+  EXPECT_EQ(read_all(ISOSTAT_SOURCE_DIR "/docs/scene_reference.md"), scene_manual())
+      << "regenerate docs/scene_reference.md from scene_manual()";
+}
+
+TEST(Scenes, AllParseAndSayWhatTheyShow)
+{
+  int n_scenes = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(ISOSTAT_SOURCE_DIR "/apps/scenes"))
+    {
+      if (entry.path().extension() != ".toml")
+        continue;
+      ++n_scenes;
+      const Scene scene = read_scene(entry.path().string());
+      const bool quick = entry.path().stem().string().starts_with("quick_");
+      EXPECT_FALSE(scene.title.empty()) << entry.path();
+      EXPECT_EQ(scene.grading.grains, quick ? 2000u : 10000u) << entry.path();
+      // the same size of grains: volume of the cloud per grain is that of 10,000 in 10 mm
+      const double volume = std::pow(scene.grading.cloud_edge, 3) / static_cast<double>(scene.grading.grains);
+      EXPECT_NEAR(volume / 1e-10, 1, 1e-14) << entry.path();
+      EXPECT_EQ(scene.stages.size(), 1u) << entry.path();
+      EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene) << entry.path();
+      const std::string twin = (quick ? "" : "quick_") + entry.path().filename().string();
+      EXPECT_TRUE(std::filesystem::exists(entry.path().parent_path() / twin)) << twin;
+    }
+  EXPECT_EQ(n_scenes, 17);
+}
+
+} // namespace
+} // namespace isostat

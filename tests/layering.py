@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ctest `layering`: who may include whom, how long a file may be, what an executable may load.
+
+    layering.py [--root REPOSITORY] [EXECUTABLE or LIBRARY ...]
+
+Dependencies run one way: apps -> coupling -> {fem, dem}. Inside dem they follow the time step. Prints every violation
+as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as arguments must
+not need deal.II or PETSc.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+CODE = {".cpp", ".hpp", ".h", ".cc"}
+MAX_LINES = 500
+
+# Top folder -> top folders it may include. Tests and benchmarks may look everywhere.
+TOP = {
+    "dem": {"dem"},
+    "fem": {"fem"},
+    "coupling": {"coupling", "fem", "dem"},
+    "apps": {"apps", "coupling", "fem", "dem"},
+}
+
+# Reading and writing scenes is one part with dem/scene.hpp, though its files lie in dem/io.
+SCENE_FILES = "io/scene_"
+
+# Part of dem -> parts it may include besides itself. A part is a file or a folder below dem/; a file goes to the
+# longest name that matches it, so that io/units can stand lower than io.
+BASE = {"types", "error"}
+GRAINS = BASE | {"packing", "domain", "contact"}
+DEM = {
+    "types": set(),
+    "error": set(),
+    "io/units": BASE,
+    "packing": BASE,
+    "domain": BASE | {"packing"},
+    "contact": BASE | {"packing", "domain"},
+    "scene": BASE | {"contact", "io/units"},
+    "neighbours": GRAINS,
+    "motion": GRAINS,
+    "assembly": GRAINS | {"neighbours", "motion", "measure"},
+    "measure": GRAINS,
+    "io": GRAINS | {"io/units", "measure", "scene"},
+    "drive": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io"},
+    "prepare": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+    "rve": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+}
+
+# What coupling sees of dem: the RVE is the only door; io stores and reads its state.
+COUPLING_SEES = BASE | {"rve", "scene", "io", "io/units"}
+
+# External headers that a top folder must not see, with the reason.
+FOREIGN = {
+    "dem": [
+        (re.compile(r"deal\.II/|^petsc", re.I), "dem knows nothing of deal.II or PETSc"),
+        (re.compile(r"^(mpi|omp[il]_mpi)\.h$"), "dem makes no MPI call"),
+    ],
+}
+HDF5 = re.compile(r"^(hdf5|H5\w*|hdf5_hl)\.(h|hpp)$")
+HDF5_HOME = "dem/io/hdf5.cpp"
+
+FORBIDDEN_LIBRARIES = ("libdeal", "libpetsc")
+FORBIDDEN_SYMBOLS = ("dealii::", "PetscInitialize", "MatCreate", "VecCreate", "KSPCreate")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def dem_part(path):
+    """The entry of DEM that a path inside the repository belongs to, or None if the table has none."""
+    inner = path.removeprefix("dem/")
+    if inner.startswith(SCENE_FILES):
+        return "scene"
+    stem = inner.rsplit(".", 1)[0]
+    fits = [part for part in DEM if stem == part or inner.startswith(part + "/")]
+    return max(fits, key=len, default=None)
+
+
+def resolved(root, file, quoted, target):
+    """Path of an included file relative to the root, or None for a header from outside."""
+    candidates = [root / target] + ([file.parent / target] if quoted else [])
+    for candidate in candidates:
+        if candidate.is_file():
+            path = candidate.resolve()
+            return path.relative_to(root).as_posix() if path.is_relative_to(root) else None
+    # Not there (yet), but it names one of our folders: judge it by its name.
+    return target if target.split("/")[0] in TOP else None
+
+
+def inner_violation(source, target):
+    """Why a file of ours must not include another one, or None."""
+    top, target_top = source.split("/")[0], target.split("/")[0]
+    if top not in TOP or target_top not in TOP:
+        return None
+    if target_top not in TOP[top]:
+        return f"{top} must not include {target_top}/"
+    if target_top != "dem":
+        return None
+    part = dem_part(target)
+    if part is None:
+        return f"{target} is in no part of dem; add it to the table in tests/layering.py"
+    if top == "coupling" and part not in COUPLING_SEES:
+        return "coupling enters dem by rve.hpp only"
+    if top == "dem":
+        own = dem_part(source)
+        if own is not None and part != own and part not in DEM[own]:
+            return f"dem/{own} must not include dem/{part}"
+    return None
+
+
+def check_file(root, file):
+    source = file.relative_to(root).as_posix()
+    top = source.split("/")[0]
+    text = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    problems = []
+    if len(text) > MAX_LINES:
+        problems.append(f"{source}: {len(text)} lines; split files above {MAX_LINES}")
+    if top == "dem" and dem_part(source) is None:
+        problems.append(f"{source}: in no part of dem; add it to the table in tests/layering.py")
+    for number, line in enumerate(text, 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        target = match.group(2)
+        inner = resolved(root, file, match.group(1) == '"', target)
+        if inner:
+            why = inner_violation(source, inner)
+        elif HDF5.match(target) and source != HDF5_HOME:
+            why = f"only {HDF5_HOME} sees the HDF5 headers"
+        else:
+            why = next((reason for pattern, reason in FOREIGN.get(top, []) if pattern.search(target)), None)
+        if why:
+            problems.append(f"{source}:{number}: {line.strip()}: {why}")
+    return problems
+
+
+def check_sources(root):
+    files = [f for top in (*TOP, "tests", "benchmarks") for f in sorted((root / top).rglob("*")) if f.suffix in CODE]
+    if not any(f.relative_to(root).parts[0] == "dem" for f in files):
+        return [], [f"{root}: no code below dem/; is this the repository?"]
+    return files, [problem for f in files for problem in check_file(root, f)]
+
+
+def output_of(*command):
+    run = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    return run.returncode, run.stdout + run.stderr
+
+
+def check_binary(binary):
+    path = pathlib.Path(binary)
+    if not path.is_file():
+        return [f"{binary}: no such file"]
+    if path.suffix == ".a":
+        code, text = output_of("nm", "-uC", str(path))
+        found = sorted({s for s in FORBIDDEN_SYMBOLS for line in text.splitlines() if s in line})
+        what = "needs symbols"
+    else:
+        code, text = output_of("ldd", str(path))
+        names = (line.split()[0] for line in text.splitlines() if line.split())
+        found = sorted(n for n in names if pathlib.Path(n).name.startswith(FORBIDDEN_LIBRARIES))
+        what = "loads"
+        if "not a dynamic executable" in text or "statically linked" in text:
+            return []
+    if code != 0:
+        return [f"{binary}: cannot be examined: {text.strip()}"]
+    why = "dem and the element tests link neither deal.II nor PETSc"
+    return [f"{binary}: {what} {', '.join(found)}; {why}"] if found else []
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("binaries", nargs="*", help="must load neither deal.II nor PETSc")
+    arguments = parser.parse_args()
+
+    files, problems = check_sources(arguments.root.resolve())
+    for binary in arguments.binaries:
+        problems += check_binary(binary)
+    for problem in problems:
+        print(problem)
+    print(f"layering: {len(files)} files, {len(arguments.binaries)} binaries, {len(problems)} violations")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
