@@ -52,7 +52,16 @@ void Assembly::compute_forces()
   if (gravity != Vec3::Zero())
     add_gravity();
   if (measure_energy)
-    sum_dissipation();
+    energy_started_ ? sum_dissipation() : start_energy();
+}
+
+void Assembly::start_energy()
+{
+  const StoredEnergy stored = stored_energy(snapshot());
+  tally = {};
+  tally.kinetic = -stored.kinetic();
+  tally.elastic = -stored.elastic();
+  energy_started_ = true;
 }
 
 void Assembly::add_wall_forces()
@@ -92,6 +101,7 @@ void Assembly::sum_dissipation()
       tally.sliding += dissipation_.sliding[p];
       tally.rolling += dissipation_.rolling[p];
       tally.released += dissipation_.released[p];
+      tally.created += dissipation_.created[p];
     }
   for (int wall = 0; wall < 6; ++wall)
     tally.boundary_work -= 0.5 * (previous_wall_force_[wall] + wall_force_[wall]) * wall_displacement_[wall];
@@ -206,18 +216,20 @@ double Assembly::unbalanced_force_ratio() const
   return n_contacts && force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
 }
 
-std::array<double, 12> Assembly::wall_memory() const
+std::array<double, Assembly::wall_memory_size> Assembly::wall_memory() const
 {
-  std::array<double, 12> memory;
+  std::array<double, wall_memory_size> memory;
   std::copy(wall_force_.begin(), wall_force_.end(), memory.begin());
   std::copy(wall_displacement_.begin(), wall_displacement_.end(), memory.begin() + 6);
+  memory[12] = energy_started_ ? 1 : 0;
   return memory;
 }
 
-void Assembly::set_wall_memory(const std::array<double, 12> &memory)
+void Assembly::set_wall_memory(const std::array<double, wall_memory_size> &memory)
 {
   std::copy_n(memory.begin(), 6, wall_force_.begin());
   std::copy_n(memory.begin() + 6, 6, wall_displacement_.begin());
+  energy_started_ = memory[12] != 0;
 }
 
 Snapshot Assembly::checkpoint() const
@@ -269,9 +281,11 @@ Snapshot Assembly::snapshot() const
 EnergyBalance Assembly::energy() const
 {
   EnergyBalance balance = tally;
+  if (!energy_started_)
+    return balance;
   const StoredEnergy stored = stored_energy(snapshot());
-  balance.kinetic = stored.kinetic();
-  balance.elastic = stored.elastic();
+  balance.kinetic += stored.kinetic();
+  balance.elastic += stored.elastic();
   return balance;
 }
 } // namespace isostat

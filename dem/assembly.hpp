@@ -59,23 +59,28 @@ public:
   /// State to go on from, after move(): positions ahead of the contact history by one step.
   Snapshot checkpoint() const;
 
-  EnergyBalance energy() const; ///< zero unless measure_energy
+  /// Balance since the first force evaluation with measure_energy; zero without it.  @pre compute_forces(), not yet moved
+  EnergyBalance energy() const;
 
   double time_step = 0;       ///< s; set before the first step
   double damping = 0.2;       ///< local damping [-]
   Vec3 gravity = Vec3::Zero(); ///< m/s2
   bool measure_energy = false;
-  /// Sums since the start: boundary work and dissipation; restored with a checkpoint.
+  /// What energy() goes by, part of a checkpoint: sums of boundary work and dissipation since the start, and in kinetic
+  /// and elastic minus what was stored then.
   EnergyBalance tally;
 
-  /// What the boundary work needs from the step before; part of a checkpoint.
-  std::array<double, 12> wall_memory() const;
-  void set_wall_memory(const std::array<double, 12> &memory);
+  /// Wall forces (N) and outward displacements (m) of the step before, and 1 once energy is being measured: what the
+  /// boundary work goes on from; part of a checkpoint.
+  static constexpr std::size_t wall_memory_size = 13;
+  std::array<double, wall_memory_size> wall_memory() const;
+  void set_wall_memory(const std::array<double, wall_memory_size> &memory);
 
 private:
   void add_wall_forces();
   void add_gravity();
   void sum_dissipation();
+  void start_energy();
   [[noreturn]] void report_explosion(double speed_limit) const;
 
   Packing packing_;
@@ -90,5 +95,6 @@ private:
   double solid_volume_ = 0, d50_ = 0, min_radius_ = 0, greatest_step_ = 0;
   std::uint64_t step_ = 0;
   double time_ = 0;
+  bool energy_started_ = false;
 };
 } // namespace isostat

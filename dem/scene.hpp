@@ -37,7 +37,7 @@ struct SpecimenSpec
   double e_min = 0.568, e_max = 0.841;        ///< limits that define the relative density
   double density_tolerance = 0.01;            ///< on D_r
   double damping = 0.3;                       ///< local damping during preparation
-  double compaction_rate = 10;     ///< wall strain-rate ceiling of the servo while the cloud is compacted, 1/s
+  double compaction_rate = 30;     ///< wall strain-rate ceiling of the servo while the cloud is compacted, 1/s
   std::string cache = "specimens"; ///< folder of cached specimens, relative to the output folder's parent
 
   bool operator==(const SpecimenSpec &) const = default;
@@ -48,7 +48,7 @@ struct MotionSpec
   double damping = 0.2;                      ///< local (non-viscous) damping coefficient [-]
   std::optional<double> strain_rate;         ///< fixed axial rate, 1/s; instead of the tolerance
   double quasi_static_tolerance = 0.01;      ///< error indicator to be kept, see dem/drive/rate_control.hpp
-  double rate_floor = 0.1, rate_ceiling = 2; ///< 1/s, bounds of the controlled rate
+  double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s, bounds of the controlled rate
   double time_step_safety = 0.8;             ///< fraction of the critical step
   std::optional<double> time_step;           ///< fixed, s; checked against the critical step
 

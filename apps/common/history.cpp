@@ -17,7 +17,7 @@ std::vector<RecordColumn> history_columns(bool energy)
   for (const auto &[name, unit] : Micromechanics::columns())
     columns.push_back({name, unit});
   if (energy)
-    for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "residual"})
+    for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "created", "residual"})
       columns.push_back({name, "J"});
   return columns;
 }
@@ -46,7 +46,7 @@ std::vector<double> history_row(const Assembly &assembly, const DriveState &stat
   if (energy)
     {
       const EnergyBalance e = assembly.energy();
-      row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.residual()});
+      row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.created, e.residual()});
     }
   return row;
 }

@@ -14,28 +14,11 @@ namespace isostat
 {
 namespace fs = std::filesystem;
 
-void open_result_folder(const fs::path &folder, FolderUse use)
+namespace
+{
+void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
-  const bool exists = fs::exists(folder, failure) && !(fs::is_directory(folder) && fs::is_empty(folder));
-  if (exists && use == FolderUse::fresh)
-    throw InputError(fmt::format("{}: the results folder exists. Give --overwrite to replace it, --resume to go on from its "
-                                 "checkpoint, or --output for another one.",
-                                 folder.string()));
-  if (exists && use == FolderUse::overwrite)
-    {
-      if (!fs::exists(folder / "scene.toml"))
-        throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
-                                     "Choose another --output.",
-                                     folder.string()));
-      fs::remove_all(folder);
-    }
-  if (use == FolderUse::resume)
-    {
-      if (!fs::is_directory(folder / "checkpoint"))
-        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it", folder.string()));
-      return;
-    }
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder))
     throw InputError(fmt::format("{}: the output folder cannot be made ({}). Give a path you may write to with --output.",
@@ -52,6 +35,48 @@ void open_result_folder(const fs::path &folder, FolderUse use)
     }
 }
 
+/// As one word of a shell command.
+std::string quoted(const fs::path &path)
+{
+  std::string word = "'";
+  for (char c : path.string())
+    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+} // namespace
+
+void check_result_folder(const fs::path &folder, FolderUse use)
+{
+  std::error_code failure;
+  if (use == FolderUse::resume)
+    {
+      if (!fs::is_directory(folder / "checkpoint", failure))
+        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it", folder.string()));
+      return;
+    }
+  const bool exists = fs::exists(folder, failure);
+  if (exists && !fs::is_directory(folder))
+    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
+  const bool used = exists && !fs::is_empty(folder);
+  if (used && use == FolderUse::fresh)
+    throw InputError(fmt::format("{}: the results folder exists. Give --overwrite to replace it, --resume to go on from its "
+                                 "checkpoint, or --output for another one.",
+                                 folder.string()));
+  if (used && !fs::exists(folder / "scene.toml"))
+    throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
+                                 "Choose another --output.",
+                                 folder.string()));
+  make_writable_folder(folder);
+}
+
+void open_result_folder(const fs::path &folder, FolderUse use)
+{
+  if (use != FolderUse::overwrite)
+    return;
+  fs::remove_all(folder);
+  make_writable_folder(folder);
+}
+
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)
 {
   write_replacing(folder / "scene.toml", to_toml(scene));
@@ -63,13 +88,12 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
   write_replacing(folder / "provenance.txt", text);
 }
 
-std::string draw_figures(const fs::path &folder)
+std::string draw_figures(const fs::path &folder, const std::string &script)
 {
-  const fs::path script = fs::path(ISOSTAT_SOURCE_DIR) / "scripts" / "plots.py";
-  const std::string command =
-    fmt::format("/usr/bin/python3 '{}' '{}' > '{}' 2>&1", script.string(), folder.string(), (folder / "figures.log").string());
+  const fs::path path = fs::path(ISOSTAT_SOURCE_DIR) / "scripts" / script, log = folder / "figures.log";
+  const std::string command = fmt::format("/usr/bin/python3 {} {} > {} 2>&1", quoted(path), quoted(folder), quoted(log));
   if (std::system(command.c_str()) != 0)
-    return fmt::format("figures were not drawn; see {}", (folder / "figures.log").string());
+    return fmt::format("figures were not drawn; see {}", log.string());
   return fmt::format("figures in {}", (folder / "figures").string());
 }
 } // namespace isostat

@@ -14,14 +14,19 @@ enum class FolderUse
   resume     ///< goes on from the newest checkpoint
 };
 
-/// Makes the results folder, or refuses.
+/// Looks whether a run may use the folder, and makes it if it is missing. Removes nothing: call it first, so that a
+/// mistake shows before hours of preparation.
 /// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
 ///         look like results; --resume without a checkpoint; a path that cannot be written
+void check_result_folder(const std::filesystem::path &folder, FolderUse use);
+
+/// With FolderUse::overwrite removes what is in the folder. Call it when the run is ready to start, so that old results
+/// survive a run that never does.      @pre check_result_folder()
 void open_result_folder(const std::filesystem::path &folder, FolderUse use);
 
 /// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, instruction set, seed, time).
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
-/// Draws the figures of a results folder with scripts/plots.py. @return a line for the summary; never fails a run
-std::string draw_figures(const std::filesystem::path &folder);
+/// Draws the figures of a results folder with a script of scripts/. @return a line for the summary; never fails a run
+std::string draw_figures(const std::filesystem::path &folder, const std::string &script = "plots.py");
 } // namespace isostat

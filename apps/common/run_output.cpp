@@ -27,10 +27,10 @@ std::string duration_text(double s)
 
 double &tally_field(EnergyBalance &t, int k)
 {
-  double *fields[] = {&t.boundary_work, &t.kinetic, &t.elastic, &t.sliding, &t.rolling, &t.released, &t.damping};
+  double *fields[] = {&t.boundary_work, &t.kinetic, &t.elastic, &t.sliding, &t.rolling, &t.released, &t.damping, &t.created};
   return *fields[k];
 }
-constexpr int n_tally = 7;
+constexpr int n_tally = 8;
 
 std::size_t counter(const Checkpoint *checkpoint, const char *name)
 {

@@ -20,13 +20,15 @@ enum Column
   q,
   ir,
   indicator,
+  reversals,
   work,
   residual
 };
 
 CsvTable read_history(const std::filesystem::path &folder, bool energy)
 {
-  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)", "q (Pa)", "IR (-)", "indicator (-)"};
+  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)", "q (Pa)", "IR (-)", "indicator (-)",
+                                    "reversals (-)"};
   if (energy)
     names.insert(names.end(), {"W_boundary (J)", "residual (J)"});
   return CsvTable(folder / "history.csv", names);
@@ -40,22 +42,28 @@ double liquefaction_ratio(const Scene &scene)
   return 0.01;
 }
 
-/// Rows at which p'/p0 comes back above the ratio after liquefaction.
+/// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the least.
 void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
 {
-  bool below = false;
-  double sum = 0;
-  for (std::size_t row = summary.onset_row; summary.liquefied && row < history.n_rows(); ++row)
+  double sum = 0, last = 0, half_cycle = 0;
+  const auto count = [&] {
+    if (last > 0)
+      {
+        sum += last;
+        summary.n_recoveries += 1;
+      }
+    last = 0;
+  };
+  for (std::size_t row = summary.onset_row + 1; summary.liquefied && row < history.n_rows(); ++row)
     {
-      const bool now_below = history(row, p) < limit;
+      if (history(row, reversals) != half_cycle)
+        count();
+      half_cycle = history(row, reversals);
       summary.redundancy_least = std::min(summary.redundancy_least, history(row, ir));
-      if (below && !now_below)
-        {
-          sum += history(row, ir);
-          summary.n_recoveries += 1;
-        }
-      below = now_below;
+      if (history(row - 1, p) < limit && history(row, p) >= limit)
+        last = history(row, ir);
     }
+  count();
   summary.redundancy_recovered = summary.n_recoveries > 0 ? sum / summary.n_recoveries : 0;
 }
 

@@ -22,7 +22,7 @@ struct TestSummary
   double cycles_to_liquefaction = 0; ///< reversals / 2
   double strain_before = 0;          ///< largest |axial strain| before liquefaction
   double redundancy_initial = 0, redundancy_at_onset = 0, redundancy_least = 0;
-  double redundancy_recovered = 0; ///< mean I_R in the first rows after p'/p0 has come back above the ratio
+  double redundancy_recovered = 0; ///< mean over half cycles of I_R where p'/p0 comes back above the ratio for good
   double n_recoveries = 0;
   double greatest_strain = 0, greatest_q = 0, least_p = 0;
   double energy_residual = -1; ///< |residual| / sum of |boundary work|; negative: not measured

@@ -31,7 +31,7 @@ struct Options
 {
   std::string scene, output, command_line;
   std::vector<std::string> set;
-  bool validate = false, print_defaults = false, overwrite = false, resume = false, quiet = false, no_figures = false;
+  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false, no_figures = false;
 };
 
 /// The state of a run: fresh from the specimen, or from a checkpoint.
@@ -42,16 +42,23 @@ struct Run
   std::unique_ptr<Checkpoint> resumed;
 };
 
-Run start(const Scene &scene, const Specimen &specimen, const fs::path &folder, bool resume)
+/// The newest checkpoint; refused if it belongs to another scene.
+std::unique_ptr<Checkpoint> matching_checkpoint(const Scene &scene, const fs::path &folder)
+{
+  auto checkpoint = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
+  if (checkpoint->scene != to_toml(scene))
+    throw InputError(fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
+                                 "of --validate). Resume with the scene and --set values of the first run.",
+                                 folder.string(), (folder / "scene.toml").string()));
+  return checkpoint;
+}
+
+Run start(const Scene &scene, const Specimen &specimen, std::unique_ptr<Checkpoint> resumed)
 {
   Run run;
-  if (resume)
+  run.resumed = std::move(resumed);
+  if (run.resumed)
     {
-      run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
-      if (run.resumed->scene != to_toml(scene))
-        throw InputError(fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
-                                     "of --validate). Resume with the scene and --set values of the first run.",
-                                     folder.string(), (folder / "scene.toml").string()));
       run.assembly = std::make_unique<Assembly>(run.resumed->state);
       restore(*run.resumed, *run.assembly, run.state);
     }
@@ -73,20 +80,23 @@ void run_test(const Options &options)
       fmt::print("{}", to_toml(scene));
       return;
     }
-  const fs::path folder = !options.output.empty()       ? fs::path(options.output) :
-                          !scene.output.folder.empty() ? fs::path(scene.output.folder) :
-                                                          fs::path("results") / fs::path(options.scene).stem();
-  open_result_folder(folder, options.resume    ? FolderUse::resume :
-                             options.overwrite ? FolderUse::overwrite :
-                                                 FolderUse::fresh);
+  fs::path folder = options.output.empty() ? scene.output.folder : options.output;
+  if (!folder.has_filename()) // a slash at the end
+    folder = folder.parent_path();
+  const FolderUse use = options.resume    ? FolderUse::resume :
+                        options.overwrite ? FolderUse::overwrite :
+                                            FolderUse::fresh;
+  check_result_folder(folder, use);
+  std::unique_ptr<Checkpoint> resumed = options.resume ? matching_checkpoint(scene, folder) : nullptr;
   catch_signals();
-  if (!options.resume)
-    write_provenance(folder, scene, options.command_line);
   PreparationOutput preparation(options.quiet);
   const fs::path cache = folder.has_parent_path() ? folder.parent_path() / scene.specimen.cache : fs::path(scene.specimen.cache);
   const Specimen specimen = obtain_specimen(scene, cache, preparation);
+  open_result_folder(folder, use);
+  if (!options.resume)
+    write_provenance(folder, scene, options.command_line);
 
-  Run run = start(scene, specimen, folder, options.resume);
+  Run run = start(scene, specimen, std::move(resumed));
   RunOutput output(folder, scene, options.quiet, run.resumed.get());
   const auto begin = std::chrono::steady_clock::now();
   RunOutcome outcome = RunOutcome::finished;
@@ -125,6 +135,7 @@ int parse_and_run(int argc, char **argv)
   app.add_option("--set", options.set, "override a key, e.g. --set motion.damping=0.3 (repeatable)");
   app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
   app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
+  app.add_flag("--print-manual", options.print_manual, "print docs/scene_reference.md: every key of a scene");
   auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace results that are there");
   app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
@@ -142,6 +153,8 @@ int parse_and_run(int argc, char **argv)
   return guarded([&] {
     if (options.print_defaults)
       fmt::print("{}", default_scene());
+    else if (options.print_manual)
+      fmt::print("{}", scene_manual());
     else if (options.scene.empty())
       throw InputError("no scene given. Try element_test apps/scenes/quick_cyclic_liquefies.toml, or --help.");
     else

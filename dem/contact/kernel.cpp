@@ -21,7 +21,7 @@ struct KernelView
   std::uint8_t *occupied;
   std::size_t n_blocks;
   double young, stiffness_ratio, friction, rolling_stiffness, rolling_limit, twisting_stiffness, dt;
-  double *sliding, *rolling, *released;
+  double *sliding, *rolling, *released, *created;
 };
 } // namespace isostat
 #endif
@@ -155,7 +155,14 @@ struct Loop
         Triple fs = fs_trial;
         const Mask sliding = return_to(fs, hn::Mul(fn, hn::Set(d, k.friction)));
         if constexpr (Energy)
-          hn::StoreU(hn::IfThenElseZero(touching, plastic_work(fs_before, fs_trial, fs, ks, sliding)), d, k.sliding + pair);
+          {
+            hn::StoreU(hn::IfThenElseZero(touching, plastic_work(fs_before, fs_trial, fs, ks, sliding)), d, k.sliding + pair);
+            // fs.(true slip rate - slip rate of the law) dt
+            const Triple mid = scaled(plus(fs_before, fs), hn::Set(d, 0.5));
+            const Triple arm_gap = scaled(cross(w_sum, n), hn::Mul(overlap, hn::Set(d, 0.5)));
+            const Triple gap = nmadd(minus(v2, v1), hn::Mul(overlap, inv_distance), arm_gap);
+            hn::StoreU(hn::IfThenElseZero(touching, hn::Mul(dot(mid, gap), dt)), d, k.created + pair);
+          }
         fs = masked(touching, fs);
         store3(fs, h + at_shear * lanes);
         store3(masked(touching, n), h);
@@ -279,13 +286,14 @@ void add_contact_forces(const LawParams &law, const Packing &packing, double dt,
   KernelView view{packing.position.data(), packing.velocity.data(), packing.spin.data(), list.first(), list.second(),
                   list.history_data(), action, list.occupied(), list.n_blocks(), law.young, law.stiffness_ratio,
                   law.friction, law.rolling_stiffness, law.rolling_limit, law.twisting_stiffness, dt,
-                  nullptr, nullptr, nullptr};
+                  nullptr, nullptr, nullptr, nullptr};
   if (!dissipation)
     return run(list.features(), view);
   dissipation->resize(list.n_blocks() * ContactList::lanes);
   view.sliding = dissipation->sliding.data();
   view.rolling = dissipation->rolling.data();
   view.released = dissipation->released.data();
+  view.created = dissipation->created.data();
   run_with_energy(list.features(), view);
 }
 

@@ -14,15 +14,11 @@ RateControl::RateControl(const MotionSpec &motion, const std::optional<double> &
 
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
 {
-  const double solid_p = 0.01 * p0;
-  double eta = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density,
-                                    std::max(mean_stress, 0.001 * p0));
-  if (mean_stress > solid_p)
-    {
-      const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
-      eta = std::max({eta, difference.cwiseAbs().maxCoeff() / mean_stress, assembly.unbalanced_force_ratio()});
-    }
-  return eta;
+  const double p_r = std::max(mean_stress, 0.05 * p0);
+  const double inertia = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density, p_r);
+  const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
+  return std::max({inertia, difference.cwiseAbs().maxCoeff() / p_r,
+                   assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
 void RateControl::update(const Assembly &assembly, double mean_stress, DriveState &state) const

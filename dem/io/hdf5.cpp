@@ -43,8 +43,15 @@ struct FileState
 
 namespace
 {
-/// HDF5 prints its error stack by default; here it becomes part of the exception.
-void silence() { [[maybe_unused]] static const herr_t once = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit crashes on a file
+/// that could not be closed because the disk was full; files are closed here, so it is not needed.
+void silence()
+{
+  [[maybe_unused]] static const bool once = [] {
+    H5dont_atexit();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+}
 
 /// The innermost entry of HDF5's error stack: the reason, not its echoes.
 std::string library_reason()

@@ -37,10 +37,10 @@ struct EnergyBalance
   double rolling = 0;       ///< dissipated by the return of mb, >= 0
   double released = 0;      ///< elastic energy of fs, mb, mt forgotten when contacts open, >= 0
   double damping = 0;       ///< taken out by local damping, >= 0
+  double created = 0;       ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
 
   double dissipated() const { return sliding + rolling + released + damping; }
-  /// boundary work = stored + dissipated (DESIGN 6). What is left over: the error of the time step, and of a law that
-  /// is not exactly energy-conjugate (its lever arms differ by the overlap).
-  double residual() const { return boundary_work - (kinetic + elastic) - dissipated(); }
+  /// boundary work + created = stored + dissipated (DESIGN 6). What is left over is the error of the time step.
+  double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }
 };
 } // namespace isostat

@@ -82,6 +82,24 @@ double eigenvalue_bound(const Mat6 &b)
   return scale * std::pow(power.norm(), 0.125);
 }
 
+using Blocks = std::vector<Mat6, Eigen::aligned_allocator<Mat6>>;
+
+Blocks wall_blocks(const LawParams &law, const Packing &packing, const RigidBox &box)
+{
+  Blocks blocks(packing.n_grains(), Mat6::Zero());
+  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += k; });
+  return blocks;
+}
+
+/// M^-1/2 B M^-1/2
+Mat6 scaled_block(const Packing &packing, std::size_t i, const Mat6 &block)
+{
+  Vec6 scale;
+  scale.head<3>().setConstant(std::sqrt(packing.velocity[4 * i + 3]));
+  scale.tail<3>().setConstant(std::sqrt(packing.spin[4 * i + 3]));
+  return scale.asDiagonal() * block * scale.asDiagonal();
+}
+
 /// lambda of a grain held by three contacts with its equals along x, y and z.
 double least_eigenvalue(const LawParams &law, const Packing &packing)
 {
@@ -139,24 +157,41 @@ struct ScaledStiffness
 double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
                            const ContactList &contacts)
 {
-  std::vector<Mat6, Eigen::aligned_allocator<Mat6>> blocks(packing.n_grains(), Mat6::Zero());
-  for (const Element &e : closed_contacts(law, packing, contacts))
+  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  const Blocks walls = wall_blocks(law, packing, box);
+  Blocks alone = walls;
+  for (const Element &e : elements)
     {
-      blocks[e.first] += body_block(e, e.radius1, -1);
-      blocks[e.second] += body_block(e, e.radius2, +1);
+      alone[e.first] += body_block(e, e.radius1, -1);
+      alone[e.second] += body_block(e, e.radius2, +1);
     }
-  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += 0.5 * k; });
-  double greatest = least_eigenvalue(law, packing);
+  const double least = least_eigenvalue(law, packing);
+  std::vector<double> lambda(packing.n_grains());
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
+    lambda[i] = std::max(least, eigenvalue_bound(scaled_block(packing, i, alone[i])));
+  const double greatest_alone = *std::max_element(lambda.begin(), lambda.end());
+
+  // only grains that could exceed the largest lambda with their neighbours' share are looked at again
+  std::vector<double> neighbour(packing.n_grains(), 0.0);
+  for (const Element &e : elements)
     {
-      Vec6 scale;
-      scale.head<3>().setConstant(std::sqrt(packing.velocity[4 * i + 3]));
-      scale.tail<3>().setConstant(std::sqrt(packing.spin[4 * i + 3]));
-      const Mat6 scaled = scale.asDiagonal() * blocks[i] * scale.asDiagonal();
-      if (scaled.trace() > greatest) // the largest eigenvalue is below the trace
-        greatest = std::max(greatest, eigenvalue_bound(scaled));
+      neighbour[e.first] = std::max(neighbour[e.first], lambda[e.second]);
+      neighbour[e.second] = std::max(neighbour[e.second], lambda[e.first]);
     }
-  return 2 / std::sqrt(2 * greatest);
+  const auto matters = [&](std::size_t i) { return lambda[i] + neighbour[i] > greatest_alone; };
+  Blocks weighted = walls;
+  for (const Element &e : elements)
+    {
+      if (matters(e.first))
+        weighted[e.first] += (1 + lambda[e.second] / lambda[e.first]) * body_block(e, e.radius1, -1);
+      if (matters(e.second))
+        weighted[e.second] += (1 + lambda[e.first] / lambda[e.second]) * body_block(e, e.radius2, +1);
+    }
+  double greatest = greatest_alone;
+  for (std::size_t i = 0; i < packing.n_grains(); ++i)
+    if (matters(i))
+      greatest = std::max(greatest, eigenvalue_bound(scaled_block(packing, i, weighted[i])));
+  return 2 / std::sqrt(greatest);
 }
 
 double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,

@@ -9,10 +9,12 @@ namespace isostat
 /// A time step that leapfrog can bear, from the stiffness of the contacts that are closed (DESIGN 4).
 ///
 /// With K the 6N x 6N stiffness of all contacts (normal, shear, rolling, twisting) and M the masses and inertias, each
-/// contact being an elastic element between two bodies gives
-///     v'Kv <= 2 sum_i v_i' D_i v_i,   so   omega_max^2 <= 2 max_i lambda_max(M_i^-1/2 D_i M_i^-1/2),
-/// D_i the 6x6 diagonal block of grain i (walls, which do not move freely, count half). lambda_max is bounded from above
-/// by |B^8|_F^(1/8), which exceeds it by at most 12 %. Grains with few contacts count as if they had three.
+/// contact is an elastic element between two bodies, and (a + b)^2 <= (1 + t) a^2 + (1 + 1/t) b^2 for any t > 0 gives
+///     v'Kv <= sum_i v_i' W_i v_i,   W_i = sum over contacts (1 + lambda_j/lambda_i) D_ic,
+/// D_ic the 6x6 diagonal block of contact c at grain i and lambda_i = lambda_max(M_i^-1/2 D_i M_i^-1/2): a light grain
+/// among heavy ones counts little more than alone. So omega_max^2 <= max_i lambda_max(M_i^-1/2 W_i M_i^-1/2). Walls do not
+/// move freely and count once. lambda_max is bounded from above by |B^8|_F^(1/8), which exceeds it by at most 12 %. Grains
+/// with few contacts count as if they had three.
 /// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
 /// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
 double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,

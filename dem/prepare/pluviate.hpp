@@ -5,25 +5,53 @@
 
 namespace isostat
 {
+/// How grains are rained into the box.
+struct Pluviation
+{
+  double fall = 2;               ///< stretch of the cloud upwards, >= 1 [-]
+  double damping = 0.2;          ///< local damping [-]; in free fall it takes this share of gravity
+  double overlap_allowed = 1e-3; ///< overlap at impact over d50 that chooses the contact modulus [-]
+  bool soften = true;            ///< false: the modulus of the law as it is
+};
+
 /// What deposition under gravity gave.
 struct Deposit
 {
-  Snapshot state;        ///< grains at rest in a box with an open top (its upper y wall far away)
-  double void_ratio = 0;        ///< whole deposit: box area times height of the surface, over the solid volume [-]
+  Snapshot state;               ///< grains at rest, contact law of the deposition; the upper y wall is far above
+  double void_ratio = 0;        ///< whole vessel, struck off one d50 below the surface [-]
   double void_ratio_inside = 0; ///< two d50 away from floor, sides and surface [-]
   double height = 0;            ///< mean height of the surface, m
+  double fall_speed = 0;        ///< estimate of the fastest impact, m/s
+  double young = 0;             ///< contact modulus while grains fall, Pa
+  double greatest_overlap = 0;  ///< largest seen, sampled every 200 steps, over d50 [-]
+  double resting_overlap = 0;   ///< largest at the end, over d50 [-]
 };
 
 /// Deposits the cloud under gravity along -y into its own square box with frictionless walls (the paper's e_max).
 ///
-/// The cloud is stretched upwards `fall` times so that grains rain down rather than settle as a block. It ends when the
-/// kinetic energy is below 1e-6 of what lifting every grain by d50 would take. Two void ratios are reported: of the whole
-/// deposit as a laboratory vessel would give it, and of its inside, two d50 away from floor, sides and surface.
+/// The cloud is stretched upwards `fall` times, so that grains rain down rather than settle as a block, and falls from
+/// rest. It ends when the kinetic energy is below 1e-5 of what lifting every grain by d50 would take. Two void ratios
+/// are reported: of the whole vessel, as a laboratory would find it after striking off the uneven surface, and of its
+/// inside, away from the loose layer at the walls.
+///
+/// Under its own weight (some 50 Pa) a packing is rigid at any modulus in question, so contacts need only be stiff
+/// enough for the impacts: E = deposition_modulus(...), never more than the law's own. The time step gains E^-1/2.
 /// @param law   friction and rolling resistance of shearing
-/// @param fall  stretch of the cloud, >= 1
+/// @throws InputError   fall < 1, damping outside [0, 1), overlap_allowed <= 0
+/// @throws RunFailure   grains do not come to rest
 /// tested: tests/dem/prepare/pluviate_test.cpp
-Deposit pluviate(const Cloud &cloud, const LawParams &law, double fall, double damping, RunObserver &observer);
+Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how, RunObserver &observer);
 
-/// Void ratio inside a sub-box, by counting sample points inside grains on a regular grid of spacing d50/10 [-].
+/// Contact modulus at which a sphere of diameter d that meets a wall, or its like at rest, with speed v overlaps by
+/// u: half an oscillation of mass m = pi/6 rho d^3 on a spring k = E d/2,
+///     u/d = v sqrt(m/k)/d = v sqrt(pi rho/(3 E)),      so   E = pi/3 rho (v d/u)^2      [Pa]
+double deposition_modulus(double density, double speed, double diameter, double overlap);
+
+/// Void ratio inside a sub-box: lengths of the grains along vertical lines on a square grid of spacing d50/10 [-].
+/// 0 where the sub-box has no volume or no solid.
 double void_ratio_inside(const Packing &packing, const RigidBox &inside);
+
+/// Mean height above the floor (y) of what is seen from above: the highest point of any sphere on each of these lines,
+/// 0 where the floor is seen, m.
+double surface_height(const Packing &packing, const RigidBox &box);
 } // namespace isostat

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// void_ratio_limits SCENE: the loosest and the densest state of a granular material, which define its relative density
+// D_r = (e_max - e)/(e_max - e_min).
+//
+//        e_min                        e_max
+//     ___v___   walls press with       o   o     the cloud, stretched upwards, rains down under gravity
+//    >|oOoOo|<  specimen.pressure     | o o |    into a box with frictionless walls;
+//    >|OoOoO|<  (10 kPa), contacts    |oO oO|    friction and rolling resistance of [contact]
+//     -------   without friction      |OoO o|
+//
+//   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml
+//   void_ratio_limits apps/scenes/void_ratio_limits.toml --fall 4 --output results/limits_fall4
+//   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml --set grading.seed=2 --output results/limits_seed2
+#include "apps/common/interrupt.hpp"
+#include "apps/common/main_guard.hpp"
+#include "apps/common/result_folder.hpp"
+#include "apps/common/run_output.hpp"
+#include "dem/io/replace_file.hpp"
+#include "dem/io/specimen_file.hpp"
+#include "dem/measure/summary.hpp"
+#include "dem/prepare/compact.hpp"
+#include "dem/prepare/pluviate.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Options
+{
+  std::string scene, output, command_line;
+  std::vector<std::string> set;
+  Pluviation pluviation; // damping comes from the scene
+  bool overwrite = false, quiet = false;
+};
+
+/// The densest packing: frictionless, in a box.
+struct Dense
+{
+  Snapshot state;
+  double void_ratio = 0, void_ratio_inside = 0; ///< of the box; two d50 away from its walls [-]
+  double seconds = 0;
+};
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+
+Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
+{
+  const auto begin = Clock::now();
+  Dense dense;
+  dense.state = compact(cloud, scene.contact, 0, scene.specimen, observer);
+  dense.void_ratio = void_ratio(dense.state.box, dense.state.grains.solid_volume());
+  const double margin = 2 * dense.state.grains.d50();
+  RigidBox inside = dense.state.box;
+  inside.lower.array() += margin;
+  inside.upper.array() -= margin;
+  dense.void_ratio_inside = void_ratio_inside(dense.state.grains, inside);
+  dense.seconds = seconds_since(begin);
+  return dense;
+}
+
+void keep(const fs::path &path, const Scene &scene, const Snapshot &state, const std::string &recipe,
+          const std::map<std::string, double> &numbers)
+{
+  Specimen specimen;
+  specimen.state = state;
+  specimen.state.time = 0;
+  specimen.state.step = 0;
+  specimen.provenance = {{"title", scene.title}, {"recipe", recipe}};
+  specimen.numbers = numbers;
+  specimen.numbers["seed"] = static_cast<double>(scene.grading.seed);
+  specimen.numbers["grains"] = static_cast<double>(state.grains.n_grains());
+  specimen.numbers["d50_m"] = state.grains.d50();
+  specimen.numbers["coordination"] = micromechanics(state).coordination;
+  write_specimen(path, specimen);
+}
+
+struct Value
+{
+  const char *name, *unit;
+  double value;
+};
+
+std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit &loose, const Pluviation &how)
+{
+  const Snapshot &state = loose.state;
+  return {{"e_min", "-", dense.void_ratio},
+          {"e_min_inside", "-", dense.void_ratio_inside},
+          {"e_max", "-", loose.void_ratio},
+          {"e_max_inside", "-", loose.void_ratio_inside},
+          {"grains", "-", static_cast<double>(state.grains.n_grains())},
+          {"seed", "-", static_cast<double>(scene.grading.seed)},
+          {"d50", "m", state.grains.d50()},
+          {"pressure", "Pa", scene.specimen.pressure},
+          {"young", "Pa", scene.contact.young},
+          {"friction", "deg", scene.contact.active().friction ? degrees(scene.contact.friction) : 0},
+          {"coordination_dense", "-", micromechanics(dense.state).coordination},
+          {"fall", "-", how.fall},
+          {"fall_speed", "m/s", loose.fall_speed},
+          {"deposition_damping", "-", how.damping},
+          {"deposition_young", "Pa", loose.young},
+          {"deposit_height", "m", loose.height},
+          {"greatest_overlap", "d50", loose.greatest_overlap},
+          {"resting_overlap", "d50", loose.resting_overlap},
+          {"coordination_loose", "-", micromechanics(state).coordination}};
+}
+
+void write_limits(const fs::path &folder, const std::vector<Value> &values)
+{
+  std::string names, numbers, json = "{";
+  for (const Value &v : values)
+    {
+      const std::string_view comma = names.empty() ? "" : ",";
+      names += fmt::format("{}{} ({})", comma, v.name, v.unit);
+      numbers += fmt::format("{}{:.10g}", comma, v.value);
+      json += fmt::format("{}\n  \"{}\": {{\"value\": {:.10g}, \"unit\": \"{}\"}}", comma, v.name, v.value, v.unit);
+    }
+  write_replacing(folder / "limits.csv", names + "\n" + numbers + "\n");
+  write_replacing(folder / "limits.json", json + "\n}\n");
+}
+
+/// Whole vessel, inside, and for the paper's sand what paper and laboratory found.
+std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, double loose_seconds)
+{
+  const bool known = scene.grading.table.empty() && scene.grading.curve == "karlsruhe-fine-sand";
+  std::string text = fmt::format("\n{}\n{:<8}{:>14}{:>10}", scene.title, "", "whole box", "inside");
+  text += known ? fmt::format("{:>10}{:>13}\n", "paper", "laboratory") : "\n";
+  const auto row = [&](const char *name, double whole, double inside, double paper, double laboratory) {
+    text += fmt::format("{:<8}{:>14.4f}{:>10.4f}", name, whole, inside);
+    text += known ? fmt::format("{:>10.3f}{:>13.3f}\n", paper, laboratory) : "\n";
+  };
+  row("e_min", dense.void_ratio, dense.void_ratio_inside, 0.568, 0.677);
+  row("e_max", loose.void_ratio, loose.void_ratio_inside, 0.841, 1.054);
+  text += fmt::format("inside: two d50 ({:.3f} mm) away from walls and surface\n", 2e3 * loose.state.grains.d50());
+  text += fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n",
+                      dense.state.grains.n_grains(), scene.specimen.pressure / 1e3, scene.contact.young, dense.seconds);
+  text += fmt::format("e_max: {:.2f} deg, fastest impact about {:.2f} m/s, deposit {:.2f} mm high; {:.0f} s\n",
+                      scene.contact.active().friction ? degrees(scene.contact.friction) : 0.0, loose.fall_speed,
+                      1e3 * loose.height, loose_seconds);
+  text += fmt::format("       contact modulus {:.3g} Pa while falling: overlap/d50 at most {:.1e}, at rest {:.1e}\n",
+                      loose.young, loose.greatest_overlap, loose.resting_overlap);
+  return text;
+}
+
+Scene checked_scene(const Options &options)
+{
+  Scene scene = read_scene(options.scene, options.set);
+  if (!scene.specimen.preparation_friction || *scene.specimen.preparation_friction != 0)
+    throw InputError(fmt::format("{}: specimen.preparation_friction must be 0 deg here because e_min is the state that "
+                                 "isotropic compression without friction gives. Give --set "
+                                 "specimen.preparation_friction=\"0 deg\".",
+                                 options.scene));
+  if (!scene.stages.empty())
+    throw InputError(fmt::format("{}: has {} stage(s), but void ratio limits need none and would not run them. Leave "
+                                 "[[stage]] out.",
+                                 options.scene, scene.stages.size()));
+  return scene;
+}
+
+void find_limits(const Options &options)
+{
+  const Scene scene = checked_scene(options);
+  fs::path folder = options.output.empty() ? scene.output.folder : options.output;
+  if (!folder.has_filename()) // a slash at the end
+    folder = folder.parent_path();
+  const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
+  check_result_folder(folder, use);
+  catch_signals();
+  PreparationOutput observer(options.quiet);
+  const Cloud cloud = make_cloud(scene.grading);
+  const Dense dense = densest(cloud, scene, observer);
+  observer.event(fmt::format("e_min = {:.4f} after {:.0f} s", dense.void_ratio, dense.seconds));
+  open_result_folder(folder, use);
+  write_provenance(folder, scene, options.command_line);
+  keep(folder / "densest.h5", scene, dense.state,
+       fmt::format("isotropic compression to {:g} Pa without friction", scene.specimen.pressure),
+       {{"void_ratio", dense.void_ratio}, {"void_ratio_inside", dense.void_ratio_inside}});
+
+  const auto begin = Clock::now();
+  Pluviation how = options.pluviation;
+  how.damping = scene.motion.damping;
+  const Deposit loose = pluviate(cloud, scene.contact, how, observer);
+  keep(folder / "loosest.h5", scene, loose.state,
+       fmt::format("deposition under gravity, fall {:g}, damping {:g}, contact modulus {:g} Pa; the box is open above",
+                   how.fall, how.damping, loose.young),
+       {{"void_ratio", loose.void_ratio}, {"void_ratio_inside", loose.void_ratio_inside}, {"height_m", loose.height}});
+  write_limits(folder, limits(scene, dense, loose, how));
+  const std::string text = table(scene, dense, loose, seconds_since(begin));
+  write_replacing(folder / "summary.txt", text);
+  fmt::print("{}", text);
+}
+
+int parse_and_run(int argc, char **argv)
+{
+  CLI::App app{"Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)"};
+  Options options;
+  app.add_option("scene", options.scene, "scene file (TOML) without stages")->required();
+  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  app.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
+  app.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 2)");
+  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  for (int k = 0; k < argc; ++k)
+    options.command_line += (k ? " " : "") + std::string(argv[k]);
+  try
+    {
+      app.parse(argc, argv);
+    }
+  catch (const CLI::ParseError &error)
+    {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+  return guarded([&] { find_limits(options); });
+}
+} // namespace
+
+int main(int argc, char **argv) { return parse_and_run(argc, argv); }

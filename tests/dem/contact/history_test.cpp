@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/history.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+using Pair = ContactList::Pair;
+
+/// A history that tells from which pair it is.
+ContactHistory marked(const Pair &p)
+{
+  const double a = p.first + 1, b = p.second + 1;
+  return {Vec3(a, b, 1).normalized(), Vec3(a, b, 2), Vec3(a, b, 3), Vec3(a, b, 4)};
+}
+
+void expect_equal(const ContactHistory &got, const ContactHistory &expected)
+{
+  EXPECT_EQ(got.normal, expected.normal);
+  EXPECT_EQ(got.shear_force, expected.shear_force);
+  EXPECT_EQ(got.bending_moment, expected.bending_moment);
+  EXPECT_EQ(got.twisting_moment, expected.twisting_moment);
+}
+
+Pair pair_at(const ContactList &list, std::size_t p) { return {list.first()[p], list.second()[p]}; }
+
+ContactList marked_list(LawFeatures on, const std::vector<Pair> &pairs, std::uint32_t n_grains)
+{
+  ContactList list(on);
+  list.replace_pairs(pairs, n_grains);
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    list.set_history(p, marked(pairs[p]));
+  return list;
+}
+
+/// Every pair of n grains whose numbers pass `keep`.
+template <typename Keep>
+std::vector<Pair> pairs_of(std::uint32_t n, const Keep &keep)
+{
+  std::vector<Pair> pairs;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = i + 1; j < n; ++j)
+      if (keep(i, j))
+        pairs.emplace_back(i, j);
+  return pairs;
+}
+
+constexpr LawFeatures full{true, true, true}, sliding{true, false, false}, rolling{true, true, false},
+    twisting{true, false, true}, frictionless{false, false, false};
+} // namespace
+
+TEST(ContactList, KeepsWhatIsSetInEveryVariant)
+{
+  const std::vector<Pair> pairs = pairs_of(7, [](auto, auto) { return true; }); // 21: two blocks and a half
+  for (const LawFeatures on : {full, sliding, rolling, twisting})
+    {
+      const ContactList list = marked_list(on, pairs, 7);
+      ASSERT_EQ(list.n_pairs(), pairs.size());
+      EXPECT_EQ(list.n_blocks(), 3u);
+      for (std::size_t p = 0; p < pairs.size(); ++p)
+        {
+          ContactHistory expected = marked(pairs[p]);
+          if (!on.rolling)
+            expected.bending_moment.setZero();
+          if (!on.twisting)
+            expected.twisting_moment.setZero();
+          EXPECT_EQ(pair_at(list, p), pairs[p]);
+          expect_equal(list.history(p), expected);
+        }
+    }
+}
+
+TEST(ContactList, IdleLanesPointAtThePadding)
+{
+  const ContactList list = marked_list(full, {{0, 1}, {1, 2}}, 3);
+  for (std::size_t lane = 2; lane < 8; ++lane)
+    EXPECT_EQ(pair_at(list, lane), Pair(3, 4));
+}
+
+TEST(ContactList, HistoryGoesOverToPairsThatStay)
+{
+  const auto old_pairs = pairs_of(12, [](auto i, auto j) { return (i + j) % 3 != 0; });
+  const auto new_pairs = pairs_of(12, [](auto i, auto j) { return (i * j) % 4 != 1; });
+  ContactList list = marked_list(full, old_pairs, 12);
+  list.replace_pairs(new_pairs, 12);
+  ASSERT_EQ(list.n_pairs(), new_pairs.size());
+  std::size_t stayed = 0, fresh = 0;
+  for (std::size_t p = 0; p < new_pairs.size(); ++p)
+    {
+      const bool stays = std::find(old_pairs.begin(), old_pairs.end(), new_pairs[p]) != old_pairs.end();
+      expect_equal(list.history(p), stays ? marked(new_pairs[p]) : ContactHistory{});
+      ++(stays ? stayed : fresh);
+    }
+  EXPECT_GT(stayed, 10u);
+  EXPECT_GT(fresh, 10u);
+}
+
+TEST(ContactList, ReplacingByTheSameAndByNothing)
+{
+  const auto pairs = pairs_of(6, [](auto, auto) { return true; });
+  ContactList list = marked_list(full, pairs, 6);
+  list.replace_pairs(pairs, 6);
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    expect_equal(list.history(p), marked(pairs[p]));
+  list.replace_pairs({}, 6);
+  EXPECT_EQ(list.n_pairs(), 0u);
+  EXPECT_EQ(list.n_blocks(), 0u);
+  list.replace_pairs(pairs, 6); // what was lost does not come back
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    expect_equal(list.history(p), {});
+}
+
+TEST(ContactList, SwitchingPartsOfTheLawKeepsWhatStays)
+{
+  const auto pairs = pairs_of(6, [](auto, auto) { return true; });
+  for (const LawFeatures from : {full, sliding, rolling, twisting, frictionless})
+    for (const LawFeatures to : {full, sliding, rolling, twisting, frictionless})
+      {
+        ContactList list = marked_list(from, pairs, 6);
+        list.set_features(to);
+        EXPECT_EQ(list.features(), to);
+        for (std::size_t p = 0; p < pairs.size(); ++p)
+          {
+            ContactHistory expected;
+            if (from.friction && to.friction)
+              {
+                expected = marked(pairs[p]);
+                if (!(from.rolling && to.rolling))
+                  expected.bending_moment.setZero();
+                if (!(from.twisting && to.twisting))
+                  expected.twisting_moment.setZero();
+              }
+            EXPECT_EQ(pair_at(list, p), pairs[p]);
+            expect_equal(list.history(p), expected);
+          }
+      }
+}
+} // namespace isostat

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/rate_control.hpp"
+#include "tests/support/specimens.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double dt = 5e-8, ramp_time = 200 * dt;
+
+TEST(NextRate, RampsToTheRateInTheRampTime)
+{
+  DriveState state;
+  state.rate = 2;
+  int steps = 0;
+  while (state.signed_rate < 2 && steps < 1000)
+    {
+      const double before = state.signed_rate;
+      state.signed_rate = next_rate(state, 0, 60e3, ramp_time, dt);
+      EXPECT_NEAR(state.signed_rate - before, 2.0 / 200, 1e-12);
+      ++steps;
+    }
+  EXPECT_EQ(steps, 200);
+  EXPECT_DOUBLE_EQ(next_rate(state, 0, 60e3, ramp_time, dt), 2);
+}
+
+TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
+{
+  // a linear spring of 1 GPa: q follows the strain, the walls brake and cross q_amp slowly
+  const double modulus = 1e9, limit = 60e3;
+  for (const double direction : {1.0, -1.0})
+    {
+      DriveState state;
+      state.rate = 2;
+      state.direction = direction;
+      double q = 0;
+      for (int k = 0; direction * q < limit && k < 100000; ++k)
+        {
+          update_slope(state, q);
+          state.signed_rate = next_rate(state, q, limit, ramp_time, dt);
+          state.axial += state.signed_rate * dt;
+          state.steps_in_stage += 1;
+          q = modulus * state.axial;
+        }
+      EXPECT_GE(direction * q, limit);
+      EXPECT_LT(direction * q - limit, 50); // Pa
+      EXPECT_LT(std::abs(state.signed_rate), 0.25 * state.rate);
+    }
+}
+
+TEST(RateControl, FixedRateStays)
+{
+  Assembly assembly(test::specimen(500, 10));
+  assembly.time_step = dt;
+  assembly.compute_forces();
+  MotionSpec motion;
+  motion.strain_rate = 0.7;
+  const RateControl control(motion, {});
+  DriveState state;
+  state.p0 = 200e3;
+  state.rate = control.initial_rate();
+  EXPECT_EQ(state.rate, 0.7);
+  control.update(assembly, 200e3, state);
+  EXPECT_EQ(state.rate, 0.7);
+  EXPECT_GT(state.indicator, 0);
+  EXPECT_EQ(RateControl(motion, 0.3).initial_rate(), 0.3); // the stage's own rate goes before
+}
+
+TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
+{
+  Assembly assembly(test::specimen(500, 10));
+  assembly.time_step = dt;
+  assembly.compute_forces(); // at rest: the indicator is far below any tolerance
+  MotionSpec motion;
+  motion.rate_floor = 0.1;
+  motion.rate_ceiling = 1.0;
+  DriveState state;
+  state.p0 = 200e3;
+  state.rate = RateControl(motion, {}).initial_rate();
+  EXPECT_EQ(state.rate, 0.1);
+  for (int k = 0; k < 50; ++k)
+    RateControl(motion, {}).update(assembly, 200e3, state);
+  EXPECT_EQ(state.rate, 1.0);
+  motion.quasi_static_tolerance = 1e-9;
+  for (int k = 0; k < 50; ++k)
+    RateControl(motion, {}).update(assembly, 200e3, state);
+  EXPECT_EQ(state.rate, 0.1);
+}
+
+TEST(QuasiStaticIndicator, IsContinuousInThePressure)
+{
+  Assembly assembly(test::specimen(500, 10));
+  assembly.time_step = dt;
+  assembly.compute_forces();
+  for (const double p : {0.01 * 200e3, 0.05 * 200e3})
+    {
+      const double below = quasi_static_indicator(assembly, p * (1 - 1e-9), 200e3, 2),
+                   above = quasi_static_indicator(assembly, p * (1 + 1e-9), 200e3, 2);
+      EXPECT_NEAR(below / above, 1.0, 1e-6);
+    }
+}
+} // namespace
+} // namespace isostat

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/strain_path.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+TEST(StrainPath, VolumeStaysToRoundOffOverAMillionSteps)
+{
+  const StrainPath path{{Vec3(0.1, -0.2, 0.3), Vec3(8.1, 7.9, 8.4)}};
+  const double volume = path.reference.volume();
+  double axial = 0, worst = 0;
+  for (int k = 0; k < 1'000'000; ++k)
+    {
+      axial += (k / 50'000) % 2 ? -3.3e-7 : 4.1e-7;
+      worst = std::max(worst, std::abs(path.box(isochoric(axial)).volume() / volume - 1));
+    }
+  std::printf("largest relative change of volume over 1e6 steps: %.2e\n", worst);
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST(StrainPath, IsochoricStrainSumsToExactlyZero)
+{
+  for (const double axial : {1e-7, 0.123456789, -3.3e-3})
+    EXPECT_EQ(isochoric(axial).sum(), 0.0);
+}
+
+TEST(StrainPath, EdgesFollowTheLogarithmicStrainAboutTheCentre)
+{
+  const StrainPath path{{Vec3(-1, 0, 2), Vec3(1, 4, 3)}};
+  const RigidBox box = path.box({0.1, -0.2, 0.3});
+  EXPECT_NEAR(box.edges()[0], 2 * std::exp(0.1), 1e-15);
+  EXPECT_NEAR(box.edges()[1], 4 * std::exp(-0.2), 1e-15);
+  EXPECT_NEAR(box.edges()[2], 1 * std::exp(0.3), 1e-15);
+  EXPECT_NEAR((box.centre() - path.reference.centre()).norm(), 0, 1e-15);
+}
+} // namespace
+} // namespace isostat

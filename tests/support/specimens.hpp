@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/prepare/compact.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace isostat::test
+{
+/// Watches nothing.
+struct Unobserved : RunObserver
+{
+  void record(const Assembly &, const DriveState &, const Observation &, bool) override {}
+};
+
+inline LawParams paper_law()
+{
+  LawParams law;
+  law.friction = std::tan(18 * M_PI / 180);
+  return law;
+}
+
+inline GradingSpec small_grading(std::uint64_t grains)
+{
+  GradingSpec grading;
+  grading.grains = grains;
+  grading.cloud_edge = 10e-3 * std::cbrt(static_cast<double>(grains) / 10000.0);
+  return grading;
+}
+
+/// A real specimen in seconds: cloud, compression to 200 kPa at a preparation friction, 18 deg, balance. Made once per
+/// program and kept.
+inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees)
+{
+  static std::map<std::pair<std::uint64_t, double>, Snapshot> made;
+  const auto key = std::pair(grains, preparation_degrees);
+  if (!made.contains(key))
+    {
+      Unobserved nobody;
+      const SpecimenSpec spec;
+      const Cloud cloud = make_cloud(small_grading(grains));
+      const Snapshot compacted =
+        compact(cloud, paper_law(), std::tan(preparation_degrees * M_PI / 180), spec, nobody);
+      made[key] = rebalance(compacted, paper_law(), spec, nobody);
+    }
+  return made[key];
+}
+} // namespace isostat::test

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drivers on real packings: stresses that are to be kept are kept, loads turn where they should, runs repeat to the bit.
+#include "dem/error.hpp"
+#include "dem/measure/stress.hpp"
+#include "dem/prepare/relative_density.hpp"
+#include "tests/support/specimens.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+/// Keeps what a test looks at.
+struct Watcher : RunObserver
+{
+  void record(const Assembly &a, const DriveState &, const Observation &seen, bool snapshot) override
+  {
+    rows.push_back({seen.p, seen.q, seen.axial, -a.wall_stress()[0], -a.wall_stress()[2], a.box().volume()});
+    snapshots += snapshot;
+  }
+  void event(const std::string &line) override { events.push_back(line); }
+  bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
+
+  struct Row
+  {
+    double p, q, axial, lateral_x, lateral_z, volume;
+  };
+  std::vector<Row> rows;
+  std::vector<std::string> events;
+  int snapshots = 0;
+  std::uint64_t stop_at = 0;
+};
+
+Stage shear(StageKind kind, double strain)
+{
+  Stage stage;
+  stage.kind = kind;
+  stage.strain = strain;
+  stage.reversals_after_liquefaction = 1;
+  return stage;
+}
+
+struct Result
+{
+  Watcher watcher;
+  DriveState state;
+  Snapshot end;
+};
+
+Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 500)
+{
+  Result result;
+  Assembly assembly(initial);
+  OutputSpec output;
+  output.record_steps = records;
+  run_programme({}, {}, output, {stage}, assembly, result.state, result.watcher);
+  result.end = assembly.checkpoint();
+  return result;
+}
+
+TEST(Specimen, IsAtItsPressureAndInBalance)
+{
+  const Snapshot &s = test::specimen(1000, 10);
+  const Vec3 stress = -wall_stress(s);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(stress[k] / 200e3, 1, 3e-3);
+  const Mat3 contacts = contact_stress(s);
+  EXPECT_NEAR(contacts(1, 1) / -stress[1], 1, 1e-4);
+}
+
+TEST(Drained, LateralStressesStay)
+{
+  const Result result = run(shear(StageKind::drained, 5e-3), test::specimen(1000, 10));
+  double worst = 0;
+  for (const auto &row : result.watcher.rows)
+    worst = std::max({worst, std::abs(row.lateral_x / 200e3 - 1), std::abs(row.lateral_z / 200e3 - 1)});
+  std::printf("drained: largest deviation of a lateral stress %.2e, q at the end %.1f kPa\n", worst,
+              result.watcher.rows.back().q / 1e3);
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(result.watcher.rows.back().q, 60e3);
+  EXPECT_NEAR(result.watcher.rows.back().axial, 5e-3, 1e-6);
+}
+
+TEST(ConstantP, MeanStressStays)
+{
+  const Result result = run(shear(StageKind::constant_p, 5e-3), test::specimen(1000, 10));
+  double worst = 0;
+  for (const auto &row : result.watcher.rows)
+    worst = std::max(worst, std::abs(row.p / 200e3 - 1));
+  std::printf("constant p': largest deviation %.2e, q at the end %.1f kPa\n", worst, result.watcher.rows.back().q / 1e3);
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(result.watcher.rows.back().q, 50e3);
+}
+
+TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
+{
+  Stage stage = shear(StageKind::undrained_cyclic, 0);
+  stage.max_cycles = 3;
+  const Result result = run(stage, test::specimen(1000, 10), 20);
+  const double volume = result.watcher.rows.front().volume;
+  double worst = 0;
+  for (const auto &row : result.watcher.rows)
+    worst = std::max(worst, std::abs(row.volume / volume - 1));
+  std::printf("undrained cyclic: %g reversals, overshoot %.1f Pa, volume within %.1e\n", result.state.reversals,
+              result.state.worst_overshoot, worst);
+  EXPECT_EQ(result.state.reversals, 6);
+  EXPECT_LT(result.state.worst_overshoot, 500);
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
+{
+  Stage stage = shear(StageKind::undrained_monotonic, 1e-3);
+  const Result often = run(stage, test::specimen(500, 10), 10), rarely = run(stage, test::specimen(500, 10), 100000);
+  EXPECT_EQ(often.end.grains.position, rarely.end.grains.position);
+  EXPECT_EQ(often.end.grains.spin, rarely.end.grains.spin);
+  EXPECT_GT(often.watcher.rows.size(), rarely.watcher.rows.size());
+}
+
+TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
+{
+  Stage stage = shear(StageKind::undrained_cyclic, 0);
+  stage.max_cycles = 1;
+  const Result whole = run(stage, test::specimen(500, 10));
+  Snapshot kept = test::specimen(500, 10);
+  DriveState state;
+  Watcher watcher;
+  for (std::uint64_t stop : {137u, 1501u, 0u})
+    {
+      Assembly assembly(kept);
+      watcher.stop_at = stop;
+      const RunOutcome outcome = run_programme({}, {}, {}, {stage}, assembly, state, watcher);
+      EXPECT_EQ(outcome, stop ? RunOutcome::interrupted : RunOutcome::finished);
+      kept = assembly.checkpoint();
+    }
+  EXPECT_EQ(kept.grains.position, whole.end.grains.position);
+  EXPECT_EQ(kept.grains.velocity, whole.end.grains.velocity);
+  ASSERT_EQ(kept.contacts.size(), whole.end.contacts.size());
+  for (std::size_t c = 0; c < kept.contacts.size(); ++c)
+    EXPECT_EQ(kept.contacts[c].history.shear_force, whole.end.contacts[c].history.shear_force);
+}
+
+TEST(RelativeDensity, IsFoundWithinTheTolerance)
+{
+  const Cloud cloud = make_cloud(test::small_grading(400));
+  test::Unobserved nobody;
+  const double tolerance = 0.01 * 0.273;
+  const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {}, nobody);
+  EXPECT_NEAR(loose.void_ratio, 0.78, tolerance);
+  EXPECT_NEAR(void_ratio(loose.state.box, loose.state.grains.solid_volume()), loose.void_ratio, 1e-12);
+  std::printf("e = %.4f at %.2f deg after %d compressions\n", loose.void_ratio, std::atan(loose.friction) * 180 / M_PI,
+              loose.compressions);
+}
+
+TEST(RelativeDensity, SaysWhenItCannotBeReached)
+{
+  const Cloud cloud = make_cloud(test::small_grading(200));
+  Watcher watcher;
+  for (const double impossible : {0.30, 1.60})
+    try
+      {
+        find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {}, watcher);
+        FAIL() << "void ratio " << impossible << " was reached";
+      }
+    catch (const InputError &error)
+      {
+        EXPECT_NE(std::string(error.what()).find("cannot be reached"), std::string::npos) << error.what();
+      }
+}
+} // namespace
+} // namespace isostat
