@@ -16,6 +16,16 @@ namespace fs = std::filesystem;
 
 namespace
 {
+/// As one word of a shell command.
+std::string quoted(const fs::path &path)
+{
+  std::string word = "'";
+  for (char c : path.string())
+    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+} // namespace
+
 void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
@@ -34,16 +44,6 @@ void make_writable_folder(const fs::path &folder)
                                    folder.string(), error.what()));
     }
 }
-
-/// As one word of a shell command.
-std::string quoted(const fs::path &path)
-{
-  std::string word = "'";
-  for (char c : path.string())
-    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-} // namespace
 
 void check_result_folder(const fs::path &folder, FolderUse use)
 {

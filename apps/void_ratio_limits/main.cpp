@@ -9,7 +9,7 @@
 //     -------   without friction      |OoO o|
 //
 //   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml
-//   void_ratio_limits apps/scenes/void_ratio_limits.toml --fall 4 --output results/limits_fall4
+//   void_ratio_limits apps/scenes/void_ratio_limits.toml --fall 2 --output results/limits_fall2
 //   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml --set grading.seed=2 --output results/limits_seed2
 #include "apps/common/interrupt.hpp"
 #include "apps/common/main_guard.hpp"
@@ -205,7 +205,7 @@ int parse_and_run(int argc, char **argv)
   app.add_option("scene", options.scene, "scene file (TOML) without stages")->required();
   app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
   app.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
-  app.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 2)");
+  app.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
   app.add_flag("--overwrite", options.overwrite, "replace results that are there");
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   for (int k = 0; k < argc; ++k)

@@ -20,7 +20,7 @@ constexpr std::uint64_t review = 200, most_steps = 50'000'000;
 void check(const Pluviation &how)
 {
   if (!(how.fall >= 1 && std::isfinite(how.fall)))
-    throw InputError(fmt::format("fall = {:g}; must be >= 1 because the cloud is stretched by it. Try 2.", how.fall));
+    throw InputError(fmt::format("fall = {:g}; must be >= 1 because the cloud is stretched by it. Try 1.", how.fall));
   if (!(how.damping >= 0 && how.damping < 1))
     throw InputError(fmt::format("damping = {:g}; must be in [0, 1) because at 1 no grain would fall.", how.damping));
   if (!(how.overlap_allowed > 0))

@@ -8,7 +8,7 @@ namespace isostat
 /// How grains are rained into the box.
 struct Pluviation
 {
-  double fall = 2;               ///< stretch of the cloud upwards, >= 1 [-]
+  double fall = 1;               ///< stretch of the cloud upwards, >= 1 [-]; from higher up it packs denser
   double damping = 0.2;          ///< local damping [-]; in free fall it takes this share of gravity
   double overlap_allowed = 1e-3; ///< overlap at impact over d50 that chooses the contact modulus [-]
   bool soften = true;            ///< false: the modulus of the law as it is

@@ -89,6 +89,12 @@ void scalar_loss(const LawParams &law, const ContactPair &pair, const ContactHis
   contact_force(limp, pair, dt, turned);
   const Vec3 mid_force = 0.5 * (turned.shear_force + now.shear_force);
   loss.sliding[p] = mid_force.dot(trial.shear_force - now.shear_force) / k.shear;
+  // the law measures slip with arms R1, R2; its force acts at the contact point
+  const Vec3 branch = pair.x2 - pair.x1, n = branch.normalized(), point = 0.5 * (branch + (pair.r1 - pair.r2) * n);
+  const Vec3 true_slip = pair.v2 - pair.v1 + pair.w2.cross(point - branch) - pair.w1.cross(point);
+  const Vec3 law_slip =
+      (pair.r1 + pair.r2) / branch.norm() * (pair.v2 - pair.v1) - (pair.r2 * pair.w2 + pair.r1 * pair.w1).cross(n);
+  loss.created[p] = dt * mid_force.dot(true_slip - law_slip);
   if (k.rolling > 0)
     loss.rolling[p] =
         0.5 * (turned.bending_moment + now.bending_moment).dot(trial.bending_moment - now.bending_moment) / k.rolling;
@@ -151,7 +157,8 @@ double misfit(const Outcome &a, const Outcome &b, bool with_energy)
                  &ContactHistory::twisting_moment})
     worst = std::max(worst, misfit(a.histories, b.histories, n, member(m)));
   if (with_energy && !a.loss.sliding.empty())
-    for (auto m : {&DissipationPerPair::sliding, &DissipationPerPair::rolling, &DissipationPerPair::released})
+    for (auto m : {&DissipationPerPair::sliding, &DissipationPerPair::rolling, &DissipationPerPair::released,
+                   &DissipationPerPair::created})
       worst = std::max(worst, misfit(a.loss.*m, b.loss.*m, n, number));
   return worst;
 }

@@ -87,7 +87,7 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
   const double speed = std::sqrt(2 * g * (height - radius)), wanted = 1e-3 * 2 * radius;
   law.young = deposition_modulus(2650, speed, 2 * radius, wanted);
   how.damping = 0;
-  struct Once // the grain would bounce on: stop at its first return : Follower
+  struct Once : Follower // the grain would bounce on: stop at its first return
   {
     bool after_step(const Assembly &a, const DriveState &s, const Observation &o) override
     {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// whole_step PACKING: time per step of constant-volume shear, everything included: contact forces, walls, integration, list
+// upkeep, wall stress and the driver's strain path.
+//
+//   whole_step results/specimens/specimen-....h5 --rate 5 --time-step 4.8e-8 --steps 1500
+//   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
+//   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
+#include "apps/common/main_guard.hpp"
+#include "dem/assembly.hpp"
+#include "dem/drive/strain_path.hpp"
+#include "dem/io/replace_file.hpp"
+#include "dem/io/specimen_file.hpp"
+#include "dem/io/text_tables.hpp"
+#include "dem/measure/stress.hpp"
+#include "dem/prepare/space_filling.hpp"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+
+struct Options
+{
+  std::string packing, exported;
+  double rate = 5, time_step = 4.8e-8, friction_degrees = 18;
+  int steps = 1500, warm_up = 500, repeats = 1;
+};
+
+Snapshot load(const Options &options)
+{
+  LawParams law;
+  law.friction = std::tan(options.friction_degrees * M_PI / 180);
+  const fs::path path = options.packing;
+  if (path.extension() == ".h5")
+    {
+      Snapshot state = read_specimen(path).state;
+      state.law = law;
+      return state;
+    }
+  return sorted_along_curve(import_tables(path, law, 2650));
+}
+
+void export_text(const Snapshot &s, const std::string &path)
+{
+  std::string text = fmt::format("# box {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", s.box.lower[0], s.box.upper[0],
+                                 s.box.lower[1], s.box.upper[1], s.box.lower[2], s.box.upper[2]);
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      const Vec3 x = s.grains.centre(i);
+      text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", x[0], x[1], x[2], s.grains.radius(i));
+    }
+  write_replacing(path, text);
+}
+
+std::size_t n_contacts(const Assembly &assembly)
+{
+  const Snapshot s = assembly.snapshot();
+  return s.contacts.size() + s.wall_contacts.size();
+}
+
+void measure(const Options &options)
+{
+  const Snapshot initial = load(options);
+  if (!options.exported.empty())
+    return export_text(initial, options.exported);
+  Assembly assembly(initial);
+  assembly.time_step = options.time_step;
+  const StrainPath path{assembly.box()};
+  double axial = 0, stress = 0;
+  const auto run = [&](int steps) {
+    for (int k = 0; k < steps; ++k)
+      {
+        assembly.compute_forces();
+        stress += invariants(assembly.wall_stress()).q; // what a driver looks at every step
+        axial += options.rate * options.time_step;
+        assembly.move(path.box(isochoric(axial)));
+      }
+  };
+  run(options.warm_up);
+  for (int r = 0; r < options.repeats; ++r)
+    {
+      const auto begin = std::chrono::steady_clock::now();
+      run(options.steps);
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      assembly.compute_forces();
+      const std::size_t contacts = n_contacts(assembly);
+      const StressInvariants s = invariants(assembly.wall_stress());
+      assembly.move(assembly.box());
+      fmt::print("isostat steps_per_s {:.1f} ms_per_step {:.4f} contacts {} ns_per_contact_step {:.2f} p_kPa {:.2f} q_kPa "
+                 "{:.2f} list_rebuilds {} instruction_set {}\n",
+                 options.steps / seconds, 1e3 * seconds / options.steps, contacts,
+                 1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3,
+                 assembly.verlet_list().n_rebuilds(), instruction_set());
+    }
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  CLI::App app{"Time per step of constant-volume shear"};
+  Options options;
+  app.add_option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres")->required();
+  app.add_option("--export", options.exported, "write the packing as text and stop");
+  app.add_option("--rate", options.rate, "axial strain rate, 1/s");
+  app.add_option("--time-step", options.time_step, "s");
+  app.add_option("--friction", options.friction_degrees, "degrees");
+  app.add_option("--steps", options.steps, "timed steps per repeat");
+  app.add_option("--warm-up", options.warm_up, "steps before");
+  app.add_option("--repeats", options.repeats, "timed blocks");
+  CLI11_PARSE(app, argc, argv);
+  return isostat::guarded([&] { measure(options); });
+}

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the figures of a micromechanical analysis from the tables that `micromechanics` wrote.
+
+    plots_micromechanics.py FOLDER [--out DIR]          default DIR: FOLDER/figures
+
+fig_force_distribution.png  probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot
+fig_roses.png               contact normals in the x-y plane and about y: number (bars) and mean force (line)
+fig_anisotropies.png        a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain
+
+Onset is the first snapshot with p'/p0' < 0.01; without one, the snapshot of least p' stands in for it.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import re
+import sys
+
+import numpy as np
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from plots import BLUE, BLACK, GREEN, GREY, ORANGE, RED, STYLE, panel_letter  # noqa: E402
+
+COLOURS = {"first": BLUE, "onset": RED, "least p'": RED, "last": ORANGE}
+
+
+class BadInput(Exception):
+    """The folder holds no tables that can be drawn."""
+
+
+def read_table(path):
+    """Columns by name without the unit."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    except OSError as error:
+        raise BadInput(f"{path}: {error.strerror}") from error
+    if len(rows) < 2:
+        raise BadInput(f"{path}: no data rows")
+    names = [re.sub(r"\s*\(.*\)$", "", cell) for cell in rows[0]]
+    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
+    return {name: values[:, k] for k, name in enumerate(names)}
+
+
+class Analysis:
+    """The tables of a folder, and which snapshots stand for first, onset and last."""
+
+    def __init__(self, folder):
+        self.rows = read_table(folder / "micromechanics.csv")
+        self.forces = read_table(folder / "force_distribution.csv")
+        self.roses = read_table(folder / "roses.csv")
+        onset = json.loads((folder / "micromechanics.json").read_text(encoding="utf-8"))["onset"]
+        last = len(self.rows["p"]) - 1
+        self.chosen = {"first": 0}
+        if last > 0:
+            self.chosen["least p'" if onset is None else "onset"] = int(np.argmin(self.rows["p"])) if onset is None else onset
+            self.chosen["last"] = last
+
+    def label(self, name):
+        k = self.chosen[name]
+        return f"{name}: $\\varepsilon_1$ = {100 * self.rows['eps_y'][k]:.3f} %, p' = {self.rows['p'][k] / 1e3:.3g} kPa"
+
+
+def force_distribution(analysis):
+    figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.3), layout="constrained", sharey=True)
+    for name, index in analysis.chosen.items():
+        of_snapshot = analysis.forces["snapshot"] == index
+        middle = 0.5 * (analysis.forces["force_low"] + analysis.forces["force_high"])[of_snapshot]
+        for axes, kind in zip(panels, ("normal", "tangential")):
+            density = analysis.forces[f"{kind}_density"][of_snapshot]
+            seen = density > 0
+            axes.plot(middle[seen], density[seen], "o-", markersize=2.5, linewidth=0.8, color=COLOURS[name],
+                      label=analysis.label(name))
+    for axes, letter, text in zip(panels, "ab", (r"$f_n/\langle f_n\rangle$", r"$|f_s|/\langle f_n\rangle$")):
+        axes.set_yscale("log")
+        axes.set_xlabel(text)
+        axes.set_xlim(left=0)
+        panel_letter(axes, letter)
+    panels[0].set_ylabel("Probability density")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.get_layout_engine().set(rect=(0, 0.18, 1, 0.82))
+    figure.legend(handles, labels, loc="lower center", ncols=1)
+    return figure
+
+
+def roses(analysis):
+    n = len(analysis.chosen)
+    figure, panels = plt.subplots(2, n, figsize=(2.5 * n + 0.4, 5.6), subplot_kw={"projection": "polar"},
+                                  layout="constrained", squeeze=False)
+    for column, (name, index) in enumerate(analysis.chosen.items()):
+        of_snapshot = analysis.roses["snapshot"] == index
+        low = np.radians(analysis.roses["angle_low"][of_snapshot])
+        width = np.radians(analysis.roses["angle_high"][of_snapshot]) - low
+        for row, (plane, second) in enumerate((("xy", "y"), ("xz", "z"))):
+            axes = panels[row, column]
+            density = analysis.roses[f"{plane}_density"][of_snapshot]
+            force = analysis.roses[f"{plane}_force"][of_snapshot]
+            axes.bar(low + width / 2, density, width=width, color=COLOURS[name], alpha=0.45, edgecolor="white",
+                     linewidth=0.3, label="number of contacts")
+            closed = np.append(low + width / 2, low[0] + width[0] / 2)
+            axes.plot(closed, np.append(force, force[0]), color=BLACK, linewidth=0.9, label="mean normal force")
+            axes.plot(np.linspace(0, 2 * np.pi, 181), np.ones(181), color=GREY, linewidth=0.7, linestyle="--",
+                      label="isotropic")
+            axes.set_xticks(np.radians([0, 90, 180, 270]), ["x", second, "", ""])
+            axes.set_yticks([1, 2], ["1", "2"])
+            axes.set_ylim(0, max(1.6, min(3.5, 1.05 * max(density.max(), force.max()))))
+            axes.tick_params(labelsize=7, pad=0)
+            if row == 0:
+                axes.set_title(name + "\n" + analysis.label(name).split(": ")[1].replace(", ", "\n"), fontsize=8)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.get_layout_engine().set(rect=(0, 0.06, 1, 0.94))
+    figure.legend(handles, labels, loc="lower center", ncols=3)
+    return figure
+
+
+def anisotropies(analysis):
+    """Left against strain; right against the number of the snapshot, which sets the cycles before liquefaction apart."""
+    rows = analysis.rows
+    if len(rows["p"]) < 2:
+        return None
+    figure, panels = plt.subplots(2, 2, figsize=(7.4, 5.2), sharex="col", sharey="row", layout="constrained")
+    of_forces = [("$a_c$ contacts", rows["a_c"], BLUE), ("$a_n$ normal forces", rows["a_n"], ORANGE),
+                 ("$a_t$ tangential forces", rows["a_t"], GREEN)]
+    of_fabric = [(label, rows[f"{name}yy"] - 0.5 * (rows[f"{name}xx"] + rows[f"{name}zz"]), colour)
+                 for label, name, colour in (("all contacts", "F", BLUE), ("strong", "F_strong_", ORANGE),
+                                             ("weak", "F_weak_", GREEN))]
+    for column, x in enumerate((100 * rows["eps_y"], np.arange(len(rows["p"])))):
+        for row, curves in enumerate((of_forces, of_fabric)):
+            axes = panels[row, column]
+            for label, y, colour in curves:
+                axes.plot(x, y, color=colour, label=label, marker="o", markersize=2.5, linewidth=0.5)
+            axes.axhline(0, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+            for name, index in analysis.chosen.items():
+                if name not in ("first", "last"):
+                    axes.axvline(x[index], color=COLOURS[name], linewidth=0.8, linestyle=":", label=name)
+            panel_letter(axes, "abcd"[2 * row + column])
+    panels[0, 0].set_ylabel("Anisotropy along y")
+    panels[1, 0].set_ylabel(r"$F_{yy} - (F_{xx}+F_{zz})/2$")
+    panels[1, 0].set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    panels[1, 1].set_xlabel("Snapshot")
+    for row in (0, 1):
+        handles, labels = panels[row, 0].get_legend_handles_labels()
+        panels[row, 1].legend(handles, labels, loc="lower left", ncols=2, handlelength=1.2, columnspacing=1.0,
+                              fontsize=7.5)
+    return figure
+
+
+FIGURES = {"fig_force_distribution": force_distribution, "fig_roses": roses, "fig_anisotropies": anisotropies}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, help="folder with micromechanics.csv")
+    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: FOLDER/figures")
+    arguments = parser.parse_args()
+    out = arguments.out or arguments.folder / "figures"
+    try:
+        analysis = Analysis(arguments.folder)
+        out.mkdir(parents=True, exist_ok=True)
+    except (BadInput, OSError, ValueError, KeyError) as error:
+        print(f"plots_micromechanics: {error}", file=sys.stderr)
+        return 2
+    plt.rcParams.update(STYLE)
+    for name, draw in FIGURES.items():
+        figure = draw(analysis)
+        if figure is not None:
+            figure.savefig(out / f"{name}.png")
+            plt.close(figure)
+            print(out / f"{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
+import h5py
+
+from support import AppTest, CYCLIC, contents, main, tiny_scene
+
+
+class SceneMistakes(AppTest):
+    def refuse(self, text, *parts):
+        scene = self.write("scene.toml", text)
+        self.assert_refused(self.run_test(scene, "-o", "out"), *parts)
+        self.assertFalse((self.folder / "out").exists())
+
+    @staticmethod
+    def line_of(text, part):
+        return next(n for n, line in enumerate(text.splitlines(), 1) if part in line)
+
+    def test_unknown_key(self):
+        text = tiny_scene(motion="dampnig = 0.2")
+        self.refuse(text, f"scene.toml:{self.line_of(text, 'dampnig')}:", "dampnig", "damping")
+
+    def test_wrong_unit(self):
+        text = tiny_scene(specimen='preparation_friction = "10 deg"\npressure = "200 mm"')
+        self.refuse(text, f"scene.toml:{self.line_of(text, '200 mm')}:", "specimen.pressure", "kPa")
+
+    def test_out_of_range(self):
+        text = tiny_scene(motion="damping = 1.5")
+        self.refuse(text, f"scene.toml:{self.line_of(text, '1.5')}:", "motion.damping", "1.5", "[0, 1)")
+
+    def test_not_toml(self):
+        self.refuse("title = \n", "scene.toml:1")
+
+    def test_excluding_keys(self):
+        text = tiny_scene(specimen='preparation_friction = "10 deg"\nvoid_ratio = 0.7')
+        self.refuse(text, "scene.toml:", "preparation_friction", "void_ratio")
+
+    def test_bad_override(self):
+        scene = self.write("scene.toml", tiny_scene())
+        self.assert_refused(self.run_test(scene, "-o", "out", "--set", "motion.damping=2"), "--set", "motion.damping")
+
+    def test_missing_scene(self):
+        self.assert_refused(self.run_test("nowhere.toml"), "nowhere.toml", "is not there")
+
+    def test_no_scene(self):
+        self.assert_refused(self.run_app("element_test"), "no scene given", "--help")
+
+    def test_unknown_option(self):
+        self.assertEqual(self.run_test("scene.toml", "--overwite").returncode, 2)
+
+    def test_validate_writes_nothing(self):
+        scene = self.write("scene.toml", tiny_scene())
+        self.assert_done(self.run_app("element_test", scene, "--validate"))
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["scene.toml", "specimens"])
+
+
+class SpecimenMistakes(AppTest):
+    def refuse(self, *parts):
+        """A run with --overwrite into old results: refused, and the old results are all there."""
+        old = self.folder / "out"
+        old.mkdir()
+        (old / "scene.toml").write_text("# old", encoding="utf-8")
+        (old / "history.csv").write_text("old", encoding="utf-8")
+        before = contents(old)
+        scene = self.write("scene.toml", tiny_scene(specimen='file = "specimen.h5"'))
+        self.assert_refused(self.run_test(scene, "-o", "out", "--overwrite"), "specimen.h5", *parts)
+        self.assertEqual(contents(old), before)
+
+    def make_specimen(self):
+        scene = self.write("make.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
+        self.assert_done(self.run_test(scene, "-o", "made"))
+        made = next(self.cache.glob("specimen-*.h5"))
+        specimen = self.folder / "specimen.h5"
+        specimen.write_bytes(made.read_bytes())
+        return specimen
+
+    def test_missing(self):
+        self.refuse("scene.toml:", "specimen.file", "is not there")
+
+    def test_truncated(self):
+        specimen = self.make_specimen()
+        whole = specimen.read_bytes()
+        specimen.write_bytes(whole[: len(whole) // 2])
+        self.refuse("truncated")
+
+    def test_not_hdf5(self):
+        self.write("specimen.h5", "x y z r\n")
+        self.refuse("HDF5")
+
+    def test_foreign(self):
+        with h5py.File(self.folder / "specimen.h5", "w") as file:
+            file["positions"] = [1.0, 2.0]
+        self.refuse("isostat-specimen", "another program")
+
+    def test_other_schema(self):
+        with h5py.File(self.make_specimen(), "r+") as file:
+            file.attrs["schema_version"] = file.attrs["schema_version"] + 41
+        self.refuse("schema_version = 42", "reads 1")
+
+    def test_density_out_of_reach(self):
+        old = self.folder / "out"
+        old.mkdir()
+        (old / "scene.toml").write_text("# old", encoding="utf-8")
+        scene = self.write("scene.toml", tiny_scene(specimen="void_ratio = 0.3"))
+        self.assert_refused(self.run_test(scene, "-o", "out", "--overwrite"), "cannot be reached", "0.3000",
+                            "without friction")
+        self.assertEqual((old / "scene.toml").read_text(encoding="utf-8"), "# old")
+
+
+class OutputFolder(AppTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=600)))
+
+    def test_below_a_file(self):
+        self.write("file", "precious")
+        self.assert_refused(self.run_test(self.scene, "-o", "file/out"), "file/out", "cannot be made", "--output")
+        self.assertEqual((self.folder / "file").read_text(encoding="utf-8"), "precious")
+
+    def test_is_a_file(self):
+        self.write("file", "precious")
+        for flag in ((), ("--overwrite",)):
+            self.assert_refused(self.run_test(self.scene, "-o", "file", *flag), "file", "not a folder")
+        self.assertEqual((self.folder / "file").read_text(encoding="utf-8"), "precious")
+
+    def test_existing_results(self):
+        self.assert_done(self.run_test(self.scene, "-o", "out"))
+        before = contents(self.folder / "out")
+        self.assert_refused(self.run_test(self.scene, "-o", "out"), "out", "exists", "--overwrite", "--resume")
+        self.assertEqual(contents(self.folder / "out"), before)
+        self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
+        self.assertEqual(contents(self.folder / "out")["history.csv"], before["history.csv"])
+
+    def test_empty_folder_and_slash(self):
+        (self.folder / "out").mkdir()
+        self.assert_done(self.run_test(self.scene, "-o", "out/"))
+        self.assertTrue((self.folder / "out/history.csv").exists())
+        self.assertFalse((self.folder / "out/specimens").exists())
+
+    def test_overwrite_of_something_else(self):
+        other = self.folder / "thesis"
+        other.mkdir()
+        (other / "chapter.tex").write_text("precious", encoding="utf-8")
+        self.assert_refused(self.run_test(self.scene, "-o", "thesis", "--overwrite"), "thesis", "not overwritten",
+                            "scene.toml")
+        self.assertEqual(contents(other), {"chapter.tex": b"precious"})
+
+    def test_resume_of_nothing(self):
+        self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
+        self.assertFalse((self.folder / "out").exists())
+        self.assert_done(self.run_test(self.scene, "-o", "out"))  # too short for a checkpoint
+        before = contents(self.folder / "out")
+        self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "nothing to resume")
+        self.assertEqual(contents(self.folder / "out"), before)
+
+    def test_resume_and_overwrite_exclude_each_other(self):
+        result = self.run_test(self.scene, "-o", "out", "--resume", "--overwrite")
+        self.assertEqual(result.returncode, 2)
+
+    def test_resume_with_another_scene(self):
+        every_256_steps = ("--set", "output.checkpoint=1e-9 min")
+        self.assert_done(self.run_test(self.scene, "-o", "out", *every_256_steps))
+        self.assertTrue((self.folder / "out/checkpoint/last.h5").exists())
+        before = contents(self.folder / "out")
+        for change in ("motion.damping=0.25", "specimen.pressure=100 kPa"):
+            result = self.run_test(self.scene, "-o", "out", "--resume", *every_256_steps, "--set", change)
+            self.assert_refused(result, "another scene", "out")
+        self.assertEqual(contents(self.folder / "out"), before)
+        self.assertEqual(len(list(self.cache.glob("*.h5"))), 1)  # nothing was prepared for the refused ones
+
+    def test_damaged_checkpoints(self):
+        every_256_steps = ("--set", "output.checkpoint=1e-9 min")
+        self.assert_done(self.run_test(self.scene, "-o", "out", *every_256_steps))
+        for checkpoint in (self.folder / "out/checkpoint").iterdir():
+            checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
+        before = contents(self.folder / "out")
+        self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume", *every_256_steps), "last.h5")
+        self.assertEqual(contents(self.folder / "out"), before)
+
+
+if __name__ == "__main__":
+    main()

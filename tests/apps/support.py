@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the command line tests share: a tiny scene, running the programs, comparing what they leave behind.
+
+Every test script takes the folder of the executables as its first argument.
+"""
+import contextlib
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+BIN = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
+
+TINY = """title = "tiny"
+[grading]
+grains = 200
+cloud_edge = "2.7 mm"
+[contact]
+young = "0.5 GPa"
+friction = "18 deg"
+rolling = {{ stiffness = 0.3, limit = 0.5 }}
+twisting = {{ stiffness = 0.3 }}
+[specimen]
+{specimen}
+[motion]
+{motion}
+{stages}
+[output]
+record_steps = 50
+{output}
+"""
+CYCLIC = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "40 kPa"\nmax_steps = {steps}\n'
+MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.02\nmax_steps = {steps}\n'
+REBALANCE = '[[stage]]\nkind = "rebalance"\nmax_steps = {steps}\n'
+
+
+def tiny_scene(specimen='preparation_friction = "10 deg"', motion='strain_rate = "2 1/s"', stages=None, output=""):
+    return TINY.format(specimen=specimen, motion=motion, stages=stages or CYCLIC.format(steps=2000), output=output)
+
+
+class AppTest(unittest.TestCase):
+    """A test with a folder of its own, in which the programs run. Prepared specimens are kept for the whole script."""
+
+    cache = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.cache = pathlib.Path(tempfile.mkdtemp(prefix="isostat_cache_"))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.cache)
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_app_"))
+        (self.folder / "specimens").symlink_to(self.cache)
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def command(self, program, *arguments):
+        return [str(BIN / program), *map(str, arguments)]
+
+    def run_app(self, program, *arguments):
+        return subprocess.run(self.command(program, *arguments), cwd=self.folder, capture_output=True, text=True,
+                              timeout=120, check=False)
+
+    def run_test(self, *arguments):
+        """element_test without figures, which are not the matter here."""
+        return self.run_app("element_test", *arguments, "--no-figures")
+
+    def assert_done(self, result):
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def assert_refused(self, result, *parts):
+        """Exit code 2, one `error:` line that holds all the parts, and nothing on stdout."""
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        message = result.stderr[result.stderr.find("error: "):]
+        self.assertTrue(message.startswith("error: "), result.stderr)
+        for part in parts:
+            self.assertIn(part, message)
+        self.assertEqual(result.stdout, "")
+
+    def run_and_stop(self, when, with_signal, *arguments):
+        """Starts element_test and sends a signal after so many seconds of its run; returns the exit code."""
+        with subprocess.Popen(self.command("element_test", *arguments, "--no-figures", "--quiet"), cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+            time.sleep(when)
+            with contextlib.suppress(ProcessLookupError):
+                process.send_signal(with_signal)
+            process.communicate(timeout=60)
+            return process.returncode
+
+    def assert_same_h5(self, one, other):
+        """Same items, same bytes in all datasets and attributes."""
+        with h5py.File(one) as a, h5py.File(other) as b:
+            def collect(file):
+                items = {}
+                file.visititems(lambda name, item: items.__setitem__(name, item))
+                items["/"] = file["/"]
+                return items
+            left, right = collect(a), collect(b)
+            self.assertEqual(left.keys(), right.keys())
+            for name, item in left.items():
+                twin = right[name]
+                self.assertEqual({k: np.asarray(v).tobytes() for k, v in item.attrs.items()},
+                                 {k: np.asarray(v).tobytes() for k, v in twin.attrs.items()}, name)
+                if isinstance(item, h5py.Dataset):
+                    self.assertEqual(item.shape, twin.shape, f"{one} {name}")
+                    self.assertEqual(item[()].tobytes(), twin[()].tobytes(), f"{one} {name}")
+
+    def assert_same_results(self, one, other):
+        """history.csv byte by byte, history.h5 and all snapshots bit by bit, the list of ParaView files."""
+        one, other = self.folder / one, self.folder / other
+        self.assertEqual((one / "history.csv").read_bytes(), (other / "history.csv").read_bytes())
+        self.assert_same_h5(one / "history.h5", other / "history.h5")
+        names = sorted(path.name for path in (one / "snapshots").iterdir())
+        self.assertGreater(len(names), 1)
+        self.assertEqual(names, sorted(path.name for path in (other / "snapshots").iterdir()))
+        for name in names:
+            self.assert_same_h5(one / "snapshots" / name, other / "snapshots" / name)
+        for name in ("grains.pvd", "force_chains.pvd"):
+            if (one / name).exists():
+                self.assertEqual((one / name).read_bytes(), (other / name).read_bytes())
+
+
+def contents(folder):
+    """All files below a folder with their bytes: to see that nothing has changed."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def main():
+    if BIN is None:
+        sys.exit("give the folder of the executables as first argument")
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    unittest.main(argv=sys.argv[:1] + sys.argv[1:])

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The states in which codes break: liquefied, very dense, reversed while liquid, no friction, nothing in contact. Each test
+// asserts what must come out, not only that it ran.
+#include "dem/drive/strain_path.hpp"
+#include "dem/error.hpp"
+#include "dem/measure/stress.hpp"
+#include "dem/measure/summary.hpp"
+#include "dem/motion/critical_step.hpp"
+#include "tests/support/specimens.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+/// Constant-volume shear through a list of axial strains at one rate; the time step is reviewed as a programme does.
+class Shear
+{
+public:
+  explicit Shear(const Snapshot &initial) : assembly(initial), path_{initial.box} { assembly.measure_energy = true; }
+
+  void to(double axial, double rate)
+  {
+    const double direction = axial > axial_ ? 1 : -1;
+    for (int k = 0; direction * (axial - axial_) > 0; ++k)
+      {
+        if (k % 500 == 0)
+          assembly.time_step =
+            0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
+        assembly.compute_forces();
+        least_p = std::min(least_p, invariants(assembly.wall_stress()).p);
+        axial_ += direction * rate * assembly.time_step;
+        assembly.move(path_.box(isochoric(axial_)));
+      }
+    assembly.compute_forces();
+  }
+
+  Micromechanics look() const { return micromechanics(assembly.snapshot()); }
+
+  Assembly assembly;
+  double least_p = 1e300;
+
+private:
+  StrainPath path_;
+  double axial_ = 0;
+};
+
+/// A specimen whose box has been opened by 0.2 % in volume, at rest: no contacts carry load, p' = 0.
+Snapshot loosened(const Snapshot &specimen, double volumetric)
+{
+  Snapshot s = specimen;
+  const double stretch = std::cbrt(1 + volumetric);
+  const Vec3 centre = s.box.centre();
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      s.grains.set_centre(i, centre + stretch * (s.grains.centre(i) - centre));
+      s.grains.set_linear_velocity(i, Vec3::Zero());
+      s.grains.set_angular_velocity(i, Vec3::Zero());
+    }
+  const Vec3 half = 0.5 * stretch * specimen.box.edges();
+  s.box = {centre - half, centre + half};
+  s.contacts.clear();
+  s.wall_contacts.clear();
+  return s;
+}
+
+TEST(HardCases, LiquidShearReversalAndResolidification)
+{
+  Shear shear(loosened(test::specimen(500, 10), 2e-3));
+  shear.to(0.002, 2);
+  Micromechanics m = shear.look();
+  EXPECT_LT(m.p_wall, 2e3);
+  EXPECT_LT(m.redundancy, 1) << "a liquid is hypostatic";
+  shear.to(-0.002, 2); // reversed while liquid
+  EXPECT_LT(shear.least_p, 200);
+  shear.to(0.06, 5); // enough strain for the network to form again
+  m = shear.look();
+  std::printf("after 6 %% strain: p' %.2f kPa, I_R %.3f, energy residual/work %.1e\n", m.p_wall / 1e3, m.redundancy,
+              shear.assembly.energy().residual() / shear.assembly.energy().boundary_work);
+  EXPECT_GT(m.p_wall, 5e3);
+  EXPECT_GT(m.redundancy, 1);
+  const EnergyBalance e = shear.assembly.energy();
+  EXPECT_LT(std::abs(e.residual()), 1e-3 * e.boundary_work);
+}
+
+TEST(HardCases, DenseConstantVolumeShearReachesMegapascals)
+{
+  Shear shear(test::specimen(500, 2));
+  shear.to(0.01, 2);
+  const Micromechanics m = shear.look();
+  std::printf("dense, 1 %% strain: p' %.2f MPa, q/p' %.3f\n", m.p_wall / 1e6, m.q_wall / m.p_wall);
+  EXPECT_GT(m.p_wall, 1e6);
+  EXPECT_GT(m.q_wall / m.p_wall, 0.8);
+  EXPECT_NEAR(m.p_wall / m.p_contact, 1, 0.02);
+  const EnergyBalance e = shear.assembly.energy();
+  EXPECT_LT(std::abs(e.residual()), 1e-3 * e.boundary_work);
+}
+
+TEST(HardCases, RattlersOnlyCarryNoStress)
+{
+  const Snapshot s = loosened(test::specimen(500, 10), 0.5);
+  Assembly a(s);
+  a.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), a.box(), a.contacts());
+  EXPECT_TRUE(std::isfinite(a.time_step));
+  for (int k = 0; k < 100; ++k)
+    {
+      a.compute_forces();
+      a.move(a.box());
+    }
+  a.compute_forces();
+  const Micromechanics m = micromechanics(a.snapshot());
+  EXPECT_EQ(m.p_wall, 0);
+  EXPECT_EQ(m.p_contact, 0);
+  EXPECT_EQ(m.redundancy, 0);
+  for (double value : m.row())
+    EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(HardCases, WithoutFrictionItLiquefiesAtOnce)
+{
+  Snapshot s = test::specimen(500, 2);
+  s.law.features.friction = false;
+  Shear shear(s);
+  shear.to(0.005, 1);
+  const Micromechanics m = shear.look();
+  std::printf("frictionless, 0.5 %% strain: p' %.2f kPa\n", m.p_wall / 1e3);
+  EXPECT_LT(m.p_wall, 0.05 * 200e3);
+  EXPECT_EQ(m.share_s + m.share_r + m.share_sr, 0);
+  const EnergyBalance e = shear.assembly.energy();
+  EXPECT_EQ(e.sliding + e.rolling, 0);
+}
+
+TEST(HardCases, TenTimesStifferGrains)
+{
+  Snapshot s = test::specimen(500, 10);
+  s.law.young *= 10;
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    s.grains.set_linear_velocity(i, Vec3::Zero());
+  const double soft = critical_step_bound(test::specimen(500, 10).law, s.grains, s.box, Assembly(test::specimen(500, 10)).contacts());
+  Shear shear(s); // the same overlaps now mean ten times the stress
+  shear.to(1e-4, 1);
+  EXPECT_NEAR(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1);
+  EXPECT_GT(shear.look().p_wall, 1e6);
+}
+
+TEST(HardCases, ANotANumberStopsTheRunAndNamesTheGrain)
+{
+  Snapshot s = test::specimen(500, 10);
+  std::vector<bool> touches(s.grains.n_grains(), false);
+  for (const Contact &c : s.contacts)
+    touches[c.first] = touches[c.second] = true;
+  const auto rattler = static_cast<std::size_t>(std::find(touches.begin(), touches.end(), false) - touches.begin());
+  ASSERT_LT(rattler, s.grains.n_grains());
+  s.grains.set_linear_velocity(rattler, Vec3(NAN, 0, 0));
+  Assembly a(s);
+  a.time_step = 4e-8;
+  a.compute_forces();
+  try
+    {
+      a.move(a.box());
+      FAIL() << "not-a-number went unnoticed";
+    }
+  catch (const RunFailure &failure)
+    {
+      const std::string id = "grain " + std::to_string(s.grains.id[rattler]) + " ";
+      EXPECT_NE(std::string(failure.what()).find(id), std::string::npos) << failure.what();
+    }
+}
+} // namespace
+} // namespace isostat
