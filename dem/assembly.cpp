@@ -19,6 +19,37 @@ double wall_overlap(const Packing &packing, const RigidBox &box, std::uint32_t i
   const double x = packing.position[4 * i + wall / 2];
   return packing.radius(i) - (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]);
 }
+/// visit(i, j, branch, force on j) for every touching pair.
+template <typename Visit>
+void for_closed_pairs(const LawParams &law, const Packing &packing, const ContactList &contacts, const Visit &visit)
+{
+  const bool shear = contacts.features().friction;
+  for (std::size_t p = 0; p < contacts.n_pairs(); ++p)
+    {
+      const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
+      const Vec3 branch = packing.centre(j) - packing.centre(i);
+      const double reach = packing.radius(i) + packing.radius(j), distance2 = branch.squaredNorm();
+      if (distance2 >= reach * reach)
+        continue;
+      const double distance = std::sqrt(distance2);
+      const double kn = contact_stiffness(law, packing.radius(i), packing.radius(j)).normal;
+      Vec3 force = branch * (kn * (reach - distance) / distance);
+      if (shear)
+        force += contacts.history(p).shear_force;
+      visit(i, j, branch, force);
+    }
+}
+
+/// visit(grain, wall, overlap, fn) for every grain that touches a wall.
+template <typename Visit>
+void for_closed_walls(const LawParams &law, const Packing &packing, const RigidBox &box, const VerletList &list,
+                      const Visit &visit)
+{
+  for (int wall = 0; wall < 6; ++wall)
+    for (std::uint32_t i : list.near_wall()[wall])
+      if (const double overlap = wall_overlap(packing, box, i, wall); overlap > 0)
+        visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
+}
 } // namespace
 
 Assembly::Assembly(const Snapshot &initial)
@@ -133,14 +164,18 @@ void Assembly::report_explosion(double speed_limit) const
 {
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
     {
-      const double speed = packing_.linear_velocity(i).norm();
-      if (!(speed < speed_limit))
+      const double speed = packing_.linear_velocity(i).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+      if (!std::isfinite(speed) || !packing_.angular_velocity(i).allFinite())
+        throw RunFailure(fmt::format("step {}: the velocity of grain {} is not a number. A force or the state it started "
+                                     "from was not one; look at the last checkpoint.",
+                                     step_, packing_.id[i]));
+      if (speed >= speed_limit)
         throw RunFailure(fmt::format(
           "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (1 % of the smallest radius per step of {:.3g} "
           "s): the packing explodes. Lower motion.time_step_safety, the strain rate or the fixed time step.",
           step_, packing_.id[i], speed, speed_limit, time_step));
     }
-  throw RunFailure(fmt::format("step {}: a grain component exceeds {:.3g} m/s", step_, speed_limit));
+  throw RunFailure(fmt::format("step {}: the packing explodes", step_)); // not reached: integrate() found one
 }
 
 Vec3 Assembly::wall_stress() const
@@ -154,28 +189,13 @@ Vec3 Assembly::wall_stress() const
 Vec3 Assembly::contact_stress() const
 {
   Vec3 sum = Vec3::Zero();
-  const bool shear = contacts_.features().friction;
-  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
-    {
-      const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
-      const Vec3 branch = packing_.centre(j) - packing_.centre(i);
-      const double reach = packing_.radius(i) + packing_.radius(j), distance2 = branch.squaredNorm();
-      if (distance2 >= reach * reach)
-        continue;
-      const double distance = std::sqrt(distance2);
-      const double kn = contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal;
-      Vec3 force = branch * (kn * (reach - distance) / distance);
-      if (shear)
-        force += contacts_.history(p).shear_force;
-      sum -= force.cwiseProduct(branch); // push-apart is compression: negative
-    }
-  for (int wall = 0; wall < 6; ++wall)
-    for (std::uint32_t i : verlet_.near_wall()[wall])
-      {
-        const double overlap = wall_overlap(packing_, box_, i, wall);
-        if (overlap > 0)
-          sum[wall / 2] -= wall_stiffness(law_, packing_.radius(i)) * overlap * (packing_.radius(i) - overlap);
-      }
+  for_closed_pairs(law_, packing_, contacts_,
+                   [&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
+                     sum -= force.cwiseProduct(branch); // push-apart is compression: negative
+                   });
+  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
+    sum[wall / 2] -= fn * (packing_.radius(i) - overlap);
+  });
   return sum / box_.volume();
 }
 
@@ -184,36 +204,25 @@ double Assembly::unbalanced_force_ratio() const
   std::vector<std::uint8_t> in_contact(packing_.n_grains(), 0);
   double force_sum = 0;
   std::size_t n_contacts = 0;
-  auto count = [&](double fn) {
+  for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t i, std::uint32_t j, const Vec3 &, const Vec3 &force) {
+    force_sum += force.norm();
+    ++n_contacts;
+    in_contact[i] = in_contact[j] = 1;
+  });
+  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int, double, double fn) {
     force_sum += fn;
     ++n_contacts;
-  };
-  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
-    {
-      const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
-      const double reach = packing_.radius(i) + packing_.radius(j);
-      const double distance = (packing_.centre(j) - packing_.centre(i)).norm();
-      if (distance >= reach)
-        continue;
-      count(contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal * (reach - distance));
-      in_contact[i] = in_contact[j] = 1;
-    }
-  for (int wall = 0; wall < 6; ++wall)
-    for (std::uint32_t i : verlet_.near_wall()[wall])
-      if (const double overlap = wall_overlap(packing_, box_, i, wall); overlap > 0)
-        {
-          count(wall_stiffness(law_, packing_.radius(i)) * overlap);
-          in_contact[i] = 1;
-        }
+    in_contact[i] = 1;
+  });
   double resultant = 0;
   std::size_t n_active = 0;
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
     if (in_contact[i])
       {
-        resultant += Vec3(&action_[8 * i]).norm();
+        resultant += (Vec3(&action_[8 * i]) - packing_.mass(i) * gravity).norm();
         ++n_active;
       }
-  return n_contacts && force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
+  return force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
 }
 
 std::array<double, Assembly::wall_memory_size> Assembly::wall_memory() const
@@ -270,11 +279,9 @@ Snapshot Assembly::snapshot() const
       contact.history.normal = branch / distance;
       s.contacts.push_back(contact);
     }
-  for (int wall = 0; wall < 6; ++wall)
-    for (std::uint32_t i : verlet_.near_wall()[wall])
-      if (const double overlap = wall_overlap(packing_, box_, i, wall); overlap > 0)
-        s.wall_contacts.push_back(
-          {i, static_cast<std::uint8_t>(wall), overlap, wall_stiffness(law_, packing_.radius(i)) * overlap});
+  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
+    s.wall_contacts.push_back({i, static_cast<std::uint8_t>(wall), overlap, fn});
+  });
   return s;
 }
 

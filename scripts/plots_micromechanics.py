@@ -58,7 +58,10 @@ class Analysis:
         last = len(self.rows["p"]) - 1
         self.chosen = {"first": 0}
         if last > 0:
-            self.chosen["least p'" if onset is None else "onset"] = int(np.argmin(self.rows["p"])) if onset is None else onset
+            if onset is None:
+                self.chosen["least p'"] = int(np.argmin(self.rows["p"]))
+            else:
+                self.chosen["onset"] = onset
             self.chosen["last"] = last
 
     def label(self, name):
@@ -119,7 +122,7 @@ def roses(analysis):
 
 
 def anisotropies(analysis):
-    """Left against strain; right against the number of the snapshot, which sets the cycles before liquefaction apart."""
+    """Left against strain; right against the number of the snapshot, which sets cycles before liquefaction apart."""
     rows = analysis.rows
     if len(rows["p"]) < 2:
         return None

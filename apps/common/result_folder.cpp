@@ -81,9 +81,10 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
 {
   write_replacing(folder / "scene.toml", to_toml(scene));
   const std::string text =
-    fmt::format("command           {}\nversion           {}\ncompiler          {}\ninstruction set   {}\nseed              "
+    fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen {}.{}.{}, fmt {}\ninstruction set   {}\nseed              "
                 "{}\nstarted           {:%Y-%m-%d %H:%M:%S} UTC\n",
-                command_line, ISOSTAT_VERSION, __VERSION__, instruction_set(), scene.grading.seed,
+                command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
+                EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, instruction_set(), scene.grading.seed,
                 fmt::gmtime(std::time(nullptr)));
   write_replacing(folder / "provenance.txt", text);
 }

@@ -27,7 +27,8 @@ void open_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// Makes a folder with those above it.     @throws InputError  it cannot be made, or not be written to
 void make_writable_folder(const std::filesystem::path &folder);
 
-/// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, instruction set, seed, time).
+/// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, instruction set, seed,
+/// time).
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
 /// Draws the figures of a results folder with a script of scripts/. @return a line for the summary; never fails a run

@@ -17,6 +17,7 @@ using Clock = std::chrono::steady_clock;
 namespace
 {
 constexpr double progress_seconds = 10;
+const std::string specimen_prefix = "specimen_";
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -82,8 +83,9 @@ bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &,
   return !stop_requested();
 }
 
-RunOutput::RunOutput(fs::path folder, const Scene &scene, bool quiet, const Checkpoint *resumed)
-  : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)),
+RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
+                     const Checkpoint *resumed)
+  : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
     recorder_(folder_, history_columns(scene.output.energy), counter(resumed, "rows")),
     grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
     chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
@@ -159,6 +161,8 @@ void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
   numbers["rows"] = static_cast<double>(recorder_.n_rows());
   numbers["snapshots"] = static_cast<double>(n_snapshots_);
   numbers["redundancy"] = redundancy_;
+  for (const auto &[name, value] : specimen_)
+    numbers[specimen_prefix + name] = value;
   write_checkpoint(folder_ / "checkpoint", checkpoint);
   last_checkpoint_ = Clock::now();
 }
@@ -173,6 +177,15 @@ void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state
   for (std::size_t k = 0; k < memory.size(); ++k)
     memory[k] = numbers.at(fmt::format("wall_{:02d}", k));
   assembly.set_wall_memory(memory);
+}
+
+std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint)
+{
+  std::map<std::string, double> specimen;
+  for (const auto &[name, value] : checkpoint.numbers)
+    if (name.starts_with(specimen_prefix))
+      specimen[name.substr(specimen_prefix.size())] = value;
+  return specimen;
 }
 
 double stage_fraction(const Stage &stage, const DriveState &state)

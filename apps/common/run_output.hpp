@@ -42,7 +42,9 @@ private:
 class RunOutput : public RunObserver
 {
 public:
-  RunOutput(std::filesystem::path folder, const Scene &scene, bool quiet, const Checkpoint *resumed = nullptr);
+  /// @param specimen  figures of the specimen; checkpoints keep them for the summary of a resumed run
+  RunOutput(std::filesystem::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
+            const Checkpoint *resumed = nullptr);
 
   void record(const Assembly &, const DriveState &, const Observation &, bool snapshot) override;
   void event(const std::string &line) override;
@@ -57,6 +59,7 @@ private:
   std::filesystem::path folder_;
   const Scene &scene_;
   std::string scene_text_;
+  std::map<std::string, double> specimen_;
   Recorder recorder_;
   PvdCollection grains_, chains_;
   std::uint64_t n_snapshots_ = 0;
@@ -67,6 +70,9 @@ private:
 
 /// Puts a checkpoint's numbers back into assembly and driver state.
 void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state);
+
+/// Figures of the specimen that a checkpoint keeps.
+std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint);
 
 /// How much of the present stage is done, 0..1; negative if it cannot be told.
 double stage_fraction(const Stage &stage, const DriveState &state);

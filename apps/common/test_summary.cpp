@@ -107,16 +107,16 @@ double energy_residual(const CsvTable &history)
 }
 } // namespace
 
-TestSummary summarise(const std::filesystem::path &folder, const Scene &scene, const Specimen &specimen,
-                      const DriveState &state, double seconds)
+TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
+                      const std::map<std::string, double> &specimen, const DriveState &state, double seconds)
 {
   TestSummary summary;
   const auto number = [&](const char *name, double otherwise) {
-    const auto found = specimen.numbers.find(name);
-    return found == specimen.numbers.end() ? otherwise : found->second;
+    const auto found = specimen.find(name);
+    return found == specimen.end() ? otherwise : found->second;
   };
   summary.title = scene.title;
-  summary.grains = specimen.state.grains.n_grains();
+  summary.grains = static_cast<std::size_t>(number("grains", 0));
   summary.void_ratio = number("void_ratio", 0);
   summary.relative_density = number("relative_density", 0);
   summary.preparation_friction = number("preparation_friction_deg", -1);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/drive/drive_state.hpp"
-#include "dem/io/specimen_file.hpp"
 #include "dem/scene.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace isostat
@@ -30,8 +30,9 @@ struct TestSummary
   std::size_t first_row = 0, onset_row = 0;
 };
 
-TestSummary summarise(const std::filesystem::path &folder, const Scene &scene, const Specimen &specimen,
-                      const DriveState &state, double seconds);
+/// @param specimen  its figures (Specimen::numbers)
+TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
+                      const std::map<std::string, double> &specimen, const DriveState &state, double seconds);
 
 /// For the terminal.
 std::string to_text(const TestSummary &summary, const Scene &scene);

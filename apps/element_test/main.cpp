@@ -39,36 +39,34 @@ struct Run
 {
   std::unique_ptr<Assembly> assembly;
   DriveState state;
+  std::map<std::string, double> specimen; ///< figures for the summary
   std::unique_ptr<Checkpoint> resumed;
 };
 
-/// The newest checkpoint; refused if it belongs to another scene.
-std::unique_ptr<Checkpoint> matching_checkpoint(const Scene &scene, const fs::path &folder)
+Run resume(const Scene &scene, const fs::path &folder)
 {
-  auto checkpoint = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
-  if (checkpoint->scene != to_toml(scene))
+  Run run;
+  run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
+  if (run.resumed->scene != to_toml(scene))
     throw InputError(fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
                                  "of --validate). Resume with the scene and --set values of the first run.",
                                  folder.string(), (folder / "scene.toml").string()));
-  return checkpoint;
+  run.assembly = std::make_unique<Assembly>(run.resumed->state);
+  restore(*run.resumed, *run.assembly, run.state);
+  run.specimen = specimen_numbers(*run.resumed);
+  return run;
 }
 
-Run start(const Scene &scene, const Specimen &specimen, std::unique_ptr<Checkpoint> resumed)
+Run start(const Scene &scene, const fs::path &folder, bool quiet)
 {
+  PreparationOutput preparation(quiet);
+  const fs::path cache = folder.parent_path() / scene.specimen.cache;
+  const Specimen specimen = obtain_specimen(scene, cache, preparation);
+  Snapshot initial = specimen.state;
+  initial.law = scene.contact;
   Run run;
-  run.resumed = std::move(resumed);
-  if (run.resumed)
-    {
-      run.assembly = std::make_unique<Assembly>(run.resumed->state);
-      restore(*run.resumed, *run.assembly, run.state);
-    }
-  else
-    {
-      Snapshot initial = specimen.state;
-      initial.law = scene.contact;
-      run.assembly = std::make_unique<Assembly>(initial);
-    }
-  run.assembly->measure_energy = scene.output.energy;
+  run.assembly = std::make_unique<Assembly>(initial);
+  run.specimen = specimen.numbers;
   return run;
 }
 
@@ -87,17 +85,13 @@ void run_test(const Options &options)
                         options.overwrite ? FolderUse::overwrite :
                                             FolderUse::fresh;
   check_result_folder(folder, use);
-  std::unique_ptr<Checkpoint> resumed = options.resume ? matching_checkpoint(scene, folder) : nullptr;
   catch_signals();
-  PreparationOutput preparation(options.quiet);
-  const fs::path cache = folder.has_parent_path() ? folder.parent_path() / scene.specimen.cache : fs::path(scene.specimen.cache);
-  const Specimen specimen = obtain_specimen(scene, cache, preparation);
-  open_result_folder(folder, use);
+  Run run = options.resume ? resume(scene, folder) : start(scene, folder, options.quiet);
+  run.assembly->measure_energy = scene.output.energy;
+  open_result_folder(folder, use); // only now that everything else went well may older results go
   if (!options.resume)
     write_provenance(folder, scene, options.command_line);
-
-  Run run = start(scene, specimen, std::move(resumed));
-  RunOutput output(folder, scene, options.quiet, run.resumed.get());
+  RunOutput output(folder, scene, run.specimen, options.quiet, run.resumed.get());
   const auto begin = std::chrono::steady_clock::now();
   RunOutcome outcome = RunOutcome::finished;
   try
@@ -116,7 +110,7 @@ void run_test(const Options &options)
     throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
   output.finish();
 
-  TestSummary summary = summarise(folder, scene, specimen, run.state, seconds);
+  TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
   write_replacing(folder / "summary.json", to_json(summary));
   const std::string text = to_text(summary, scene);

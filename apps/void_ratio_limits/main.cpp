@@ -168,6 +168,9 @@ Scene checked_scene(const Options &options)
 void find_limits(const Options &options)
 {
   const Scene scene = checked_scene(options);
+  Pluviation how = options.pluviation;
+  how.damping = scene.motion.damping;
+  check_pluviation(how);
   fs::path folder = options.output.empty() ? scene.output.folder : options.output;
   if (!folder.has_filename()) // a slash at the end
     folder = folder.parent_path();
@@ -185,8 +188,6 @@ void find_limits(const Options &options)
        {{"void_ratio", dense.void_ratio}, {"void_ratio_inside", dense.void_ratio_inside}});
 
   const auto begin = Clock::now();
-  Pluviation how = options.pluviation;
-  how.damping = scene.motion.damping;
   const Deposit loose = pluviate(cloud, scene.contact, how, observer);
   keep(folder / "loosest.h5", scene, loose.state,
        fmt::format("deposition under gravity, fall {:g}, damping {:g}, contact modulus {:g} Pa; the box is open above",

@@ -34,7 +34,7 @@ enum class RunOutcome
 /// A stage ends with walls at rest for one step. The time step follows the critical step of the closed contacts
 /// (DESIGN 4) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
 /// @throws RunFailure  a stage that cannot reach its target; an unstable fixed time step; an exploding packing
-/// tested: tests/regression/, tests/dem/drive/programme_test.cpp
+/// tested: tests/verification/programme_test.cpp, tests/hard/, tests/regression/
 RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output,
                          const std::vector<Stage> &stages, Assembly &assembly, DriveState &state,
                          RunObserver &observer);

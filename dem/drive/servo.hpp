@@ -13,7 +13,7 @@ namespace isostat
 /// @param controlled axes that follow; the others keep their edge
 /// @return box edges after this step, m
 /// @pre assembly.compute_forces()
-/// tested: tests/dem/drive/servo_test.cpp
+/// tested: tests/verification/programme_test.cpp (drained, constant p', prepared specimens)
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
                  DriveState &state);
 

@@ -69,7 +69,8 @@ MotionReport integrate_all(Packing &packing, double *action, double dt, double d
           hn::Store(hn::MulAdd(step, speed, hn::Load(d, x + half)), d, x + half);
           const V4 speed2 = hn::Mul(speed, speed);
           greatest = hn::Max(greatest, speed2);
-          sane = hn::And(sane, hn::Lt(speed2, limit2)); // false for not-a-number, too
+          // false for not-a-number, too; a spin only has to be a number
+          sane = hn::And(sane, hn::And(hn::Lt(speed2, limit2), hn::Eq(w_new, w_new)));
         }
     }
   MotionReport report;

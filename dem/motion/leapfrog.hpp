@@ -8,7 +8,7 @@ namespace isostat
 struct MotionReport
 {
   double greatest_speed = 0;   ///< m/s
-  bool exploded = false;       ///< a grain is not a number, or faster than the limit
+  bool exploded = false;       ///< a grain moves or spins at no number, or faster than the limit
   double damping_loss = 0;     ///< J, only where asked for
 };
 
@@ -18,7 +18,7 @@ struct MotionReport
 ///
 /// component by component, the same for torque and spin (DESIGN 3, Motion; damping acts on absolute velocity).
 /// @param action  [F 0 T 0] per grain, N and N m; zero afterwards      @param dt  s      @param damping  d [-], [0, 1)
-/// @param speed_limit  m/s; a faster grain is reported as exploded
+/// @param speed_limit  m/s; a grain with a faster velocity component is reported as exploded
 /// @param measure_damping  also sum the energy that damping takes, exact for this scheme: d |F| |v_mid| dt
 /// cost: 2 x 15 vector operations and 260 bytes of traffic per grain
 /// tested: tests/dem/motion/leapfrog_test.cpp

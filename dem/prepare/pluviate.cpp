@@ -14,19 +14,8 @@ namespace isostat
 {
 namespace
 {
-constexpr double g = 9.81, safety = 0.8, rest = 1e-5, expected_void_ratio = 0.8;
+constexpr double g = 9.81, safety = 0.5, rest = 1e-5, expected_void_ratio = 0.8;
 constexpr std::uint64_t review = 200, most_steps = 50'000'000;
-
-void check(const Pluviation &how)
-{
-  if (!(how.fall >= 1 && std::isfinite(how.fall)))
-    throw InputError(fmt::format("fall = {:g}; must be >= 1 because the cloud is stretched by it. Try 1.", how.fall));
-  if (!(how.damping >= 0 && how.damping < 1))
-    throw InputError(fmt::format("damping = {:g}; must be in [0, 1) because at 1 no grain would fall.", how.damping));
-  if (!(how.overlap_allowed > 0))
-    throw InputError(fmt::format(
-        "overlap_allowed = {:g}; must be > 0 because it chooses the contact modulus. Try 1e-3.", how.overlap_allowed));
-}
 
 /// The cloud stretched upwards, in a box of twice its height. Stretching all heights above the floor by one factor >= 1
 /// brings no two centres nearer to each other.
@@ -125,6 +114,17 @@ void report(const Snapshot &state, double d50, Deposit &deposit)
 }
 } // namespace
 
+void check_pluviation(const Pluviation &how)
+{
+  if (!(how.fall >= 1 && std::isfinite(how.fall)))
+    throw InputError(fmt::format("fall = {:g}; must be >= 1 because the cloud is stretched by it. Try 1.", how.fall));
+  if (!(how.damping >= 0 && how.damping < 1))
+    throw InputError(fmt::format("damping = {:g}; must be in [0, 1) because at 1 no grain would fall.", how.damping));
+  if (!(how.overlap_allowed > 0))
+    throw InputError(fmt::format(
+        "overlap_allowed = {:g}; must be > 0 because it chooses the contact modulus. Try 1e-3.", how.overlap_allowed));
+}
+
 double deposition_modulus(double density, double speed, double diameter, double overlap)
 {
   const double ratio = speed * diameter / overlap;
@@ -162,7 +162,7 @@ double void_ratio_inside(const Packing &packing, const RigidBox &inside)
 
 Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how, RunObserver &observer)
 {
-  check(how);
+  check_pluviation(how);
   Deposit deposit;
   const double d50 = cloud.packing.d50(), density = cloud.packing.density;
   deposit.fall_speed = fastest_impact(cloud, how);

@@ -14,6 +14,9 @@ struct Pluviation
   bool soften = true;            ///< false: the modulus of the law as it is
 };
 
+/// @throws InputError   fall < 1, damping outside [0, 1), overlap_allowed <= 0
+void check_pluviation(const Pluviation &how);
+
 /// What deposition under gravity gave.
 struct Deposit
 {
@@ -37,7 +40,7 @@ struct Deposit
 /// Under its own weight (some 50 Pa) a packing is rigid at any modulus in question, so contacts need only be stiff
 /// enough for the impacts: E = deposition_modulus(...), never more than the law's own. The time step gains E^-1/2.
 /// @param law   friction and rolling resistance of shearing
-/// @throws InputError   fall < 1, damping outside [0, 1), overlap_allowed <= 0
+/// @throws InputError   as check_pluviation
 /// @throws RunFailure   grains do not come to rest
 /// tested: tests/dem/prepare/pluviate_test.cpp
 Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how, RunObserver &observer);

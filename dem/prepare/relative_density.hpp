@@ -28,7 +28,7 @@ struct PreparedDensity
 /// @param target, tolerance  void ratios [-]
 /// @throws InputError when the target lies outside what the cloud gives between frictionless and 60 degrees; names both
 /// cost: 3 to 7 compressions
-/// tested: tests/dem/prepare/relative_density_test.cpp
+/// tested: tests/verification/programme_test.cpp
 PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &law, double target, double tolerance,
                                           const SpecimenSpec &specimen, RunObserver &observer);
 } // namespace isostat

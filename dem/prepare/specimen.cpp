@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/specimen.hpp"
 
+#include "dem/error.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/prepare/grading.hpp"
@@ -48,6 +49,17 @@ double target_void_ratio(const SpecimenSpec &spec)
   return spec.void_ratio ? *spec.void_ratio : void_ratio_at(*spec.relative_density, spec.e_min, spec.e_max);
 }
 
+/// The density was searched on the compressed packing; raising the friction and rebalancing must not have lost it.
+void check_density(const Scene &scene, double void_ratio)
+{
+  const SpecimenSpec &spec = scene.specimen;
+  const double missed = std::abs(void_ratio - target_void_ratio(spec)) / (spec.e_max - spec.e_min);
+  if (missed > spec.density_tolerance)
+    throw RunFailure(fmt::format("the prepared specimen has e = {:.4f}, D_r off by {:.4f} (specimen.density_tolerance {:g}): "
+                                 "it changed while it was rebalanced. Raise the tolerance or the number of grains.",
+                                 void_ratio, missed, spec.density_tolerance));
+}
+
 Specimen prepare(const Scene &scene, RunObserver &observer)
 {
   const SpecimenSpec &spec = scene.specimen;
@@ -75,6 +87,8 @@ Specimen prepare(const Scene &scene, RunObserver &observer)
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = specimen_recipe(scene);
   describe(scene, specimen);
+  if (!spec.preparation_friction)
+    check_density(scene, specimen.numbers["void_ratio"]);
   return specimen;
 }
 

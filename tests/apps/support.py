@@ -91,15 +91,22 @@ class AppTest(unittest.TestCase):
             self.assertIn(part, message)
         self.assertEqual(result.stdout, "")
 
-    def run_and_stop(self, when, with_signal, *arguments):
-        """Starts element_test and sends a signal after so many seconds of its run; returns the exit code."""
+    def run_and_stop(self, wait, with_signal, started_file, *arguments):
+        """Starts element_test and sends a signal `wait` seconds after it has written `started_file` (or found it there,
+        if it must not be newer: for a file that resuming leaves alone). Returns the exit code."""
+        begin = time.time()
         with subprocess.Popen(self.command("element_test", *arguments, "--no-figures", "--quiet"), cwd=self.folder,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
-            time.sleep(when)
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            path, newer = started_file
+            while process.poll() is None and time.time() < begin + 60:
+                with contextlib.suppress(FileNotFoundError):
+                    if path.stat().st_mtime >= begin or not newer:
+                        break
+                time.sleep(0.005)
+            time.sleep(wait)
             with contextlib.suppress(ProcessLookupError):
                 process.send_signal(with_signal)
-            process.communicate(timeout=60)
-            return process.returncode
+            return process.wait(timeout=60)
 
     def assert_same_h5(self, one, other):
         """Same items, same bytes in all datasets and attributes."""

@@ -98,7 +98,7 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
   EXPECT_THROW(pluviate(cloud, law, how, once), Interrupted);
   EXPECT_NEAR(once.speed / speed, 1, 1e-3);
   EXPECT_NEAR(once.fallen / std::sqrt(2 * (height - radius) / g), 1, 1e-3);
-  EXPECT_NEAR(once.greatest / wanted, 1, 0.01);
+  EXPECT_NEAR(once.greatest / wanted, 1, 0.06); // the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)
 }
 
 /// 500 grains of the paper's sand: seconds.

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs of element_test that are stopped, killed, resumed, or watched more or less closely go on to the same bits."""
+import pathlib
+import random
+import signal
+import time
+
+import h5py
+import numpy as np
+
+from support import AppTest, CYCLIC, MONOTONIC, REBALANCE, contents, main, tiny_scene
+
+STAGES = REBALANCE.format(steps=2500) + MONOTONIC.format(steps=6000) + CYCLIC.format(steps=20000)
+EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
+
+
+class Resume(AppTest):
+    def setUp(self):
+        super().setUp()
+        text = tiny_scene(stages=STAGES, output="energy = true", motion="rate_floor = \"0.5 1/s\"")
+        self.scene = self.write("scene.toml", text)
+        self.assert_done(self.run_test(self.scene, "-o", "prepare", "--set", "stage.0.max_steps=1", "--set",
+                                       "stage.1.max_steps=1", "--set", "stage.2.max_steps=1"))  # fills the cache
+
+    def whole(self, *more):
+        begin = time.monotonic()
+        self.assert_done(self.run_test(self.scene, "-o", "whole", *more))
+        return time.monotonic() - begin
+
+    def interrupt(self, with_signal, wanted_code, started_file, seconds, *more):
+        """Three stops at random moments, then the rest; the first must have hit a running test."""
+        moments = random.Random(20240229)
+        arguments, codes = [self.scene, "-o", "parts", *more], []
+        for _ in range(3):
+            wait = moments.uniform(0.02, 0.25) * seconds
+            codes.append(self.run_and_stop(wait, with_signal, started_file, *arguments))
+            if codes[-1] == 0:
+                break
+            self.assertEqual(codes[-1], wanted_code)
+            arguments = [self.scene, "-o", "parts", *more, "--resume"]
+        self.assertEqual(codes[0], wanted_code)
+        if codes[-1] != 0:
+            self.assert_done(self.run_test(*arguments))
+        self.assert_same_results("whole", "parts")
+
+    def test_sigterm(self):
+        started = (self.folder / "parts/provenance.txt", False)
+        self.interrupt(signal.SIGTERM, 130, started, self.whole())
+
+    def test_sigkill(self):
+        started = (self.folder / "parts/checkpoint/last.h5", True)
+        self.interrupt(signal.SIGKILL, -signal.SIGKILL, started, self.whole(*EVERY_256_STEPS), *EVERY_256_STEPS)
+
+    def test_sigkill_with_damaged_last_checkpoint(self):
+        seconds = self.whole(*EVERY_256_STEPS)
+        checkpoints = self.folder / "parts/checkpoint"
+        self.run_and_stop(0.2 * seconds, signal.SIGKILL, (checkpoints / "previous.h5", True), self.scene, "-o", "parts",
+                          *EVERY_256_STEPS)
+        for name in ("fresh.h5", "last.h5"):
+            if (checkpoints / name).exists():
+                (checkpoints / name).write_bytes((checkpoints / name).read_bytes()[:5000])
+        self.assert_done(self.run_test(self.scene, "-o", "parts", "--resume", *EVERY_256_STEPS))
+        self.assert_same_results("whole", "parts")
+
+    def test_resume_of_a_finished_run_changes_nothing(self):
+        # the last step of every stage is one of the 256th, so the last checkpoint is one of a stage that has ended
+        steps = [argument for stage, n in ((0, 512), (1, 1024), (2, 2048))
+                 for argument in ("--set", f"stage.{stage}.max_steps={n}")]
+        self.assert_done(self.run_test(self.scene, "-o", "out", *EVERY_256_STEPS, *steps))
+        before = contents(self.folder / "out")
+        self.assert_done(self.run_test(self.scene, "-o", "out", "--resume", *EVERY_256_STEPS, *steps))
+        after = contents(self.folder / "out")
+        self.assertEqual(before["history.csv"], after["history.csv"])
+        self.assertEqual(sorted(n for n in before if n.startswith("snapshots")),
+                         sorted(n for n in after if n.startswith("snapshots")))
+
+
+class Output(AppTest):
+    """Output never changes a trajectory."""
+
+    def history(self, name, *options):
+        scene = self.write("scene.toml", tiny_scene(stages=STAGES))
+        arguments = [argument for option in options for argument in ("--set", option)]
+        self.assert_done(self.run_test(scene, "-o", name, *arguments))
+        with h5py.File(self.folder / name / "history.h5") as file:
+            return {column: np.asarray(values) for column, values in file["history"].items()}
+
+    def assert_same_trajectory(self, one, other):
+        """All rows that both histories hold, by step: the recording itself may differ."""
+        shared, rows, twins = np.intersect1d(one["step"], other["step"], return_indices=True)
+        self.assertGreater(len(shared), 20)
+        for column in one.keys() & other.keys():
+            self.assertEqual(one[column][rows].tobytes(), other[column][twins].tobytes(), column)
+
+    def test_on_or_off(self):
+        full = self.history("full", "output.energy=true", "output.record_steps=10", "output.checkpoint=1e-9 min",
+                            "output.snapshots=strain", "output.snapshot_strain=1e-5")
+        self.assertIn("residual", full)
+        bare = self.history("bare", "output.snapshots=none", "output.paraview=false", "output.checkpoint=24 h")
+        self.assertEqual(sorted(p.name for p in (self.folder / "bare").iterdir()),
+                         ["history.csv", "history.h5", "provenance.txt", "scene.toml", "summary.json", "summary.txt"])
+        self.assertGreater(len(list(pathlib.Path(self.folder / "full/snapshots").iterdir())), 10)
+        self.assert_same_trajectory(full, bare)
+
+    def test_run_twice(self):
+        self.history("full")
+        self.history("parts")
+        self.assert_same_results("full", "parts")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program micromechanics: its tables against the history of the run and against each other, and its refusals."""
+import csv
+import re
+
+import h5py
+import numpy as np
+
+from support import AppTest, CYCLIC, contents, main, tiny_scene
+
+
+def read_table(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    names = [re.fullmatch(r"(\S+) \(([^()]+)\)", cell).group(1) for cell in rows[0]]  # every cell: name (unit)
+    return {name: np.array([float(row[k]) for row in rows[1:]]) for k, name in enumerate(names)}
+
+
+class Micromechanics(AppTest):
+    def setUp(self):
+        super().setUp()
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
+        self.assert_done(self.run_test(scene, "-o", "run"))
+
+    def test_tables(self):
+        result = self.run_app("micromechanics", "run", "--no-figures")
+        self.assert_done(result)
+        for word in ("first", "last", "I_R"):
+            self.assertIn(word, result.stdout)
+        folder = self.folder / "run/micromechanics"
+        table, history = read_table(folder / "micromechanics.csv"), read_table(self.folder / "run/history.csv")
+        n = len(list((self.folder / "run/snapshots").iterdir()))
+        self.assertEqual(len(table["step"]), n)
+        self.agree_with_history(table, history)
+        self.agree_among_each_other(table)
+        self.check_distributions(folder, table)
+
+    def agree_with_history(self, table, history):
+        rows = [int(np.flatnonzero(history["step"] == step)[0]) for step in table["step"]]
+        for name in ("p", "q", "IR", "Z", "Fyy", "a_c", "a_n", "a_t", "eps_y", "E_el", "unbalanced"):
+            np.testing.assert_allclose(table[name], history[name][rows], rtol=1e-8, atol=1e-12, err_msg=name)
+
+    def agree_among_each_other(self, table):
+        np.testing.assert_allclose(table["Fxx"] + table["Fyy"] + table["Fzz"], 1, rtol=1e-9)
+        for kind in ("F_strong_", "F_weak_"):
+            np.testing.assert_allclose(table[kind + "xx"] + table[kind + "yy"] + table[kind + "zz"], 1, rtol=1e-9)
+        for axis in "xyz":  # quasi-static: what the walls feel is what the contacts carry
+            np.testing.assert_allclose(table[f"S_{axis}{axis}_LW"], table[f"S_{axis}{axis}_wall"], rtol=0.02)
+        stored = sum(table["E_" + part] for part in ("normal", "shear", "rolling", "twisting", "wall"))
+        np.testing.assert_allclose(stored, table["E_el"], rtol=1e-9)
+        along_y = table["a_c_yy"] - 0.5 * (table["a_c_xx"] + table["a_c_zz"])
+        np.testing.assert_allclose(along_y, table["a_c"], atol=1e-8)
+        self.assertTrue((table["a_n_intensity"] >= np.abs(table["a_n"]) * (1 - 1e-9)).all())
+
+    def check_distributions(self, folder, table):
+        forces, roses = read_table(folder / "force_distribution.csv"), read_table(folder / "roses.csv")
+        grains = read_table(folder / "coordination.csv")
+        for k in range(len(table["step"])):
+            of_forces, of_roses = forces["snapshot"] == k, roses["snapshot"] == k
+            self.assertEqual(forces["normal"][of_forces].sum(), table["C"][k])
+            self.assertEqual(forces["tangential"][of_forces].sum(), table["C"][k])
+            self.assertEqual(of_roses.sum(), 36)
+            for plane in ("xy", "xz"):
+                density = roses[plane + "_density"][of_roses]
+                self.assertAlmostEqual(density.mean(), 1, places=8)
+                np.testing.assert_allclose(density[:18], density[18:], rtol=1e-8)  # n and -n
+            of_grains = grains["snapshot"] == k
+            self.assertEqual((grains["contacts"] * grains["grains"])[of_grains].sum(), 2 * table["C"][k])
+            self.assertEqual(grains["grains"][of_grains].sum(), 200)
+
+    def test_single_files(self):
+        snapshot = "run/snapshots/snapshot_0001.h5"
+        self.assert_done(self.run_app("micromechanics", snapshot, "--output", "one", "--no-figures"))
+        self.assertEqual(len(read_table(self.folder / "one/micromechanics.csv")["p"]), 1)
+        specimen = next(self.cache.glob("*.h5"))
+        self.assert_done(self.run_app("micromechanics", specimen, "--output", "specimen.csv"))
+        self.assertAlmostEqual(read_table(self.folder / "specimen.csv")["p"][0] / 200e3, 1, delta=0.01)
+
+    def test_figures(self):
+        self.assert_done(self.run_app("micromechanics", "run", "--output", "it's here"))
+        figures = sorted(path.name for path in (self.folder / "it's here/figures").iterdir())
+        self.assertEqual(figures, ["fig_anisotropies.png", "fig_force_distribution.png", "fig_roses.png"])
+
+    def test_run_is_not_touched(self):
+        before = contents(self.folder / "run")
+        self.assert_done(self.run_app("micromechanics", "run", "--output", "elsewhere", "--no-figures"))
+        self.assertEqual(contents(self.folder / "run"), before)
+
+    def refuse(self, *parts, results="run", output="out"):
+        self.assert_refused(self.run_app("micromechanics", results, "--output", output), *parts)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_nothing_there(self):
+        self.refuse("nowhere", "is not there", results="nowhere")
+
+    def test_no_snapshots(self):
+        (self.folder / "empty").mkdir()
+        self.refuse("empty", "no snapshots", "output.snapshots", results="empty")
+
+    def test_truncated(self):
+        path = self.folder / "run/snapshots/snapshot_0001.h5"
+        path.write_bytes(path.read_bytes()[:-3000])
+        self.refuse("snapshot_0001.h5", "truncated")
+
+    def test_foreign(self):
+        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "w") as file:
+            file["x"] = 1.0
+        self.refuse("snapshot_0001.h5", "isostat-snapshot")
+
+    def test_missing_dataset(self):
+        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "r+") as file:
+            del file["snapshot/contacts/normal_force"]
+        self.refuse("snapshot_0001.h5", "normal_force")
+
+    def test_output_below_a_file(self):
+        self.write("file", "precious")
+        self.refuse("file/out", "cannot be made", output="file/out")
+        self.assertEqual((self.folder / "file").read_text(encoding="utf-8"), "precious")
+
+
+if __name__ == "__main__":
+    main()
