@@ -85,7 +85,6 @@ void run_test(const Options &options)
                         options.overwrite ? FolderUse::overwrite :
                                             FolderUse::fresh;
   check_result_folder(folder, use);
-  catch_signals();
   Run run = options.resume ? resume(scene, folder) : start(scene, folder, options.quiet);
   run.assembly->measure_energy = scene.output.energy;
   open_result_folder(folder, use); // only now that everything else went well may older results go
@@ -157,4 +156,8 @@ int parse_and_run(int argc, char **argv)
 }
 } // namespace
 
-int main(int argc, char **argv) { return parse_and_run(argc, argv); }
+int main(int argc, char **argv)
+{
+  catch_signals();
+  return parse_and_run(argc, argv);
+}

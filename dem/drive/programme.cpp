@@ -45,7 +45,7 @@ public:
         record_if_due(seen, verdict);
         assembly_.move(finished ? assembly_.box() : next_box(seen));
         state_.steps_in_stage += 1;
-        if (!observer_.after_step(assembly_, state_, seen) && !finished)
+        if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
           return RunOutcome::interrupted;
       }
     return RunOutcome::finished;

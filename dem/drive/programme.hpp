@@ -17,7 +17,8 @@ public:
   /// A row of the history is due.   @param snapshot  a stored snapshot is due as well
   virtual void record(const Assembly &, const DriveState &, const Observation &, bool snapshot) = 0;
   virtual void event(const std::string &) {}
-  /// After every completed step: the state is what a checkpoint keeps.   @return false to stop here (interrupt)
+  /// After every completed step but the last of a stage: the state is what a checkpoint keeps.
+  /// @return false to stop here (interrupt)
   virtual bool after_step(const Assembly &, const DriveState &, const Observation &) { return true; }
 };
 

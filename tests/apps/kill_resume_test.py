@@ -37,7 +37,8 @@ class Resume(AppTest):
             codes.append(self.run_and_stop(wait, with_signal, started_file, *arguments))
             if codes[-1] == 0:
                 break
-            self.assertEqual(codes[-1], wanted_code)
+            # a signal may come before a resumed program has begun: then nothing was lost either
+            self.assertIn(codes[-1], {wanted_code, -with_signal})
             arguments = [self.scene, "-o", "parts", *more, "--resume"]
         self.assertEqual(codes[0], wanted_code)
         if codes[-1] != 0:
