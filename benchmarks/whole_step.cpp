@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// whole_step PACKING: time per step of constant-volume shear, everything included: contact forces, walls, integration, list
-// upkeep, wall stress and the driver's strain path.
+// whole_step PACKING: time per step of constant-volume shear, everything included: contact forces, walls, integration,
+// list upkeep, wall stress and the driver's strain path.
 //
 //   whole_step results/specimens/specimen-....h5 --rate 5 --time-step 4.8e-8 --steps 1500
 //   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
@@ -46,8 +46,8 @@ Snapshot load(const Options &options)
 
 void export_text(const Snapshot &s, const std::string &path)
 {
-  std::string text = fmt::format("# box {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", s.box.lower[0], s.box.upper[0],
-                                 s.box.lower[1], s.box.upper[1], s.box.lower[2], s.box.upper[2]);
+  std::string text = fmt::format("# box {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", s.box.lower[0],
+                                 s.box.upper[0], s.box.lower[1], s.box.upper[1], s.box.lower[2], s.box.upper[2]);
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
     {
       const Vec3 x = s.grains.centre(i);
@@ -90,11 +90,12 @@ void measure(const Options &options)
       const std::size_t contacts = n_contacts(assembly);
       const StressInvariants s = invariants(assembly.wall_stress());
       assembly.move(assembly.box());
-      fmt::print("isostat steps_per_s {:.1f} ms_per_step {:.4f} contacts {} ns_per_contact_step {:.2f} p_kPa {:.2f} q_kPa "
-                 "{:.2f} list_rebuilds {} instruction_set {}\n",
-                 options.steps / seconds, 1e3 * seconds / options.steps, contacts,
-                 1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3,
-                 assembly.verlet_list().n_rebuilds(), instruction_set());
+      fmt::print(
+          "isostat steps_per_s {:.1f} ms_per_step {:.4f} contacts {} ns_per_contact_step {:.2f} p_kPa {:.2f} q_kPa "
+          "{:.2f} list_rebuilds {} instruction_set {}\n",
+          options.steps / seconds, 1e3 * seconds / options.steps, contacts,
+          1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3,
+          assembly.verlet_list().n_rebuilds(), instruction_set());
     }
 }
 } // namespace

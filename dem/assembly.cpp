@@ -53,9 +53,9 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
 } // namespace
 
 Assembly::Assembly(const Snapshot &initial)
-  : packing_(initial.grains), box_(initial.box), law_(initial.law), contacts_(initial.law.active()),
-    action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0), solid_volume_(initial.grains.solid_volume()),
-    d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
+    : packing_(initial.grains), box_(initial.box), law_(initial.law), contacts_(initial.law.active()),
+      action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0), solid_volume_(initial.grains.solid_volume()),
+      d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
 {
   verlet_.update(packing_, box_, 0.0, contacts_);
   std::size_t pair = 0;
@@ -141,8 +141,7 @@ void Assembly::sum_dissipation()
 void Assembly::move(const RigidBox &next_box)
 {
   const double speed_limit = explosion_step * min_radius_ / time_step;
-  const MotionReport report =
-    integrate(packing_, action_.data(), time_step, damping, speed_limit, measure_energy);
+  const MotionReport report = integrate(packing_, action_.data(), time_step, damping, speed_limit, measure_energy);
   if (report.exploded)
     report_explosion(speed_limit);
   tally.damping += report.damping_loss;
@@ -166,14 +165,16 @@ void Assembly::report_explosion(double speed_limit) const
     {
       const double speed = packing_.linear_velocity(i).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
       if (!std::isfinite(speed) || !packing_.angular_velocity(i).allFinite())
-        throw RunFailure(fmt::format("step {}: the velocity of grain {} is not a number. A force or the state it started "
-                                     "from was not one; look at the last checkpoint.",
-                                     step_, packing_.id[i]));
+        throw RunFailure(
+            fmt::format("step {}: the velocity of grain {} is not a number. A force or the state it started "
+                        "from was not one; look at the last checkpoint.",
+                        step_, packing_.id[i]));
       if (speed >= speed_limit)
         throw RunFailure(fmt::format(
-          "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (1 % of the smallest radius per step of {:.3g} "
-          "s): the packing explodes. Lower motion.time_step_safety, the strain rate or the fixed time step.",
-          step_, packing_.id[i], speed, speed_limit, time_step));
+            "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (1 % of the smallest radius per step of "
+            "{:.3g} "
+            "s): the packing explodes. Lower motion.time_step_safety, the strain rate or the fixed time step.",
+            step_, packing_.id[i], speed, speed_limit, time_step));
     }
   throw RunFailure(fmt::format("step {}: the packing explodes", step_)); // not reached: integrate() found one
 }
@@ -189,10 +190,9 @@ Vec3 Assembly::wall_stress() const
 Vec3 Assembly::contact_stress() const
 {
   Vec3 sum = Vec3::Zero();
-  for_closed_pairs(law_, packing_, contacts_,
-                   [&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
-                     sum -= force.cwiseProduct(branch); // push-apart is compression: negative
-                   });
+  for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
+    sum -= force.cwiseProduct(branch); // push-apart is compression: negative
+  });
   for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
     sum[wall / 2] -= fn * (packing_.radius(i) - overlap);
   });

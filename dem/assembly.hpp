@@ -16,7 +16,8 @@ namespace isostat
 ///     move(next box)      forces         ->  v, x; walls go to `next box`
 ///
 /// Between the halves the state is consistent: a driver reads stresses there, a recorder takes snapshots. After move()
-/// the state is what a checkpoint keeps. Nothing here decides where walls go: that is the drivers' business (dem/drive).
+/// the state is what a checkpoint keeps. Nothing here decides where walls go: that is the drivers' business
+/// (dem/drive).
 class Assembly
 {
 public:
@@ -59,11 +60,12 @@ public:
   /// State to go on from, after move(): positions ahead of the contact history by one step.
   Snapshot checkpoint() const;
 
-  /// Balance since the first force evaluation with measure_energy; zero without it.  @pre compute_forces(), not yet moved
+  /// Balance since the first force evaluation with measure_energy; zero without it.  @pre compute_forces(), not yet
+  /// moved
   EnergyBalance energy() const;
 
-  double time_step = 0;       ///< s; set before the first step
-  double damping = 0.2;       ///< local damping [-]
+  double time_step = 0;        ///< s; set before the first step
+  double damping = 0.2;        ///< local damping [-]
   Vec3 gravity = Vec3::Zero(); ///< m/s2
   bool measure_energy = false;
   /// What energy() goes by, part of a checkpoint: sums of boundary work and dissipation since the start, and in kinetic

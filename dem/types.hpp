@@ -22,8 +22,8 @@ struct CacheAligned
   template <typename U>
   CacheAligned(const CacheAligned<U> &)
   {}
-  T *allocate(std::size_t n) { return static_cast<T *>(::operator new(n * sizeof(T), std::align_val_t{64})); }
-  void deallocate(T *p, std::size_t) { ::operator delete(p, std::align_val_t{64}); }
+  T *allocate(std::size_t n) { return static_cast<T *>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T *p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
   template <typename U>
   bool operator==(const CacheAligned<U> &) const
   {

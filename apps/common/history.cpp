@@ -10,10 +10,10 @@ namespace isostat
 {
 std::vector<RecordColumn> history_columns(bool energy)
 {
-  std::vector<RecordColumn> columns = {{"step", "-"},      {"time", "s"},       {"stage", "-"},
-                                       {"eps_x", "-"},     {"eps_y", "-"},      {"eps_z", "-"},
-                                       {"rate", "1/s"},    {"reversals", "-"},  {"liquefied", "-"},
-                                       {"time_step", "s"}, {"indicator", "-"},  {"inertial_number", "-"}};
+  std::vector<RecordColumn> columns = {{"step", "-"},      {"time", "s"},      {"stage", "-"},
+                                       {"eps_x", "-"},     {"eps_y", "-"},     {"eps_z", "-"},
+                                       {"rate", "1/s"},    {"reversals", "-"}, {"liquefied", "-"},
+                                       {"time_step", "s"}, {"indicator", "-"}, {"inertial_number", "-"}};
   for (const auto &[name, unit] : Micromechanics::columns())
     columns.push_back({name, unit});
   if (energy)
@@ -28,7 +28,8 @@ std::vector<double> history_row(const Assembly &assembly, const DriveState &stat
   Vec3 strain = Vec3::Zero(); // compression positive
   if (state.shear_started != 0)
     strain = (state.origin.edges().array() / assembly.box().edges().array()).log();
-  const double inertia = inertial_number(state.signed_rate, assembly.d50(), assembly.packing().density, std::max(seen.p, 1.0));
+  const double inertia =
+      inertial_number(state.signed_rate, assembly.d50(), assembly.packing().density, std::max(seen.p, 1.0));
   std::vector<double> row = {static_cast<double>(assembly.step()),
                              assembly.time(),
                              state.stage,

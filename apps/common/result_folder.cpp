@@ -31,8 +31,9 @@ void make_writable_folder(const fs::path &folder)
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder))
-    throw InputError(fmt::format("{}: the output folder cannot be made ({}). Give a path you may write to with --output.",
-                                 folder.string(), failure.message()));
+    throw InputError(
+        fmt::format("{}: the output folder cannot be made ({}). Give a path you may write to with --output.",
+                    folder.string(), failure.message()));
   try
     {
       write_replacing(folder / ".writable", "");
@@ -59,9 +60,10 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
   const bool used = exists && !fs::is_empty(folder);
   if (used && use == FolderUse::fresh)
-    throw InputError(fmt::format("{}: the results folder exists. Give --overwrite to replace it, --resume to go on from its "
-                                 "checkpoint, or --output for another one.",
-                                 folder.string()));
+    throw InputError(
+        fmt::format("{}: the results folder exists. Give --overwrite to replace it, --resume to go on from its "
+                    "checkpoint, or --output for another one.",
+                    folder.string()));
   if (used && !fs::exists(folder / "scene.toml"))
     throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
                                  "Choose another --output.",
@@ -80,19 +82,20 @@ void open_result_folder(const fs::path &folder, FolderUse use)
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)
 {
   write_replacing(folder / "scene.toml", to_toml(scene));
-  const std::string text =
-    fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen {}.{}.{}, fmt {}\ninstruction set   {}\nseed              "
-                "{}\nstarted           {:%Y-%m-%d %H:%M:%S} UTC\n",
-                command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
-                EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, instruction_set(), scene.grading.seed,
-                fmt::gmtime(std::time(nullptr)));
+  const std::string text = fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries    "
+                                       "     Eigen {}.{}.{}, fmt {}\ninstruction set   {}\nseed              "
+                                       "{}\nstarted           {:%Y-%m-%d %H:%M:%S} UTC\n",
+                                       command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
+                                       EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, instruction_set(),
+                                       scene.grading.seed, fmt::gmtime(std::time(nullptr)));
   write_replacing(folder / "provenance.txt", text);
 }
 
 std::string draw_figures(const fs::path &folder, const std::string &script)
 {
   const fs::path path = fs::path(ISOSTAT_SOURCE_DIR) / "scripts" / script, log = folder / "figures.log";
-  const std::string command = fmt::format("/usr/bin/python3 {} {} > {} 2>&1", quoted(path), quoted(folder), quoted(log));
+  const std::string command =
+      fmt::format("/usr/bin/python3 {} {} > {} 2>&1", quoted(path), quoted(folder), quoted(log));
   if (std::system(command.c_str()) != 0)
     return fmt::format("figures were not drawn; see {}", log.string());
   return fmt::format("figures in {}", (folder / "figures").string());

@@ -23,12 +23,15 @@ double seconds(Clock::duration d) { return std::chrono::duration<double>(d).coun
 
 std::string duration_text(double s)
 {
-  return s < 90 ? fmt::format("{:.0f} s", s) : s < 5400 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.1f} h", s / 3600);
+  return s < 90     ? fmt::format("{:.0f} s", s)
+         : s < 5400 ? fmt::format("{:.0f} min", s / 60)
+                    : fmt::format("{:.1f} h", s / 3600);
 }
 
 double &tally_field(EnergyBalance &t, int k)
 {
-  double *fields[] = {&t.boundary_work, &t.kinetic, &t.elastic, &t.sliding, &t.rolling, &t.released, &t.damping, &t.created};
+  double *fields[] = {&t.boundary_work, &t.kinetic,  &t.elastic, &t.sliding,
+                      &t.rolling,       &t.released, &t.damping, &t.created};
   return *fields[k];
 }
 constexpr int n_tally = 8;
@@ -62,11 +65,13 @@ void Progress::tick(const Assembly &assembly, const Observation &seen, double re
       first_fraction_ = fraction;
       start_ = now;
     }
-  std::string line = fmt::format("step {:>9}  {:>6.0f} steps/s", assembly.step(), (assembly.step() - last_step_) / since);
+  std::string line =
+      fmt::format("step {:>9}  {:>6.0f} steps/s", assembly.step(), (assembly.step() - last_step_) / since);
   if (fraction >= 0)
     line += fmt::format("  {:5.1f} %", 100 * fraction);
   if (fraction > first_fraction_ && first_fraction_ >= 0)
-    line += fmt::format("  ETA {}", duration_text(seconds(now - start_) * (1 - fraction) / (fraction - first_fraction_)));
+    line +=
+        fmt::format("  ETA {}", duration_text(seconds(now - start_) * (1 - fraction) / (fraction - first_fraction_)));
   const double e = void_ratio(assembly.box(), assembly.solid_volume());
   line += fmt::format("  eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa  e {:.4f}", 100 * seen.axial, seen.p / 1e3,
                       seen.q / 1e3, e);
@@ -85,11 +90,11 @@ bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &,
 
 RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
                      const Checkpoint *resumed)
-  : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
-    recorder_(folder_, history_columns(scene.output.energy), counter(resumed, "rows")),
-    grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
-    chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
-    n_snapshots_(counter(resumed, "snapshots")), progress_(quiet)
+    : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
+      recorder_(folder_, history_columns(scene.output.energy), counter(resumed, "rows")),
+      grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
+      chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
+      n_snapshots_(counter(resumed, "snapshots")), progress_(quiet)
 {
   if (resumed)
     redundancy_ = resumed->numbers.at("redundancy");
@@ -140,8 +145,7 @@ bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, co
       save_checkpoint(assembly, state);
       return false;
     }
-  if (assembly.step() % 256 == 0 &&
-      seconds(Clock::now() - last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+  if (assembly.step() % 256 == 0 && seconds(Clock::now() - last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
     save_checkpoint(assembly, state);
   return true;
 }
@@ -193,7 +197,8 @@ double stage_fraction(const Stage &stage, const DriveState &state)
   if (stage.kind == StageKind::undrained_cyclic)
     {
       if (state.liquefied != 0 && stage.reversals_after_liquefaction > 0)
-        return (state.reversals - state.liquefaction_reversals) / static_cast<double>(stage.reversals_after_liquefaction);
+        return (state.reversals - state.liquefaction_reversals) /
+               static_cast<double>(stage.reversals_after_liquefaction);
       return state.reversals / (2.0 * static_cast<double>(stage.max_cycles));
     }
   return is_shear(stage.kind) && stage.strain > 0 ? std::abs(state.axial) / stage.strain : -1;

@@ -27,8 +27,8 @@ enum Column
 
 CsvTable read_history(const std::filesystem::path &folder, bool energy)
 {
-  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)", "q (Pa)", "IR (-)", "indicator (-)",
-                                    "reversals (-)"};
+  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)",
+                                    "q (Pa)",    "IR (-)",    "indicator (-)", "reversals (-)"};
   if (energy)
     names.insert(names.end(), {"W_boundary (J)", "residual (J)"});
   return CsvTable(folder / "history.csv", names);
@@ -138,16 +138,17 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
 
 std::string to_text(const TestSummary &s, const Scene &scene)
 {
-  std::string text = fmt::format("\n{}\n  specimen                 {} grains, e = {:.4f}, D_r = {:.3f}", s.title, s.grains,
-                                 s.void_ratio, s.relative_density);
+  std::string text = fmt::format("\n{}\n  specimen                 {} grains, e = {:.4f}, D_r = {:.3f}", s.title,
+                                 s.grains, s.void_ratio, s.relative_density);
   if (s.preparation_friction >= 0)
     text += fmt::format(", prepared at {:.2f} deg", s.preparation_friction);
-  text += fmt::format("\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
-                      s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
-  const std::string rate = scene.motion.strain_rate ?
-                             fmt::format("fixed at {:g} 1/s", *scene.motion.strain_rate) :
-                             fmt::format("from tolerance {:g} (between {:g} and {:g} 1/s)", scene.motion.quasi_static_tolerance,
-                                         scene.motion.rate_floor, scene.motion.rate_ceiling);
+  text += fmt::format(
+      "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
+      s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
+  const std::string rate = scene.motion.strain_rate ? fmt::format("fixed at {:g} 1/s", *scene.motion.strain_rate)
+                                                    : fmt::format("from tolerance {:g} (between {:g} and {:g} 1/s)",
+                                                                  scene.motion.quasi_static_tolerance,
+                                                                  scene.motion.rate_floor, scene.motion.rate_ceiling);
   text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
                       s.greatest_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
@@ -155,14 +156,15 @@ std::string to_text(const TestSummary &s, const Scene &scene)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
                         2 * s.cycles_to_liquefaction);
   if (s.liquefied)
-    text += fmt::format("\n  strain before it         {:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
-                        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
-                        100 * s.strain_before, s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered,
-                        s.n_recoveries);
+    text += fmt::format(
+        "\n  strain before it         {:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
+        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
+        100 * s.strain_before, s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered, s.n_recoveries);
   else
     text += "\n  liquefaction             none";
   if (s.cyclic)
-    text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals, s.worst_overshoot / 1e3);
+    text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals,
+                        s.worst_overshoot / 1e3);
   text += fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, least p'    {:.2f} kPa, {:.3f} kPa",
                       100 * s.greatest_strain, s.greatest_q / 1e3, s.least_p / 1e3);
   if (s.energy_residual >= 0)
@@ -176,17 +178,18 @@ std::string to_json(const TestSummary &s)
   for (char c : s.title)
     title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   const std::string liquefaction =
-    s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
-                              "\"IR_least\": {:.10g}, \"IR_recovered\": {:.10g}}}",
-                              s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
-                              s.redundancy_least, s.redundancy_recovered) :
-                  "null";
-  return fmt::format("{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
-                     "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
-                     "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n  "
-                     "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
-                     title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds,
-                     s.first_row, s.reversals, s.worst_overshoot,
-                     s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null", liquefaction);
+      s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
+                                "\"IR_least\": {:.10g}, \"IR_recovered\": {:.10g}}}",
+                                s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
+                                s.redundancy_least, s.redundancy_recovered)
+                  : "null";
+  return fmt::format(
+      "{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
+      "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
+      "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n  "
+      "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
+      title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds, s.first_row,
+      s.reversals, s.worst_overshoot, s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null",
+      liquefaction);
 }
 } // namespace isostat

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, from a scene file to figures.
+// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, from a scene file to
+// figures.
 //
 //        | sigma_y              prepare   cloud -> isotropic compression -> friction -> balance   (or a file)
 //     ___v___                   programme stages of the scene: compress, friction, rebalance, undrained-monotonic,
@@ -31,7 +32,8 @@ struct Options
 {
   std::string scene, output, command_line;
   std::vector<std::string> set;
-  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false, no_figures = false;
+  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
+       no_figures = false;
 };
 
 /// The state of a run: fresh from the specimen, or from a checkpoint.
@@ -48,9 +50,10 @@ Run resume(const Scene &scene, const fs::path &folder)
   Run run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
   if (run.resumed->scene != to_toml(scene))
-    throw InputError(fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
-                                 "of --validate). Resume with the scene and --set values of the first run.",
-                                 folder.string(), (folder / "scene.toml").string()));
+    throw InputError(
+        fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
+                    "of --validate). Resume with the scene and --set values of the first run.",
+                    folder.string(), (folder / "scene.toml").string()));
   run.assembly = std::make_unique<Assembly>(run.resumed->state);
   restore(*run.resumed, *run.assembly, run.state);
   run.specimen = specimen_numbers(*run.resumed);
@@ -81,9 +84,9 @@ void run_test(const Options &options)
   fs::path folder = options.output.empty() ? scene.output.folder : options.output;
   if (!folder.has_filename()) // a slash at the end
     folder = folder.parent_path();
-  const FolderUse use = options.resume    ? FolderUse::resume :
-                        options.overwrite ? FolderUse::overwrite :
-                                            FolderUse::fresh;
+  const FolderUse use = options.resume      ? FolderUse::resume
+                        : options.overwrite ? FolderUse::overwrite
+                                            : FolderUse::fresh;
   check_result_folder(folder, use);
   Run run = options.resume ? resume(scene, folder) : start(scene, folder, options.quiet);
   run.assembly->measure_energy = scene.output.energy;
@@ -95,7 +98,8 @@ void run_test(const Options &options)
   RunOutcome outcome = RunOutcome::finished;
   try
     {
-      outcome = run_programme(scene.motion, scene.specimen, scene.output, scene.stages, *run.assembly, run.state, output);
+      outcome =
+          run_programme(scene.motion, scene.specimen, scene.output, scene.stages, *run.assembly, run.state, output);
     }
   catch (const RunFailure &failure)
     {

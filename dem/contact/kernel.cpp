@@ -106,9 +106,11 @@ struct Loop
             if constexpr (Energy)
               {
                 const V rr = hn::Mul(r1, r2);
-                const V ks = hn::Div(hn::Mul(rr, hn::Set(d, 2 * k.young * k.stiffness_ratio)), hn::Max(reach, hn::Set(d, 1e-300)));
+                const V ks = hn::Div(hn::Mul(rr, hn::Set(d, 2 * k.young * k.stiffness_ratio)),
+                                     hn::Max(reach, hn::Set(d, 1e-300)));
                 const Triple n0 = load3(h);
-                hn::StoreU(hn::IfThenElseZero(hn::Gt(dot(n0, n0), zero), forgotten(k, h, ks, rr)), d, k.released + pair);
+                hn::StoreU(hn::IfThenElseZero(hn::Gt(dot(n0, n0), zero), forgotten(k, h, ks, rr)), d,
+                           k.released + pair);
               }
             clear(h);
           }
@@ -138,7 +140,8 @@ struct Loop
             const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), zero));
             hn::StoreU(hn::IfThenElseZero(opened, forgotten(k, h, ks, rr)), d, k.released + pair);
           }
-        const Triple v1 = load_records(k.velocity, k.first + pair).xyz, v2 = load_records(k.velocity, k.second + pair).xyz;
+        const Triple v1 = load_records(k.velocity, k.first + pair).xyz,
+                     v2 = load_records(k.velocity, k.second + pair).xyz;
         const Triple w1 = load_records(k.spin, k.first + pair).xyz, w2 = load_records(k.spin, k.second + pair).xyz;
 
         const Triple tilt = cross(n0, n);
@@ -156,7 +159,8 @@ struct Loop
         const Mask sliding = return_to(fs, hn::Mul(fn, hn::Set(d, k.friction)));
         if constexpr (Energy)
           {
-            hn::StoreU(hn::IfThenElseZero(touching, plastic_work(fs_before, fs_trial, fs, ks, sliding)), d, k.sliding + pair);
+            hn::StoreU(hn::IfThenElseZero(touching, plastic_work(fs_before, fs_trial, fs, ks, sliding)), d,
+                       k.sliding + pair);
             // fs.(true slip rate - slip rate of the law) dt
             const Triple mid = scaled(plus(fs_before, fs), hn::Set(d, 0.5));
             const Triple arm_gap = scaled(cross(w_sum, n), hn::Mul(overlap, hn::Set(d, 0.5)));
@@ -283,10 +287,26 @@ void run(LawFeatures on, const KernelView &view)
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
                         DissipationPerPair *dissipation)
 {
-  KernelView view{packing.position.data(), packing.velocity.data(), packing.spin.data(), list.first(), list.second(),
-                  list.history_data(), action, list.occupied(), list.n_blocks(), law.young, law.stiffness_ratio,
-                  law.friction, law.rolling_stiffness, law.rolling_limit, law.twisting_stiffness, dt,
-                  nullptr, nullptr, nullptr, nullptr};
+  KernelView view{packing.position.data(),
+                  packing.velocity.data(),
+                  packing.spin.data(),
+                  list.first(),
+                  list.second(),
+                  list.history_data(),
+                  action,
+                  list.occupied(),
+                  list.n_blocks(),
+                  law.young,
+                  law.stiffness_ratio,
+                  law.friction,
+                  law.rolling_stiffness,
+                  law.rolling_limit,
+                  law.twisting_stiffness,
+                  dt,
+                  nullptr,
+                  nullptr,
+                  nullptr,
+                  nullptr};
   if (!dissipation)
     return run(list.features(), view);
   dissipation->resize(list.n_blocks() * ContactList::lanes);

@@ -7,8 +7,9 @@
 
 namespace isostat
 {
-/// Per pair and step, J: what sliding and rolling dissipated, what was forgotten when a contact opened, and what the law
-/// created because its lever arms in motion (R1, R2) are not those of its forces (R - u/2). Only scenes that ask for the energy balance have one; the loop without it carries neither the arrays nor the arithmetic.
+/// Per pair and step, J: what sliding and rolling dissipated, what was forgotten when a contact opened, and what the
+/// law created because its lever arms in motion (R1, R2) are not those of its forces (R - u/2). Only scenes that ask
+/// for the energy balance have one; the loop without it carries neither the arrays nor the arithmetic.
 struct DissipationPerPair
 {
   AlignedVector<double> sliding, rolling, released, created;

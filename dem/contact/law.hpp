@@ -38,10 +38,10 @@ struct LawParams
 /// which makes the first step of a contact free of rotation without a branch.
 struct ContactHistory
 {
-  Vec3 normal = Vec3::Zero();           ///< n' [-], from grain 1 to grain 2
-  Vec3 shear_force = Vec3::Zero();      ///< fs, N
-  Vec3 bending_moment = Vec3::Zero();   ///< mb, N m
-  Vec3 twisting_moment = Vec3::Zero();  ///< mt, N m
+  Vec3 normal = Vec3::Zero();          ///< n' [-], from grain 1 to grain 2
+  Vec3 shear_force = Vec3::Zero();     ///< fs, N
+  Vec3 bending_moment = Vec3::Zero();  ///< mb, N m
+  Vec3 twisting_moment = Vec3::Zero(); ///< mt, N m
 };
 
 /// Two grains as the law sees them.
@@ -54,8 +54,8 @@ struct ContactPair
 struct ContactForce
 {
   bool touching = false;
-  double overlap = 0, normal_force = 0; ///< u (m, positive in contact), fn (N)
-  Vec3 force = Vec3::Zero();            ///< F on grain 2; grain 1 receives -F
+  double overlap = 0, normal_force = 0;                ///< u (m, positive in contact), fn (N)
+  Vec3 force = Vec3::Zero();                           ///< F on grain 2; grain 1 receives -F
   Vec3 torque1 = Vec3::Zero(), torque2 = Vec3::Zero(); ///< N m, about the grain centres
 };
 

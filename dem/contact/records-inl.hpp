@@ -33,8 +33,14 @@ struct Quad
   V w;
 };
 
-HWY_INLINE Triple plus(const Triple &a, const Triple &b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE Triple minus(const Triple &a, const Triple &b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE Triple plus(const Triple &a, const Triple &b)
+{
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Triple minus(const Triple &a, const Triple &b)
+{
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
 HWY_INLINE Triple negated(const Triple &a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 HWY_INLINE Triple scaled(const Triple &a, V s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
 HWY_INLINE Triple masked(Mask m, const Triple &a)
@@ -123,13 +129,13 @@ HWY_INLINE void sub_add_lane(double *action, __m512d force_torque)
   _mm512_store_pd(action, _mm512_add_pd(_mm512_load_pd(action), _mm512_xor_pd(force_torque, sign)));
 }
 
-HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second, const Triple &force,
-                            const Triple &torque1, const Triple &torque2)
+HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second,
+                            const Triple &force, const Triple &torque1, const Triple &torque2)
 {
   const RecordPairs f = to_records(force), t1 = to_records(torque1), t2 = to_records(torque2);
   auto one = [&](int l) { return action + 8 * static_cast<std::size_t>(first[l]); };
   auto two = [&](int l) { return action + 8 * static_cast<std::size_t>(second[l]); };
-#define ISOSTAT_ADD_LANE(LANE, REG, HALVES)                               \
+#define ISOSTAT_ADD_LANE(LANE, REG, HALVES) \
   sub_add_lane(one(LANE), _mm512_shuffle_f64x2(f.REG, t1.REG, HALVES)); \
   add_lane(two(LANE), _mm512_shuffle_f64x2(f.REG, t2.REG, HALVES))
   ISOSTAT_ADD_LANE(0, r02, 0x44);
@@ -169,13 +175,14 @@ HWY_INLINE RecordPairs to_records(const Triple &a)
            _mm256_permute2f128_pd(xy_even, z_even, 0x31), _mm256_permute2f128_pd(xy_odd, z_odd, 0x31)}};
 }
 
-HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second, const Triple &force,
-                            const Triple &torque1, const Triple &torque2)
+HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second,
+                            const Triple &force, const Triple &torque1, const Triple &torque2)
 {
   const RecordPairs f = to_records(force), t1 = to_records(torque1), t2 = to_records(torque2);
   for (int l = 0; l < 4; ++l)
     {
-      double *one = action + 8 * static_cast<std::size_t>(first[l]), *two = action + 8 * static_cast<std::size_t>(second[l]);
+      double *one = action + 8 * static_cast<std::size_t>(first[l]),
+             *two = action + 8 * static_cast<std::size_t>(second[l]);
       _mm256_store_pd(one, _mm256_sub_pd(_mm256_load_pd(one), f.r[l]));
       _mm256_store_pd(one + 4, _mm256_add_pd(_mm256_load_pd(one + 4), t1.r[l]));
       _mm256_store_pd(two, _mm256_add_pd(_mm256_load_pd(two), f.r[l]));
@@ -193,17 +200,17 @@ HWY_INLINE Quad load_records(const double *records, const std::uint32_t *index)
   return {{hn::Load(D(), lanes[0]), hn::Load(D(), lanes[1]), hn::Load(D(), lanes[2])}, hn::Load(D(), lanes[3])};
 }
 
-HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second, const Triple &force,
-                            const Triple &torque1, const Triple &torque2)
+HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second,
+                            const Triple &force, const Triple &torque1, const Triple &torque2)
 {
   HWY_ALIGN double lanes[9][hn::MaxLanes(D())];
-  const V components[9] = {force.x,   force.y,   force.z,   torque1.x, torque1.y,
-                           torque1.z, torque2.x, torque2.y, torque2.z};
+  const V components[9] = {force.x, force.y, force.z, torque1.x, torque1.y, torque1.z, torque2.x, torque2.y, torque2.z};
   for (int c = 0; c < 9; ++c)
     hn::Store(components[c], D(), lanes[c]);
   for (std::size_t l = 0; l < hn::Lanes(D()); ++l)
     {
-      double *one = action + 8 * static_cast<std::size_t>(first[l]), *two = action + 8 * static_cast<std::size_t>(second[l]);
+      double *one = action + 8 * static_cast<std::size_t>(first[l]),
+             *two = action + 8 * static_cast<std::size_t>(second[l]);
       for (int c = 0; c < 3; ++c)
         {
           one[c] -= lanes[c][l];
@@ -224,7 +231,8 @@ HWY_INLINE void add_forces(double *action, const std::uint32_t *first, const std
   hn::Store(force.z, D(), lanes[2]);
   for (std::size_t l = 0; l < hn::Lanes(D()); ++l)
     {
-      double *one = action + 8 * static_cast<std::size_t>(first[l]), *two = action + 8 * static_cast<std::size_t>(second[l]);
+      double *one = action + 8 * static_cast<std::size_t>(first[l]),
+             *two = action + 8 * static_cast<std::size_t>(second[l]);
       for (int c = 0; c < 3; ++c)
         {
           one[c] -= lanes[c][l];

@@ -16,9 +16,9 @@ struct DriveState
   double shear_started = 0; ///< 1 once a shear stage has set p0 and the origin of strain
 
   // strain path of the present stage
-  RigidBox reference, origin; ///< box at the start of this stage; at the start of the first shear stage
-  double axial = 0;           ///< axial logarithmic compression since `reference` [-]
-  double p0 = 0;              ///< mean effective stress at the start of the first shear stage, Pa
+  RigidBox reference, origin;         ///< box at the start of this stage; at the start of the first shear stage
+  double axial = 0;                   ///< axial logarithmic compression since `reference` [-]
+  double p0 = 0;                      ///< mean effective stress at the start of the first shear stage, Pa
   Vec3 lateral_target = Vec3::Zero(); ///< lateral stresses kept by a drained stage, Pa
 
   // rate
@@ -51,7 +51,8 @@ struct DriveState
     vector(f, "reference_lower", reference.lower), vector(f, "reference_upper", reference.upper);
     vector(f, "origin_lower", origin.lower), vector(f, "origin_upper", origin.upper);
     f("axial", axial), f("p0", p0), vector(f, "lateral_target", lateral_target);
-    f("rate", rate), f("time_step", time_step), f("signed_rate", signed_rate), f("direction", direction), f("indicator", indicator);
+    f("rate", rate), f("time_step", time_step), f("signed_rate", signed_rate), f("direction", direction),
+        f("indicator", indicator);
     f("slope", slope), f("slope_q", slope_q), f("slope_axial", slope_axial);
     vector(f, "servo_step", servo_step), f("balanced_checks", balanced_checks);
     f("reversals", reversals), f("worst_overshoot", worst_overshoot), f("liquefied", liquefied);

@@ -24,8 +24,8 @@ class StageRunner
 public:
   StageRunner(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output, const Stage &stage,
               Assembly &assembly, DriveState &state, RunObserver &observer)
-    : motion_(motion), specimen_(specimen), output_(output), stage_(stage), assembly_(assembly), state_(state),
-      observer_(observer), rate_control_(motion, stage.strain_rate)
+      : motion_(motion), specimen_(specimen), output_(output), stage_(stage), assembly_(assembly), state_(state),
+        observer_(observer), rate_control_(motion, stage.strain_rate)
   {}
 
   RunOutcome run()
@@ -111,16 +111,13 @@ private:
     const bool balanced = on_target && assembly_.unbalanced_force_ratio() < stage_.balance;
     state_.balanced_checks = balanced ? state_.balanced_checks + 1 : 0;
     if (steps > 20'000'000)
-      throw RunFailure(fmt::format("step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, wanted {:.3g})",
-                                   assembly_.step(), to_string(stage_.kind), steps, assembly_.unbalanced_force_ratio(),
-                                   stage_.balance));
+      throw RunFailure(fmt::format(
+          "step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, wanted {:.3g})", assembly_.step(),
+          to_string(stage_.kind), steps, assembly_.unbalanced_force_ratio(), stage_.balance));
     return state_.balanced_checks >= 2;
   }
 
-  Vec3 target() const
-  {
-    return Vec3::Constant(stage_.pressure > 0 ? stage_.pressure : specimen_.pressure);
-  }
+  Vec3 target() const { return Vec3::Constant(stage_.pressure > 0 ? stage_.pressure : specimen_.pressure); }
 
   RigidBox next_box(const Observation &seen)
   {
@@ -172,9 +169,10 @@ private:
                      since >= static_cast<double>(output_.record_steps);
     if (!due)
       return;
-    const bool by_strain = output_.snapshots == "strain" &&
-                           std::abs(seen.axial - state_.snapshot_strain) >= output_.snapshot_strain;
-    const bool snapshot = is_shear(stage_.kind) && output_.snapshots != "none" && (edge || verdict.notable || by_strain);
+    const bool by_strain =
+        output_.snapshots == "strain" && std::abs(seen.axial - state_.snapshot_strain) >= output_.snapshot_strain;
+    const bool snapshot =
+        is_shear(stage_.kind) && output_.snapshots != "none" && (edge || verdict.notable || by_strain);
     if (snapshot)
       state_.snapshot_strain = seen.axial;
     state_.recorded_p = seen.p;
@@ -196,8 +194,7 @@ private:
 } // namespace
 
 RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output,
-                         const std::vector<Stage> &stages, Assembly &assembly, DriveState &state,
-                         RunObserver &observer)
+                         const std::vector<Stage> &stages, Assembly &assembly, DriveState &state, RunObserver &observer)
 {
   while (state.stage < static_cast<double>(stages.size()))
     {
@@ -227,22 +224,22 @@ std::string to_string(StageKind kind)
 {
   switch (kind)
     {
-      case StageKind::compress:
-        return "compress";
-      case StageKind::friction:
-        return "friction";
-      case StageKind::rebalance:
-        return "rebalance";
-      case StageKind::undrained_monotonic:
-        return "undrained-monotonic";
-      case StageKind::undrained_cyclic:
-        return "undrained-cyclic";
-      case StageKind::drained:
-        return "drained";
-      case StageKind::constant_p:
-        return "constant-p";
-      case StageKind::hold:
-        return "hold";
+    case StageKind::compress:
+      return "compress";
+    case StageKind::friction:
+      return "friction";
+    case StageKind::rebalance:
+      return "rebalance";
+    case StageKind::undrained_monotonic:
+      return "undrained-monotonic";
+    case StageKind::undrained_cyclic:
+      return "undrained-cyclic";
+    case StageKind::drained:
+      return "drained";
+    case StageKind::constant_p:
+      return "constant-p";
+    case StageKind::hold:
+      return "hold";
     }
   return "?";
 }

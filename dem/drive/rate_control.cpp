@@ -8,8 +8,8 @@
 namespace isostat
 {
 RateControl::RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate)
-  : fixed_(stage_rate ? stage_rate : motion.strain_rate), tolerance_(motion.quasi_static_tolerance),
-    floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
+    : fixed_(stage_rate ? stage_rate : motion.strain_rate), tolerance_(motion.quasi_static_tolerance),
+      floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
 {}
 
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
@@ -17,8 +17,8 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
   const double p_r = std::max(mean_stress, 0.05 * p0);
   const double inertia = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density, p_r);
   const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
-  return std::max({inertia, difference.cwiseAbs().maxCoeff() / p_r,
-                   assembly.unbalanced_force_ratio() * mean_stress / p_r});
+  return std::max(
+      {inertia, difference.cwiseAbs().maxCoeff() / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
 void RateControl::update(const Assembly &assembly, double mean_stress, DriveState &state) const
@@ -46,10 +46,7 @@ double next_rate(const DriveState &state, double q, double q_limit, double ramp_
   return state.direction * std::min(std::abs(next), braked);
 }
 
-double ramp_steps(const Assembly &assembly)
-{
-  return 10 * assembly.box().edges().maxCoeff() / assembly.d50();
-}
+double ramp_steps(const Assembly &assembly) { return 10 * assembly.box().edges().maxCoeff() / assembly.d50(); }
 
 void update_slope(DriveState &state, double q)
 {

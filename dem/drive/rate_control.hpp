@@ -10,10 +10,10 @@ namespace isostat
 ///
 /// The indicator is what inertia adds to a quasi-static answer, relative to the stress at hand:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0),
-/// U the unbalanced-force ratio and I = eps_dot d50 sqrt(rho/p_r) the inertial number; the factor 10 makes I = 1e-3 as bad
-/// as a 1 % imbalance. Below 5 % of p0 errors are thus judged against 5 % of p0: in the liquefied state stresses vanish,
-/// and with them what a relative error could mean. eta is continuous in p': a jump there would make p' linger at it.
-/// Every 50 steps
+/// U the unbalanced-force ratio and I = eps_dot d50 sqrt(rho/p_r) the inertial number; the factor 10 makes I = 1e-3 as
+/// bad as a 1 % imbalance. Below 5 % of p0 errors are thus judged against 5 % of p0: in the liquefied state stresses
+/// vanish, and with them what a relative error could mean. eta is continuous in p': a jump there would make p' linger
+/// at it. Every 50 steps
 ///     rate <- rate clamp(sqrt(tolerance/eta), 0.7, 1.2)   within [floor, ceiling].
 class RateControl
 {

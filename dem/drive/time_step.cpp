@@ -34,9 +34,10 @@ void update_time_step(const MotionSpec &motion, bool shearing, Assembly &assembl
     return;
   if (motion.time_step)
     check_fixed_step(*motion.time_step, assembly);
-  state.time_step = motion.time_step ? *motion.time_step :
-                                       motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
-                                                                                     assembly.box(), assembly.contacts());
+  state.time_step = motion.time_step
+                        ? *motion.time_step
+                        : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
+                                                                        assembly.box(), assembly.contacts());
   assembly.time_step = state.time_step;
 }
 } // namespace isostat

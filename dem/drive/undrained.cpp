@@ -20,8 +20,9 @@ void observe_liquefaction(const Stage &stage, const Observation &seen, DriveStat
   state.liquefaction_reversals = state.reversals;
   state.liquefaction_strain = seen.axial;
   verdict.notable = true;
-  verdict.event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {:g} reversals, axial strain {:.4g} %",
-                              stage.liquefaction_ratio, seen.step, state.reversals, 100 * seen.axial);
+  verdict.event =
+      fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {:g} reversals, axial strain {:.4g} %",
+                  stage.liquefaction_ratio, seen.step, state.reversals, 100 * seen.axial);
 }
 
 void turn(const Stage &stage, const Observation &seen, DriveState &state, Verdict &verdict)
@@ -34,8 +35,8 @@ void turn(const Stage &stage, const Observation &seen, DriveState &state, Verdic
   state.slope_q = seen.q;
   state.slope_axial = state.axial;
   verdict.notable = true;
-  verdict.event = fmt::format("reversal {:g} at step {}: axial strain {:.4g} %, p' {:.2f} kPa, q {:.2f} kPa", state.reversals,
-                              seen.step, 100 * seen.axial, seen.p / 1e3, seen.q / 1e3);
+  verdict.event = fmt::format("reversal {:g} at step {}: axial strain {:.4g} %, p' {:.2f} kPa, q {:.2f} kPa",
+                              state.reversals, seen.step, 100 * seen.axial, seen.p / 1e3, seen.q / 1e3);
 }
 } // namespace
 
@@ -51,8 +52,8 @@ Verdict observe_undrained(const Stage &stage, const Observation &seen, DriveStat
   if (state.direction * seen.q >= stage.deviator_amplitude)
     turn(stage, seen, state, verdict);
   const bool enough_after =
-    state.liquefied != 0 &&
-    state.reversals >= state.liquefaction_reversals + static_cast<double>(stage.reversals_after_liquefaction);
+      state.liquefied != 0 &&
+      state.reversals >= state.liquefaction_reversals + static_cast<double>(stage.reversals_after_liquefaction);
   verdict.finished = enough_after || state.reversals >= 2.0 * static_cast<double>(stage.max_cycles) ||
                      std::abs(seen.axial) >= stage.max_strain;
   return verdict;

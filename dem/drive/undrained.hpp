@@ -11,8 +11,8 @@ namespace isostat
 /// What a driver sees of the specimen between force evaluation and motion. Soil convention, compression positive.
 struct Observation
 {
-  double p, q;       ///< of the walls, Pa
-  double axial;      ///< logarithmic strain since the start of shearing [-]
+  double p, q;  ///< of the walls, Pa
+  double axial; ///< logarithmic strain since the start of shearing [-]
   std::uint64_t step;
 };
 

@@ -19,12 +19,14 @@ Checkpoint read_file(const std::filesystem::path &path)
   const hdf5::File file = hdf5::File::open(path);
   const hdf5::Group root = file.root();
   if (!root.has_attribute("format") || root.attribute<std::string>("format") != format_name)
-    throw InputError(fmt::format("{}: not a checkpoint of Isostat (no attribute format = \"{}\")", path.string(), format_name));
+    throw InputError(
+        fmt::format("{}: not a checkpoint of Isostat (no attribute format = \"{}\")", path.string(), format_name));
   const auto version = root.attribute<std::uint64_t>("schema_version");
   if (version != schema_version)
-    throw InputError(fmt::format("{}: checkpoint schema {} was written by another version; this one reads {}. Finish the "
-                                 "run with the version that began it.",
-                                 path.string(), version, schema_version));
+    throw InputError(
+        fmt::format("{}: checkpoint schema {} was written by another version; this one reads {}. Finish the "
+                    "run with the version that began it.",
+                    path.string(), version, schema_version));
   Checkpoint checkpoint;
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state = read_snapshot(root.group("state"));

@@ -17,8 +17,8 @@ struct Checkpoint
   std::string scene; ///< the resolved scene; a resumed run must have the same
 };
 
-/// Writes folder/last.h5 aside and renames it; what was last becomes folder/previous.h5, so that two are kept and one is
-/// whole at any moment. Throws RunFailure (disk full, not writable): the older ones survive.
+/// Writes folder/last.h5 aside and renames it; what was last becomes folder/previous.h5, so that two are kept and one
+/// is whole at any moment. Throws RunFailure (disk full, not writable): the older ones survive.
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint);
 
 /// The newest readable checkpoint of a folder. A damaged last.h5 gives way to previous.h5.

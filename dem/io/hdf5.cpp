@@ -43,8 +43,8 @@ struct FileState
 
 namespace
 {
-/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit crashes on a file
-/// that could not be closed because the disk was full; files are closed here, so it is not needed.
+/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit crashes on a
+/// file that could not be closed because the disk was full; files are closed here, so it is not needed.
 void silence()
 {
   [[maybe_unused]] static const bool once = [] {

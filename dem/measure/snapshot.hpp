@@ -37,6 +37,6 @@ struct Snapshot
   std::vector<WallContact> wall_contacts; ///< sorted by (wall, grain)
   double time = 0;                        ///< s
   std::uint64_t step = 0;
-  Vec3 strain = Vec3::Zero();             ///< logarithmic, along x, y, z, tension positive; 0 at the start of shearing
+  Vec3 strain = Vec3::Zero(); ///< logarithmic, along x, y, z, tension positive; 0 at the start of shearing
 };
 } // namespace isostat

@@ -12,15 +12,17 @@ namespace isostat
 /// contact is an elastic element between two bodies, and (a + b)^2 <= (1 + t) a^2 + (1 + 1/t) b^2 for any t > 0 gives
 ///     v'Kv <= sum_i v_i' W_i v_i,   W_i = sum over contacts (1 + lambda_j/lambda_i) D_ic,
 /// D_ic the 6x6 diagonal block of contact c at grain i and lambda_i = lambda_max(M_i^-1/2 D_i M_i^-1/2): a light grain
-/// among heavy ones counts little more than alone. So omega_max^2 <= max_i lambda_max(M_i^-1/2 W_i M_i^-1/2). Walls do not
-/// move freely and count once. lambda_max is bounded from above by |B^8|_F^(1/8), which exceeds it by at most 12 %. Grains
-/// with few contacts count as if they had three.
+/// among heavy ones counts little more than alone. So omega_max^2 <= max_i lambda_max(M_i^-1/2 W_i M_i^-1/2). Walls do
+/// not move freely and count once. lambda_max is bounded from above by |B^8|_F^(1/8), which exceeds it by at most 12 %.
+/// The step is never above that of two smallest grains which collide while each is held from behind, whether contacts
+/// are closed or not.
 /// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
 /// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
 double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
                            const ContactList &contacts);
 
-/// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured with.
+/// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured
+/// with.
 /// @param iterations  each costs two passes over the contacts; converges from below to omega_max
 double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,
                                         const ContactList &contacts, int iterations);

@@ -56,9 +56,10 @@ MotionReport integrate_all(Packing &packing, double *action, double dt, double d
       const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
       for (std::size_t half = 0; half < 4; half += width)
         {
-          const V4 v_new = advance.velocity<Measure>(hn::Load(d, v + half), hn::Load(d, action + half), inverse_mass, loss);
+          const V4 v_new =
+              advance.velocity<Measure>(hn::Load(d, v + half), hn::Load(d, action + half), inverse_mass, loss);
           const V4 w_new =
-            advance.velocity<Measure>(hn::Load(d, w + half), hn::Load(d, action + 4 + half), inverse_inertia, loss);
+              advance.velocity<Measure>(hn::Load(d, w + half), hn::Load(d, action + 4 + half), inverse_inertia, loss);
           hn::Store(v_new, d, v + half);
           hn::Store(w_new, d, w + half);
           hn::Store(hn::Zero(d), d, action + half);
@@ -102,8 +103,8 @@ HWY_EXPORT(IntegrateMeasured);
 MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
                        bool measure_damping)
 {
-  return measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, action, dt, damping, speed_limit) :
-                           HWY_DYNAMIC_DISPATCH(Integrate)(packing, action, dt, damping, speed_limit);
+  return measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, action, dt, damping, speed_limit)
+                         : HWY_DYNAMIC_DISPATCH(Integrate)(packing, action, dt, damping, speed_limit);
 }
 } // namespace isostat
 #endif

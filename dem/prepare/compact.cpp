@@ -50,14 +50,12 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
                     specimen, observer);
 }
 
-Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
-                   RunObserver &observer)
+Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen, RunObserver &observer)
 {
   Snapshot start = compacted;
   start.law = law;
-  const Snapshot balanced =
-    run_stages(start, {servo_stage(StageKind::rebalance, specimen.pressure, rebalanced)}, specimen.damping, specimen,
-               observer);
+  const Snapshot balanced = run_stages(start, {servo_stage(StageKind::rebalance, specimen.pressure, rebalanced)},
+                                       specimen.damping, specimen, observer);
   return run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
 }
 } // namespace isostat

@@ -5,8 +5,8 @@
 
 namespace isostat
 {
-/// Isotropic compression of a resting cloud to specimen.pressure with the given friction (DESIGN 5): walls close in under
-/// servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
+/// Isotropic compression of a resting cloud to specimen.pressure with the given friction (DESIGN 5): walls close in
+/// under servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
 /// @param law       of the contacts; its friction is replaced
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force

@@ -20,7 +20,7 @@ class Search
 public:
   Search(const Cloud &cloud, const LawParams &law, double target, double tolerance, const SpecimenSpec &specimen,
          RunObserver &observer)
-    : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), specimen_(specimen), observer_(observer)
+      : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), specimen_(specimen), observer_(observer)
   {}
 
   /// e - target, and exactly 0 within the tolerance: that ends the root search.
@@ -66,17 +66,18 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &l
   if (at_guess * at_other > 0)
     throw InputError(fmt::format("specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
                                  "compression {} gives {:.4f}. Choose a {} density, or another grading or pressure.",
-                                 target, other == 0 ? "without friction" : "with 60 deg of friction",
-                                 target + at_other, other == 0 ? "lower" : "higher"));
+                                 target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
+                                 other == 0 ? "lower" : "higher"));
   const double low = std::min(guess, other), high = std::max(guess, other);
   const double at_low = low == guess ? at_guess : at_other, at_high = low == guess ? at_other : at_guess;
   std::uintmax_t evaluations = 20;
   boost::math::tools::toms748_solve([&](double friction) { return search(friction); }, low, high, at_low, at_high,
                                     [](double a, double b) { return std::abs(b - a) < 1e-5; }, evaluations);
   if (std::abs(search.best.void_ratio - target) > tolerance)
-    throw RunFailure(fmt::format("no preparation friction gives void ratio {:.4f} within {:.4f}; nearest {:.4f} at {:.3f} "
-                                 "deg. Raise specimen.density_tolerance or the number of grains.",
-                                 target, tolerance, search.best.void_ratio, degrees(search.best.friction)));
+    throw RunFailure(
+        fmt::format("no preparation friction gives void ratio {:.4f} within {:.4f}; nearest {:.4f} at {:.3f} "
+                    "deg. Raise specimen.density_tolerance or the number of grains.",
+                    target, tolerance, search.best.void_ratio, degrees(search.best.friction)));
   return search.best;
 }
 } // namespace isostat

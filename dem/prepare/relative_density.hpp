@@ -18,9 +18,9 @@ inline double void_ratio_at(double relative_density, double e_min, double e_max)
 struct PreparedDensity
 {
   Snapshot state;
-  double friction = 0;     ///< preparation friction, tan(phi)
+  double friction = 0; ///< preparation friction, tan(phi)
   double void_ratio = 0;
-  int compressions = 0;    ///< how many the search took
+  int compressions = 0; ///< how many the search took
 };
 
 /// Finds the preparation friction whose isotropic compression ends at a void ratio, within tolerance: bracketed root

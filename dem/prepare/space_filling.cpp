@@ -51,7 +51,8 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3> &points)
     }
   const double edge = std::max((high - low).maxCoeff(), 1e-300);
   std::vector<std::uint64_t> key(points.size());
-  std::transform(points.begin(), points.end(), key.begin(), [&](const Vec3 &x) { return morton_key((x - low) / edge); });
+  std::transform(points.begin(), points.end(), key.begin(),
+                 [&](const Vec3 &x) { return morton_key((x - low) / edge); });
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; });
   return order;
 }

@@ -55,9 +55,10 @@ void check_density(const Scene &scene, double void_ratio)
   const SpecimenSpec &spec = scene.specimen;
   const double missed = std::abs(void_ratio - target_void_ratio(spec)) / (spec.e_max - spec.e_min);
   if (missed > spec.density_tolerance)
-    throw RunFailure(fmt::format("the prepared specimen has e = {:.4f}, D_r off by {:.4f} (specimen.density_tolerance {:g}): "
-                                 "it changed while it was rebalanced. Raise the tolerance or the number of grains.",
-                                 void_ratio, missed, spec.density_tolerance));
+    throw RunFailure(
+        fmt::format("the prepared specimen has e = {:.4f}, D_r off by {:.4f} (specimen.density_tolerance {:g}): "
+                    "it changed while it was rebalanced. Raise the tolerance or the number of grains.",
+                    void_ratio, missed, spec.density_tolerance));
 }
 
 Specimen prepare(const Scene &scene, RunObserver &observer)

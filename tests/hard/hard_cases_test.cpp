@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The states in which codes break: liquefied, very dense, reversed while liquid, no friction, nothing in contact. Each test
-// asserts what must come out, not only that it ran.
+// The states in which codes break: liquefied, very dense, reversed while liquid, no friction, nothing in contact. Each
+// test asserts what must come out, not only that it ran.
 #include "dem/drive/strain_path.hpp"
 #include "dem/error.hpp"
 #include "dem/measure/stress.hpp"
@@ -27,7 +27,7 @@ public:
       {
         if (k % 500 == 0)
           assembly.time_step =
-            0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
+              0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
         assembly.compute_forces();
         least_p = std::min(least_p, invariants(assembly.wall_stress()).p);
         axial_ += direction * rate * assembly.time_step;
@@ -137,7 +137,8 @@ TEST(HardCases, TenTimesStifferGrains)
   s.law.young *= 10;
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
     s.grains.set_linear_velocity(i, Vec3::Zero());
-  const double soft = critical_step_bound(test::specimen(500, 10).law, s.grains, s.box, Assembly(test::specimen(500, 10)).contacts());
+  const double soft =
+      critical_step_bound(test::specimen(500, 10).law, s.grains, s.box, Assembly(test::specimen(500, 10)).contacts());
   Shear shear(s); // the same overlaps now mean ten times the stress
   shear.to(1e-4, 1);
   EXPECT_NEAR(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1);

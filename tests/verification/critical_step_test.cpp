@@ -71,7 +71,8 @@ Snapshot lattice()
   for (std::size_t i = 0; i < centres.size(); ++i)
     {
       const double phase = static_cast<double>(i);
-      s.grains.set_linear_velocity(i, 1e-9 * Vec3(std::sin(phase * 12.9), std::sin(phase * 78.2), std::sin(phase * 37.7)));
+      s.grains.set_linear_velocity(i,
+                                   1e-9 * Vec3(std::sin(phase * 12.9), std::sin(phase * 78.2), std::sin(phase * 37.7)));
     }
   return s;
 }
@@ -105,9 +106,10 @@ TEST(CriticalStep, TheLimitIsReal)
   const Steps steps = steps_of(Assembly(lattice()));
   const double stable = speed_growth(0.98 * steps.true_step), at_bound = speed_growth(steps.bound),
                unstable = speed_growth(1.2 * steps.true_step);
-  std::printf("lattice: bound/true %.3f; largest speed grows %.3g times at the bound, %.3g at 0.98 of the true step, %.3g at "
-              "1.2\n",
-              steps.bound / steps.true_step, at_bound, stable, unstable);
+  std::printf(
+      "lattice: bound/true %.3f; largest speed grows %.3g times at the bound, %.3g at 0.98 of the true step, %.3g at "
+      "1.2\n",
+      steps.bound / steps.true_step, at_bound, stable, unstable);
   EXPECT_LT(at_bound, 20);
   EXPECT_LT(stable, 100);
   EXPECT_GT(unstable, 1e6);

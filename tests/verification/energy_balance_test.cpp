@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Energy balance of undrained shear (DESIGN 6): boundary work = kinetic + elastic + dissipated; the residual is an error
-// of the time step and goes to zero with it.
+// Energy balance of undrained shear (DESIGN 6): boundary work = kinetic + elastic + dissipated; the residual is an
+// error of the time step and goes to zero with it.
 #include "dem/drive/strain_path.hpp"
 #include "tests/support/specimens.hpp"
 
@@ -38,10 +38,11 @@ TEST(EnergyBalance, ClosesAndConvergesWithTheTimeStep)
     {
       const EnergyBalance e = sheared(time_step, strain, rate);
       residuals.push_back(std::abs(e.residual()) / e.boundary_work);
-      std::printf("dt %.1e s: work %.4e J, elastic %+.3e, kinetic %+.2e, sliding %.3e, rolling %.3e, released %.2e, damping "
-                  "%.3e, created %.2e, residual/work %.2e\n",
-                  time_step, e.boundary_work, e.elastic, e.kinetic, e.sliding, e.rolling, e.released, e.damping, e.created,
-                  e.residual() / e.boundary_work);
+      std::printf(
+          "dt %.1e s: work %.4e J, elastic %+.3e, kinetic %+.2e, sliding %.3e, rolling %.3e, released %.2e, damping "
+          "%.3e, created %.2e, residual/work %.2e\n",
+          time_step, e.boundary_work, e.elastic, e.kinetic, e.sliding, e.rolling, e.released, e.damping, e.created,
+          e.residual() / e.boundary_work);
       EXPECT_GT(e.boundary_work, 0);
       EXPECT_GE(e.sliding, 0);
       EXPECT_GE(e.rolling, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drivers on real packings: stresses that are to be kept are kept, loads turn where they should, runs repeat to the bit.
+// Drivers on real packings: stresses that are to be kept are kept, loads turn where they should, runs repeat to the
+// bit.
 #include "dem/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/relative_density.hpp"
@@ -88,7 +89,8 @@ TEST(ConstantP, MeanStressStays)
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.p / 200e3 - 1));
-  std::printf("constant p': largest deviation %.2e, q at the end %.1f kPa\n", worst, result.watcher.rows.back().q / 1e3);
+  std::printf("constant p': largest deviation %.2e, q at the end %.1f kPa\n", worst,
+              result.watcher.rows.back().q / 1e3);
   EXPECT_LT(worst, 0.02);
   EXPECT_GT(result.watcher.rows.back().q, 50e3);
 }
