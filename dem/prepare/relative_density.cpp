@@ -12,6 +12,8 @@ namespace isostat
 {
 namespace
 {
+constexpr double bracket = 2e-3; // of tan phi, 0.1 deg: finer differences drown in the noise of a packing
+
 double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
 
 /// Void ratio error as a function of preparation friction; keeps the best compression.
@@ -39,6 +41,8 @@ public:
       }
     return std::abs(e - target_) <= tolerance_ ? 0.0 : e - target_;
   }
+
+  bool found() const { return std::abs(best.void_ratio - target_) <= tolerance_; }
 
   PreparedDensity best;
 
@@ -70,10 +74,16 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &l
                                  other == 0 ? "lower" : "higher"));
   const double low = std::min(guess, other), high = std::max(guess, other);
   const double at_low = low == guess ? at_guess : at_other, at_high = low == guess ? at_other : at_guess;
-  std::uintmax_t evaluations = 20;
+  std::uintmax_t evaluations = 12;
   boost::math::tools::toms748_solve([&](double friction) { return search(friction); }, low, high, at_low, at_high,
-                                    [](double a, double b) { return std::abs(b - a) < 1e-5; }, evaluations);
-  if (std::abs(search.best.void_ratio - target) > tolerance)
+                                    [](double a, double b) { return std::abs(b - a) < bracket; }, evaluations);
+  // few grains: e(tan phi) is noisy, and the bracket may close on a jump; look around it
+  const double centre = search.best.friction;
+  for (int k = 1; k <= 8 && !search.found(); ++k)
+    for (const double side : {1.0, -1.0})
+      if (!search.found())
+        search(std::max(0.0, centre + side * k * bracket));
+  if (!search.found())
     throw RunFailure(
         fmt::format("no preparation friction gives void ratio {:.4f} within {:.4f}; nearest {:.4f} at {:.3f} "
                     "deg. Raise specimen.density_tolerance or the number of grains.",

@@ -287,7 +287,7 @@ TEST(Scenes, AllParseAndSayWhatTheyShow)
       const std::string twin = (quick ? "" : "quick_") + entry.path().filename().string();
       EXPECT_TRUE(std::filesystem::exists(entry.path().parent_path() / twin)) << twin;
     }
-  EXPECT_EQ(n_scenes, 19);
+  EXPECT_EQ(n_scenes, 20);
 }
 
 } // namespace
