@@ -46,7 +46,7 @@ HWY_INLINE Mask return_to(Triple &z, V limit)
   const Mask outside = hn::Gt(norm2, hn::Mul(limit, limit));
   if (HWY_UNLIKELY(!hn::AllFalse(D(), outside)))
     {
-      const V scale = hn::IfThenElse(outside, hn::Div(limit, hn::Sqrt(norm2)), hn::Set(D(), 1.0));
+      const V scale = hn::IfThenElse(outside, hn::Mul(limit, inverse_root(norm2)), hn::Set(D(), 1.0));
       z = scaled(z, scale);
     }
   return outside;
@@ -94,7 +94,7 @@ struct Loop
   static void sub_block(const KernelView &k, std::size_t pair, double *h, bool occupied, std::uint8_t &touched)
   {
     const D d;
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0), dt = hn::Set(d, k.dt);
+    const V zero = hn::Zero(d), dt = hn::Set(d, k.dt);
     const Quad p1 = load_records(k.position, k.first + pair), p2 = load_records(k.position, k.second + pair);
     const Triple branch = minus(p2.xyz, p1.xyz);
     const V r1 = p1.w, r2 = p2.w;
@@ -117,9 +117,8 @@ struct Loop
         return;
       }
     touched = 1;
-    const V distance = hn::Sqrt(distance2);
-    const V inverse = hn::Div(one, hn::Mul(distance, hn::Max(reach, hn::Set(d, 1e-300))));
-    const V inv_distance = hn::Mul(inverse, reach), inv_reach = hn::Mul(inverse, distance);
+    const V inv_distance = inverse_root(distance2), distance = root(distance2, inv_distance);
+    const V inv_reach = inverse(hn::Max(reach, hn::Set(d, 1e-300)));
     const V overlap = hn::Sub(reach, distance);
     const Mask touching = hn::Gt(overlap, zero);
     const Triple n = scaled(branch, inv_distance);

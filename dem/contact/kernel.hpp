@@ -28,7 +28,7 @@ struct DissipationPerPair
 /// Does not know walls, gravity or damping.
 /// @param dt          s
 /// @param dissipation nullptr: the loop without energy sums; otherwise resized to the list and overwritten
-/// cost: about 100 multiply-adds, 1 divide and 1 root per pair (one more of each in blocks where a lane yields) and 400
+/// cost: about 120 multiply-adds per pair, with AVX-512 no divide and no root (estimates and Newton steps) and 400
 /// bytes of traffic; see benchmarks/README.md
 /// tested: tests/dem/contact/kernel_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,

@@ -10,7 +10,7 @@ namespace isostat
 namespace
 {
 constexpr double initial_skin = 0.03, least_skin = 0.01, greatest_skin = 0.5; // of the smallest radius
-constexpr std::uint64_t frequent = 100, rare = 1000;                          // steps between rebuilds
+constexpr std::uint64_t frequent = 300, rare = 3000;                          // steps between rebuilds
 } // namespace
 
 void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts)
