@@ -14,7 +14,6 @@
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/space_filling.hpp"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <fmt/format.h>
 
@@ -112,6 +111,5 @@ int main(int argc, char **argv)
   app.add_option("--steps", options.steps, "timed steps per repeat");
   app.add_option("--warm-up", options.warm_up, "steps before");
   app.add_option("--repeats", options.repeats, "timed blocks");
-  CLI11_PARSE(app, argc, argv);
-  return isostat::guarded([&] { measure(options); });
+  return parse_and_run(app, argc, argv, [&] { measure(options); });
 }

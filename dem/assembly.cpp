@@ -241,7 +241,7 @@ void Assembly::set_wall_memory(const std::array<double, wall_memory_size> &memor
   energy_started_ = memory[12] != 0;
 }
 
-Snapshot Assembly::checkpoint() const
+Snapshot Assembly::without_contacts() const
 {
   Snapshot s;
   s.grains = packing_;
@@ -249,6 +249,12 @@ Snapshot Assembly::checkpoint() const
   s.law = law_;
   s.time = time_;
   s.step = step_;
+  return s;
+}
+
+Snapshot Assembly::checkpoint() const
+{
+  Snapshot s = without_contacts();
   for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
     {
       const ContactHistory h = contacts_.history(p);
@@ -260,12 +266,7 @@ Snapshot Assembly::checkpoint() const
 
 Snapshot Assembly::snapshot() const
 {
-  Snapshot s;
-  s.grains = packing_;
-  s.box = box_;
-  s.law = law_;
-  s.time = time_;
-  s.step = step_;
+  Snapshot s = without_contacts();
   s.contacts.reserve(contacts_.n_pairs());
   for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
     {

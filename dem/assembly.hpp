@@ -83,6 +83,7 @@ private:
   void add_gravity();
   void sum_dissipation();
   void start_energy();
+  Snapshot without_contacts() const;
   [[noreturn]] void report_explosion(double speed_limit) const;
 
   Packing packing_;

@@ -2,6 +2,7 @@
 #pragma once
 #include "dem/error.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 
@@ -31,5 +32,28 @@ inline int guarded(const std::function<void()> &program)
       std::fprintf(stderr, "failed: %s\n", error.what());
       return 1;
     }
+}
+
+/// Parses the command line, then runs a program as guarded() does; a wrong command line is bad input, too.
+inline int parse_and_run(CLI::App &app, int argc, char **argv, const std::function<void()> &program)
+{
+  try
+    {
+      app.parse(argc, argv);
+    }
+  catch (const CLI::ParseError &error)
+    {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+  return guarded(program);
+}
+
+/// The command as it was typed, for the provenance.
+inline std::string command_line(int argc, char **argv)
+{
+  std::string line;
+  for (int k = 0; k < argc; ++k)
+    line += (k ? " " : "") + std::string(argv[k]);
+  return line;
 }
 } // namespace isostat

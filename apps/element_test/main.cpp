@@ -19,7 +19,6 @@
 #include "dem/io/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
 
@@ -123,7 +122,7 @@ void run_test(const Options &options)
     fmt::print("  {}\n", draw_figures(folder));
 }
 
-int parse_and_run(int argc, char **argv)
+int run_command(int argc, char **argv)
 {
   CLI::App app{"True-triaxial element tests on spheres: drained, undrained monotonic, undrained cyclic"};
   Options options;
@@ -137,17 +136,8 @@ int parse_and_run(int argc, char **argv)
   app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  for (int k = 0; k < argc; ++k)
-    options.command_line += (k ? " " : "") + std::string(argv[k]);
-  try
-    {
-      app.parse(argc, argv);
-    }
-  catch (const CLI::ParseError &error)
-    {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-  return guarded([&] {
+  options.command_line = command_line(argc, argv);
+  return parse_and_run(app, argc, argv, [&] {
     if (options.print_defaults)
       fmt::print("{}", default_scene());
     else if (options.print_manual)
@@ -163,5 +153,5 @@ int parse_and_run(int argc, char **argv)
 int main(int argc, char **argv)
 {
   catch_signals();
-  return parse_and_run(argc, argv);
+  return run_command(argc, argv);
 }

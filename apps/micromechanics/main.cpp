@@ -17,7 +17,6 @@
 #include "apps/micromechanics/snapshot_series.hpp"
 #include "dem/io/replace_file.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <map>
 #include <optional>
@@ -185,7 +184,7 @@ void analyse(const Options &options)
     fmt::print("{}\n", draw_figures(output, "plots_micromechanics.py"));
 }
 
-int parse_and_run(int argc, char **argv)
+int run_command(int argc, char **argv)
 {
   CLI::App app{"Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions"};
   Options options;
@@ -194,16 +193,8 @@ int parse_and_run(int argc, char **argv)
       "-o,--output", options.output,
       "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
   app.add_flag("--no-figures", options.no_figures, "do not draw figures");
-  try
-    {
-      app.parse(argc, argv);
-    }
-  catch (const CLI::ParseError &error)
-    {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-  return guarded([&] { analyse(options); });
+  return parse_and_run(app, argc, argv, [&] { analyse(options); });
 }
 } // namespace
 
-int main(int argc, char **argv) { return parse_and_run(argc, argv); }
+int main(int argc, char **argv) { return run_command(argc, argv); }

@@ -21,7 +21,6 @@
 #include "dem/prepare/compact.hpp"
 #include "dem/prepare/pluviate.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -199,7 +198,7 @@ void find_limits(const Options &options)
   fmt::print("{}", text);
 }
 
-int parse_and_run(int argc, char **argv)
+int run_command(int argc, char **argv)
 {
   CLI::App app{"Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)"};
   Options options;
@@ -209,18 +208,9 @@ int parse_and_run(int argc, char **argv)
   app.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
   app.add_flag("--overwrite", options.overwrite, "replace results that are there");
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  for (int k = 0; k < argc; ++k)
-    options.command_line += (k ? " " : "") + std::string(argv[k]);
-  try
-    {
-      app.parse(argc, argv);
-    }
-  catch (const CLI::ParseError &error)
-    {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-  return guarded([&] { find_limits(options); });
+  options.command_line = command_line(argc, argv);
+  return parse_and_run(app, argc, argv, [&] { find_limits(options); });
 }
 } // namespace
 
-int main(int argc, char **argv) { return parse_and_run(argc, argv); }
+int main(int argc, char **argv) { return run_command(argc, argv); }
