@@ -3,6 +3,7 @@
 // machine.
 #include "dem/contact/kernel.hpp"
 #include "tests/dem/contact/random_cloud.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -273,16 +274,6 @@ TEST_P(ContactKernel, DissipationIsNotNegativeAndNotNaN)
   EXPECT_GT(released, 0);
 }
 
-namespace
-{
-std::vector<std::int64_t> instruction_sets()
-{
-  std::vector<std::int64_t> sets;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left; left &= left - 1)
-    sets.push_back(left & -left);
-  return sets;
-}
-} // namespace
-INSTANTIATE_TEST_SUITE_P(InstructionSets, ContactKernel, testing::ValuesIn(instruction_sets()),
+INSTANTIATE_TEST_SUITE_P(InstructionSets, ContactKernel, testing::ValuesIn(test::instruction_sets()),
                          [](const auto &set) { return std::string(hwy::TargetName(set.param)); });
 } // namespace isostat

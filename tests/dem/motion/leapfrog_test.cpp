@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/motion/leapfrog.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -247,16 +248,6 @@ TEST_P(Leapfrog, ReportsAFastGrainAndNotANumber)
         }
 }
 
-namespace
-{
-std::vector<std::int64_t> instruction_sets()
-{
-  std::vector<std::int64_t> sets;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left; left &= left - 1)
-    sets.push_back(left & -left);
-  return sets;
-}
-} // namespace
-INSTANTIATE_TEST_SUITE_P(InstructionSets, Leapfrog, testing::ValuesIn(instruction_sets()),
+INSTANTIATE_TEST_SUITE_P(InstructionSets, Leapfrog, testing::ValuesIn(test::instruction_sets()),
                          [](const auto &set) { return std::string(hwy::TargetName(set.param)); });
 } // namespace isostat
