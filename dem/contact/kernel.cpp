@@ -16,10 +16,10 @@ namespace isostat
 struct KernelView
 {
   const double *position, *velocity, *spin;
-  const std::uint32_t *first, *second;
+  const std::uint32_t *first, *second, *target;
   double *history, *action;
   std::uint8_t *occupied;
-  std::size_t n_blocks;
+  std::size_t begin, end; ///< blocks
   double young, stiffness_ratio, friction, rolling_stiffness, rolling_limit, twisting_stiffness, dt;
   double *sliding, *rolling, *released, *created;
 };
@@ -32,12 +32,6 @@ namespace isostat
 namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// z1 = z - z x a ; z2 = z1 - z1 x s
-HWY_INLINE Triple rotated(const Triple &z, const Triple &a, const Triple &s)
-{
-  return minus_cross(minus_cross(z, a), s);
-}
 
 /// Scales `z` back to |z| <= limit; returns the mask of lanes that were outside.
 HWY_INLINE Mask return_to(Triple &z, V limit)
@@ -91,125 +85,168 @@ struct Loop
     return hn::Mul(energy, hn::Set(D(), 0.5));
   }
 
-  static void sub_block(const KernelView &k, std::size_t pair, double *h, bool occupied, std::uint8_t &touched)
+  /// Vectors of the pair that all parts of the law share.
+  struct Kinematics
+  {
+    Triple n0, n, tilt, turn; ///< n', n, a = n' x n, a + s
+    V along;                  ///< s = along n'
+    V r1, r2, rr, overlap, fn, ks;
+    Triple dv, w1, w2;
+    Mask touching;
+  };
+
+  /// z - z x (a + s): history that is normal to n' turned with the contact; (z x a) x s = a (s.z) is 0 for it.
+  static Triple turned(const Kinematics &p, const Triple &z) { return minus_cross(z, p.turn); }
+
+  static HWY_INLINE void sub_block(const KernelView &k, std::size_t pair, double *h, bool occupied,
+                                   std::uint8_t &touched)
   {
     const D d;
-    const V zero = hn::Zero(d), dt = hn::Set(d, k.dt);
-    const Quad p1 = load_records(k.position, k.first + pair), p2 = load_records(k.position, k.second + pair);
-    const Triple branch = minus(p2.xyz, p1.xyz);
-    const V r1 = p1.w, r2 = p2.w;
-    const V distance2 = dot(branch, branch), reach = hn::Add(r1, r2);
-    if (hn::AllFalse(d, hn::Lt(distance2, hn::Mul(reach, reach))))
-      {
-        if (Friction && occupied)
-          {
-            if constexpr (Energy)
-              {
-                const V rr = hn::Mul(r1, r2);
-                const V ks = hn::Div(hn::Mul(rr, hn::Set(d, 2 * k.young * k.stiffness_ratio)),
-                                     hn::Max(reach, hn::Set(d, 1e-300)));
-                const Triple n0 = load3(h);
-                hn::StoreU(hn::IfThenElseZero(hn::Gt(dot(n0, n0), zero), forgotten(k, h, ks, rr)), d,
-                           k.released + pair);
-              }
-            clear(h);
-          }
-        return;
-      }
+    const Records x1 = load_records(k.position, k.first + pair), x2 = load_records(k.position, k.second + pair);
+    const Quad between = transposed(differences_and_sum(x1, x2));
+    const Triple &branch = between.xyz;
+    const V reach = between.w, distance2 = dot(branch, branch);
+    if (HWY_UNLIKELY(hn::AllFalse(d, hn::Lt(distance2, hn::Mul(reach, reach)))))
+      return skip(k, pair, h, occupied, transposed(x1).w, reach);
     touched = 1;
-    const V inv_distance = inverse_root(distance2), distance = root(distance2, inv_distance);
-    const V inv_reach = inverse(hn::Max(reach, hn::Set(d, 1e-300)));
-    const V overlap = hn::Sub(reach, distance);
-    const Mask touching = hn::Gt(overlap, zero);
-    const Triple n = scaled(branch, inv_distance);
-    const V rr = hn::Mul(r1, r2);
-    const V kn = hn::Mul(hn::Mul(rr, inv_reach), hn::Set(d, 2 * k.young));
-    const V fn = hn::IfThenElseZero(touching, hn::Mul(kn, overlap));
+    const V inv_distance = inverse_root(distance2);
+    Kinematics p;
+    p.overlap = hn::Sub(reach, root(distance2, inv_distance));
+    p.touching = hn::Gt(p.overlap, hn::Zero(d));
+    // lanes that do not touch get n = 0, kn = 0 and an empty history: all they add is an exact 0
+    const V inv_closed = hn::IfThenElseZero(p.touching, inv_distance);
+    p.n = scaled(branch, inv_closed);
+    const V stiffness = hn::Mul(inverse(reach), hn::Set(d, 2 * k.young));
     if constexpr (!Friction)
       {
-        add_forces(k.action, k.first + pair, k.second + pair, scaled(n, fn));
+        const V r1 = transposed(x1).w, rr = hn::Mul(r1, hn::Sub(reach, r1));
+        const V kn = hn::IfThenElseZero(p.touching, hn::Mul(rr, stiffness));
+        add_forces(k.action, k.first + pair, k.target + pair, scaled(p.n, hn::Mul(kn, p.overlap)));
         return;
       }
     else
       {
-        const V ks = hn::Mul(kn, hn::Set(d, k.stiffness_ratio));
-        const Triple n0 = load3(h);
+        const Quad moving = transposed(
+            differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
+        p.dv = moving.xyz;
+        p.r1 = moving.w;
+        p.r2 = hn::Sub(reach, p.r1);
+        p.rr = hn::Mul(p.r1, p.r2);
+        const V kn = hn::IfThenElseZero(p.touching, hn::Mul(p.rr, stiffness));
+        p.fn = hn::Mul(kn, p.overlap);
+        p.ks = hn::Mul(kn, hn::Set(d, k.stiffness_ratio));
+        p.w1 = transposed(load_records(k.spin, k.first + pair)).xyz;
+        p.w2 = transposed(load_records(k.spin, k.second + pair)).xyz;
         if constexpr (Energy)
-          {
-            const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), zero));
-            hn::StoreU(hn::IfThenElseZero(opened, forgotten(k, h, ks, rr)), d, k.released + pair);
-          }
-        const Triple v1 = load_records(k.velocity, k.first + pair).xyz,
-                     v2 = load_records(k.velocity, k.second + pair).xyz;
-        const Triple w1 = load_records(k.spin, k.first + pair).xyz, w2 = load_records(k.spin, k.second + pair).xyz;
+          store_released(k, pair, h, p.touching, p.rr, reach);
+        turn_with_contact(k, h, p);
+        const Triple fs = shear(k, pair, h, p, hn::Mul(reach, inv_closed), hn::Mul(p.overlap, inv_closed));
+        store3(p.n, h);
 
-        const Triple tilt = cross(n0, n);
-        const Triple w_sum = plus(w1, w2);
-        const Triple twist = scaled(n0, hn::Mul(hn::Mul(hn::Set(d, 0.5), dt), dot(n0, w_sum)));
+        // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
+        const Triple moment = moments(k, pair, h, p);
+        const V half = hn::Set(d, 0.5);
+        const Triple force = madd(p.n, p.fn, fs), couple = cross(p.n, fs);
+        add_actions(k.action, k.first + pair, k.target + pair, force,
+                    nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), moment),
+                    nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), moment));
+      }
+  }
 
-        // v_r = alpha (v2 - v1) - (R1 w1 + R2 w2) x n,  alpha = (R1+R2)/|b|
-        const Triple rolling_speed = madd(w1, r1, scaled(w2, r2));
-        const Triple vr = minus_cross(scaled(minus(v2, v1), hn::Mul(reach, inv_distance)), rolling_speed, n);
-        const Triple du = scaled(nmadd(n, dot(vr, n), vr), dt);
+  /// A vector of pairs none of which touches: history is forgotten, nothing else happens.
+  static void skip(const KernelView &k, std::size_t pair, double *h, bool occupied, V r1, V reach)
+  {
+    if (!Friction || !occupied)
+      return;
+    if constexpr (Energy)
+      store_released(k, pair, h, hn::Gt(hn::Zero(D()), hn::Zero(D())), hn::Mul(r1, hn::Sub(reach, r1)), reach);
+    clear(h);
+  }
 
-        const Triple fs_before = rotated(load3(h + at_shear * lanes), tilt, twist);
-        const Triple fs_trial = nmadd(du, ks, fs_before);
-        Triple fs = fs_trial;
-        const Mask sliding = return_to(fs, hn::Mul(fn, hn::Set(d, k.friction)));
-        if constexpr (Energy)
-          {
-            hn::StoreU(hn::IfThenElseZero(touching, plastic_work(fs_before, fs_trial, fs, ks, sliding)), d,
-                       k.sliding + pair);
-            // fs.(true slip rate - slip rate of the law) dt
-            const Triple mid = scaled(plus(fs_before, fs), hn::Set(d, 0.5));
-            const Triple arm_gap = scaled(cross(w_sum, n), hn::Mul(overlap, hn::Set(d, 0.5)));
-            const Triple gap = nmadd(minus(v2, v1), hn::Mul(overlap, inv_distance), arm_gap);
-            hn::StoreU(hn::IfThenElseZero(touching, hn::Mul(dot(mid, gap), dt)), d, k.created + pair);
-          }
-        fs = masked(touching, fs);
-        store3(fs, h + at_shear * lanes);
-        store3(masked(touching, n), h);
+  static void store_released(const KernelView &k, std::size_t pair, const double *h, Mask touching, V rr, V reach)
+  {
+    const D d;
+    const Triple n0 = load3(h);
+    const V ks = hn::Div(hn::Mul(rr, hn::Set(d, 2 * k.young * k.stiffness_ratio)),
+                         hn::Max(reach, hn::Set(d, 1e-300)));
+    const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), hn::Zero(d)));
+    hn::StoreU(hn::IfThenElseZero(opened, forgotten(k, h, ks, rr)), d, k.released + pair);
+  }
 
-        // moments: split of the relative spin along n
-        const Triple dw = minus(w2, w1);
-        const V spin_n = dot(dw, n);
-        Triple moment = {zero, zero, zero};
+  /// a = n' x n,  s = (dt/2) [n'.(w1 + w2)] n'
+  static HWY_INLINE void turn_with_contact(const KernelView &k, const double *h, Kinematics &p)
+  {
+    p.n0 = load3(p.touching, h);
+    p.tilt = cross(p.n0, p.n);
+    p.along = hn::Mul(hn::Set(D(), 0.5 * k.dt), dot(p.n0, plus(p.w1, p.w2)));
+    p.turn = madd(p.n0, p.along, p.tilt);
+  }
+
+  /// v_r = alpha (v2 - v1) - (R1 w1 + R2 w2) x n;  fs <- turned(fs) - ks dt [v_r - (v_r.n) n], |fs| <= mu fn
+  static HWY_INLINE Triple shear(const KernelView &k, std::size_t pair, double *h, const Kinematics &p, V alpha,
+                                 V relative_overlap)
+  {
+    const D d;
+    const V dt = hn::Set(d, k.dt);
+    const Triple rolling_speed = madd(p.w1, p.r1, scaled(p.w2, p.r2));
+    const Triple vr = minus_cross(scaled(p.dv, alpha), rolling_speed, p.n);
+    const Triple before = turned(p, load3(p.touching, h + at_shear * lanes));
+    const Triple trial = nmadd(nmadd(p.n, dot(vr, p.n), vr), hn::Mul(p.ks, dt), before);
+    Triple fs = trial;
+    const Mask sliding = return_to(fs, hn::Mul(p.fn, hn::Set(d, k.friction)));
+    store3(fs, h + at_shear * lanes);
+    if constexpr (Energy)
+      {
+        hn::StoreU(plastic_work(before, trial, fs, p.ks, hn::And(p.touching, sliding)), d, k.sliding + pair);
+        // fs.(true slip rate - slip rate of the law) dt
+        const Triple mid = scaled(plus(before, fs), hn::Set(d, 0.5));
+        const Triple arm_gap = scaled(cross(plus(p.w1, p.w2), p.n), hn::Mul(p.overlap, hn::Set(d, 0.5)));
+        const Triple gap = nmadd(p.dv, relative_overlap, arm_gap);
+        hn::StoreU(hn::IfThenElseZero(p.touching, hn::Mul(dot(mid, gap), dt)), d, k.created + pair);
+      }
+    return fs;
+  }
+
+  /// mb <- turned(mb) - kr dt dw_b, |mb| <= rho_r fn;  mt <- turned(mt) - kt dt dw_t;  returns mb + mt
+  static HWY_INLINE Triple moments(const KernelView &k, std::size_t pair, double *h, const Kinematics &p)
+  {
+    const D d;
+    Triple moment = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    if constexpr (Rolling || Twisting)
+      {
+        const Triple dw = minus(p.w2, p.w1);
+        const V spin_n = dot(dw, p.n), rr_ks = hn::Mul(p.rr, p.ks);
         if constexpr (Rolling)
           {
-            const V kr = hn::Mul(hn::Mul(rr, ks), hn::Set(d, k.rolling_stiffness));
-            const Triple before = rotated(load3(h + at_bending * lanes), tilt, twist);
-            const Triple trial = nmadd(nmadd(n, spin_n, dw), hn::Mul(kr, dt), before);
-            Triple mb = trial;
-            const V limit = hn::Mul(fn, hn::Mul(hn::Min(r1, r2), hn::Set(d, k.rolling_limit)));
-            const Mask rolls = return_to(mb, limit);
+            const Triple before = turned(p, load3(p.touching, h + at_bending * lanes));
+            const V rate = hn::Mul(rr_ks, hn::Set(d, k.rolling_stiffness * k.dt));
+            const Triple trial = nmadd(nmadd(p.n, spin_n, dw), rate, before);
+            moment = trial;
+            const Mask rolls =
+                return_to(moment, hn::Mul(p.fn, hn::Mul(hn::Min(p.r1, p.r2), hn::Set(d, k.rolling_limit))));
+            store3(moment, h + at_bending * lanes);
             if constexpr (Energy)
-              hn::StoreU(hn::IfThenElseZero(touching, plastic_work(before, trial, mb, kr, rolls)), d, k.rolling + pair);
-            mb = masked(touching, mb);
-            store3(mb, h + at_bending * lanes);
-            moment = mb;
+              {
+                const V kr = hn::Mul(rr_ks, hn::Set(d, k.rolling_stiffness));
+                hn::StoreU(plastic_work(before, trial, moment, kr, hn::And(p.touching, rolls)), d, k.rolling + pair);
+              }
           }
         if constexpr (Twisting)
           {
-            const V kt = hn::Mul(hn::Mul(rr, ks), hn::Set(d, k.twisting_stiffness));
-            Triple mt = rotated(load3(h + at_twisting * lanes), tilt, twist);
-            mt = masked(touching, nmadd(n, hn::Mul(hn::Mul(kt, dt), spin_n), mt));
+            const Triple z = load3(p.touching, h + at_twisting * lanes);
+            const V rate = hn::Mul(rr_ks, hn::Set(d, k.twisting_stiffness * k.dt));
+            const Triple with_tilt = madd(p.tilt, hn::Mul(p.along, dot(p.n0, z)), turned(p, z)); // mt is along n'
+            const Triple mt = nmadd(p.n, hn::Mul(rate, spin_n), with_tilt);
             store3(mt, h + at_twisting * lanes);
             moment = Rolling ? plus(moment, mt) : mt;
           }
-
-        // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
-        const V half_overlap = hn::Mul(overlap, hn::Set(d, 0.5));
-        const Triple force = madd(n, fn, fs);
-        const Triple couple = cross(n, fs);
-        const Triple torque1 = negated(madd(couple, hn::Sub(r1, half_overlap), moment));
-        const Triple torque2 = nmadd(couple, hn::Sub(r2, half_overlap), moment);
-        add_actions(k.action, k.first + pair, k.second + pair, force, torque1, torque2);
       }
+    return moment;
   }
 
   static void run(const KernelView &k)
   {
-    for (std::size_t b = 0; b < k.n_blocks; ++b)
+    for (std::size_t b = k.begin; b < k.end; ++b)
       {
         std::uint8_t touched = 0;
         for (std::size_t l = 0; l < lanes; l += hn::Lanes(D()))
@@ -291,9 +328,11 @@ void add_contact_forces(const LawParams &law, const Packing &packing, double dt,
                   packing.spin.data(),
                   list.first(),
                   list.second(),
+                  list.second(),
                   list.history_data(),
                   action,
                   list.occupied(),
+                  0,
                   list.n_blocks(),
                   law.young,
                   law.stiffness_ratio,

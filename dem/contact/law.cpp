@@ -7,12 +7,10 @@ namespace
 {
 constexpr double yield_margin = 1 - 1e-9;
 
-/// z1 = z - z x a ; z2 = z1 - z1 x s : first-order rotation of history with the contact.
-Vec3 rotated(const Vec3 &z, const Vec3 &tilt, const Vec3 &twist)
-{
-  const Vec3 z1 = z - z.cross(tilt);
-  return z1 - z1.cross(twist);
-}
+/// First-order rotation of history with the contact, z1 = z - z x a ; z2 = z1 - z1 x s
+///                                                       = z - z x (a + s) + a (s.z), because a.s = 0.
+/// The last term is kept for the twisting moment, which is along s; forces and moments normal to it have none.
+Vec3 turned(const Vec3 &z, const Vec3 &tilt, const Vec3 &twist) { return z - z.cross(tilt + twist); }
 
 Vec3 returned_to(const Vec3 &trial, double limit)
 {
@@ -53,16 +51,17 @@ ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt
   const double alpha = (p.r1 + p.r2) / distance;
   const Vec3 vr = alpha * (p.v2 - p.v1) - p.w2.cross(p.r2 * n) - p.w1.cross(p.r1 * n);
   const Vec3 du = (vr - vr.dot(n) * n) * dt;
-  history.shear_force = returned_to(rotated(history.shear_force, tilt, twist) - k.shear * du, law.friction * fn);
+  history.shear_force = returned_to(turned(history.shear_force, tilt, twist) - k.shear * du, law.friction * fn);
 
   const Vec3 dw = p.w2 - p.w1;
   const Vec3 dw_twist = n.dot(dw) * n;
   const Vec3 dw_bend = dw - dw_twist;
   if (on.rolling)
-    history.bending_moment = returned_to(rotated(history.bending_moment, tilt, twist) - k.rolling * dt * dw_bend,
+    history.bending_moment = returned_to(turned(history.bending_moment, tilt, twist) - k.rolling * dt * dw_bend,
                                          rolling_length(law, p.r1, p.r2) * fn);
   if (on.twisting)
-    history.twisting_moment = rotated(history.twisting_moment, tilt, twist) - k.twisting * dt * dw_twist;
+    history.twisting_moment = turned(history.twisting_moment, tilt, twist) + tilt * twist.dot(history.twisting_moment) -
+                              k.twisting * dt * dw_twist;
   history.normal = n;
 
   result.force += history.shear_force;
