@@ -26,7 +26,7 @@ struct Options
 {
   std::string packing, exported;
   double rate = 5, time_step = 4.8e-8, friction_degrees = 18;
-  int steps = 1500, warm_up = 500, repeats = 1;
+  int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
 Snapshot load(const Options &options)
@@ -68,6 +68,7 @@ void measure(const Options &options)
     return export_text(initial, options.exported);
   Assembly assembly(initial);
   assembly.time_step = options.time_step;
+  assembly.threads = options.threads;
   const StrainPath path{assembly.box()};
   double axial = 0, stress = 0;
   const auto run = [&](int steps) {
@@ -110,6 +111,7 @@ int main(int argc, char **argv)
   app.add_option("--friction", options.friction_degrees, "degrees");
   app.add_option("--steps", options.steps, "timed steps per repeat");
   app.add_option("--warm-up", options.warm_up, "steps before");
+  app.add_option("--threads", options.threads, "threads that share a step");
   app.add_option("--repeats", options.repeats, "timed blocks");
   return parse_and_run(app, argc, argv, [&] { measure(options); });
 }

@@ -24,7 +24,7 @@ template <typename Visit>
 void for_closed_pairs(const LawParams &law, const Packing &packing, const ContactList &contacts, const Visit &visit)
 {
   const bool shear = contacts.features().friction;
-  for (std::size_t p = 0; p < contacts.n_pairs(); ++p)
+  for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
       const Vec3 branch = packing.centre(j) - packing.centre(i);
@@ -58,13 +58,15 @@ Assembly::Assembly(const Snapshot &initial)
       d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
 {
   verlet_.update(packing_, box_, 0.0, contacts_);
+  const std::uint32_t idle = contacts_.partition().n_grains;
   std::size_t pair = 0;
   for (const Contact &c : initial.contacts)
     {
-      while (pair < contacts_.n_pairs() &&
-             std::pair(contacts_.first()[pair], contacts_.second()[pair]) < std::pair(c.first, c.second))
+      while (pair < contacts_.n_lanes() &&
+             (contacts_.first()[pair] == idle ||
+              std::pair(contacts_.first()[pair], contacts_.second()[pair]) < std::pair(c.first, c.second)))
         ++pair;
-      if (pair < contacts_.n_pairs() && contacts_.first()[pair] == c.first && contacts_.second()[pair] == c.second)
+      if (pair < contacts_.n_lanes() && contacts_.first()[pair] == c.first && contacts_.second()[pair] == c.second)
         contacts_.set_history(pair, c.history);
     }
 }
@@ -78,8 +80,25 @@ void Assembly::set_law(const LawParams &law)
 void Assembly::compute_forces()
 {
   verlet_.update(packing_, box_, greatest_step_, contacts_);
-  add_contact_forces(law_, packing_, time_step, contacts_, action_.data(), measure_energy ? &dissipation_ : nullptr);
-  add_wall_forces();
+  action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
+  if (measure_energy)
+    dissipation_.resize(contacts_.n_lanes());
+  const int n_chunks = static_cast<int>(contacts_.partition().n_chunks);
+  wall_sums_.resize(n_chunks);
+  DissipationPerPair *dissipation = measure_energy ? &dissipation_ : nullptr;
+#pragma omp parallel num_threads(std::clamp(threads, 1, n_chunks)) if (threads > 1 && n_chunks > 1)
+  {
+#pragma omp for schedule(static)
+    for (int chunk = 0; chunk < n_chunks; ++chunk)
+      {
+        add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(), dissipation);
+        add_wall_forces(chunk);
+      }
+#pragma omp for schedule(static)
+    for (int chunk = 0; chunk < n_chunks; ++chunk)
+      add_ghosts(contacts_, chunk, action_.data());
+  }
+  sum_wall_forces();
   if (gravity != Vec3::Zero())
     add_gravity();
   if (measure_energy)
@@ -95,26 +114,36 @@ void Assembly::start_energy()
   energy_started_ = true;
 }
 
-void Assembly::add_wall_forces()
+void Assembly::add_wall_forces(std::size_t chunk)
 {
-  previous_wall_force_ = wall_force_;
+  WallSums sums{};
   for (int wall = 0; wall < 6; ++wall)
     {
-      const int axis = wall / 2;
       const double inward = -sign_of_wall(wall);
-      double sum = 0, stiffness = 0;
-      for (std::uint32_t i : verlet_.near_wall()[wall])
+      for (std::uint32_t i : verlet_.near_wall(wall, chunk))
         {
           const double overlap = wall_overlap(packing_, box_, i, wall);
           const double kn = overlap > 0 ? wall_stiffness(law_, packing_.radius(i)) : 0.0;
           const double fn = kn * overlap;
-          stiffness += kn;
-          action_[8 * i + axis] += inward * fn;
-          sum += fn;
+          action_[8 * i + wall / 2] += inward * fn;
+          sums.force[wall] += fn;
+          sums.stiffness[wall] += kn;
         }
-      wall_force_[wall] = sum;
-      wall_stiffness_sum_[axis] = (wall % 2 ? wall_stiffness_sum_[axis] : 0.0) + stiffness;
     }
+  wall_sums_[chunk] = sums;
+}
+
+void Assembly::sum_wall_forces()
+{
+  previous_wall_force_ = wall_force_;
+  wall_force_.fill(0);
+  wall_stiffness_sum_.fill(0);
+  for (const WallSums &sums : wall_sums_) // in order of chunks
+    for (int wall = 0; wall < 6; ++wall)
+      {
+        wall_force_[wall] += sums.force[wall];
+        wall_stiffness_sum_[wall / 2] += sums.stiffness[wall];
+      }
 }
 
 void Assembly::add_gravity()
@@ -127,7 +156,7 @@ void Assembly::add_gravity()
 void Assembly::sum_dissipation()
 {
   // in pair order, so that the sums do not depend on the list either
-  for (std::size_t p = 0; p < contacts_.n_pairs() && !dissipation_.sliding.empty(); ++p)
+  for (std::size_t p = 0; p < contacts_.n_lanes() && !dissipation_.sliding.empty(); ++p)
     {
       tally.sliding += dissipation_.sliding[p];
       tally.rolling += dissipation_.rolling[p];
@@ -138,10 +167,29 @@ void Assembly::sum_dissipation()
     tally.boundary_work -= 0.5 * (previous_wall_force_[wall] + wall_force_[wall]) * wall_displacement_[wall];
 }
 
+MotionReport Assembly::move_grains(double speed_limit)
+{
+  const Partition &partition = contacts_.partition();
+  const int n_chunks = static_cast<int>(partition.n_chunks);
+  motion_reports_.resize(n_chunks);
+#pragma omp parallel for schedule(static) num_threads(std::clamp(threads, 1, n_chunks)) if (threads > 1 && n_chunks > 1)
+  for (int chunk = 0; chunk < n_chunks; ++chunk)
+    motion_reports_[chunk] = integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), action_.data(),
+                                       time_step, damping, speed_limit, measure_energy);
+  MotionReport all;
+  for (const MotionReport &part : motion_reports_) // in order of chunks
+    {
+      all.greatest_speed = std::max(all.greatest_speed, part.greatest_speed);
+      all.exploded |= part.exploded;
+      all.damping_loss += part.damping_loss;
+    }
+  return all;
+}
+
 void Assembly::move(const RigidBox &next_box)
 {
   const double speed_limit = explosion_step * min_radius_ / time_step;
-  const MotionReport report = integrate(packing_, action_.data(), time_step, damping, speed_limit, measure_energy);
+  const MotionReport report = move_grains(speed_limit);
   if (report.exploded)
     report_explosion(speed_limit);
   tally.damping += report.damping_loss;
@@ -255,7 +303,7 @@ Snapshot Assembly::without_contacts() const
 Snapshot Assembly::checkpoint() const
 {
   Snapshot s = without_contacts();
-  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+  for (std::size_t p = 0; p < contacts_.n_lanes(); ++p)
     {
       const ContactHistory h = contacts_.history(p);
       if (h.normal != Vec3::Zero())
@@ -268,7 +316,7 @@ Snapshot Assembly::snapshot() const
 {
   Snapshot s = without_contacts();
   s.contacts.reserve(contacts_.n_pairs());
-  for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+  for (std::size_t p = 0; p < contacts_.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
       const Vec3 branch = packing_.centre(j) - packing_.centre(i);

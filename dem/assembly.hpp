@@ -4,6 +4,7 @@
 #include "dem/domain/rigid_box.hpp"
 #include "dem/measure/energy.hpp"
 #include "dem/measure/snapshot.hpp"
+#include "dem/motion/leapfrog.hpp"
 #include "dem/neighbours/verlet_list.hpp"
 
 #include <array>
@@ -65,6 +66,7 @@ public:
   EnergyBalance energy() const;
 
   double time_step = 0;        ///< s; set before the first step
+  int threads = 1;             ///< that share a step; changes no bit of any result
   double damping = 0.2;        ///< local damping [-]
   Vec3 gravity = Vec3::Zero(); ///< m/s2
   bool measure_energy = false;
@@ -79,7 +81,9 @@ public:
   void set_wall_memory(const std::array<double, wall_memory_size> &memory);
 
 private:
-  void add_wall_forces();
+  void add_wall_forces(std::size_t chunk);
+  void sum_wall_forces();
+  MotionReport move_grains(double speed_limit);
   void add_gravity();
   void sum_dissipation();
   void start_energy();
@@ -93,6 +97,13 @@ private:
   VerletList verlet_;
   AlignedVector<double> action_; ///< [F 0 T 0] per grain
   DissipationPerPair dissipation_;
+  /// What the grains of one chunk do to the walls.
+  struct WallSums
+  {
+    std::array<double, 6> force, stiffness;
+  };
+  std::vector<WallSums> wall_sums_;          ///< per chunk
+  std::vector<MotionReport> motion_reports_; ///< per chunk
   std::array<double, 6> wall_force_{}, previous_wall_force_{}, wall_displacement_{};
   std::array<double, 3> wall_stiffness_sum_{};
   double solid_volume_ = 0, d50_ = 0, min_radius_ = 0, greatest_step_ = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/contact/history.hpp"
 
+#include "dem/packing.hpp"
+
 namespace isostat
 {
 ContactHistory ContactList::history(std::size_t pair) const
@@ -37,41 +39,117 @@ void ContactList::set_history(std::size_t pair, const ContactHistory &h)
   occupied_[pair / lanes] = 1;
 }
 
+namespace
+{
+/// Gives a slot to every grain of a later chunk that a chunk acts on.
+class GhostSlots
+{
+public:
+  explicit GhostSlots(const Partition &partition)
+      : partition_(partition), slot_(partition.n_grains), owned_(partition.n_chunks),
+        next_(partition.n_grains + static_cast<std::uint32_t>(Packing::n_padding))
+  {}
+  void start_chunk(std::size_t chunk) { begin_ = next_, end_ = partition_.begin(chunk + 1); }
+  std::uint32_t slot(std::uint32_t grain)
+  {
+    if (grain < end_)
+      return grain;
+    if (slot_[grain] < begin_) // not of this chunk yet
+      {
+        slot_[grain] = next_++;
+        owned_[partition_.chunk_of(grain)].push_back({slot_[grain], grain});
+      }
+    return slot_[grain];
+  }
+  std::size_t n_slots() const { return next_; }
+  const std::vector<std::vector<Ghost>> &owned() const { return owned_; }
+
+private:
+  Partition partition_;
+  std::vector<std::uint32_t> slot_;
+  std::vector<std::vector<Ghost>> owned_;
+  std::uint32_t next_, begin_ = 0, end_ = 0;
+};
+} // namespace
+
+void ContactList::place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains)
+{
+  n_pairs_ = sorted_pairs.size();
+  partition_ = Partition(n_grains);
+  GhostSlots slots(partition_);
+  first_.clear();
+  second_.clear();
+  target_.clear();
+  chunk_block_.assign(1, 0);
+  auto pair = sorted_pairs.begin();
+  for (std::size_t chunk = 0; chunk < partition_.n_chunks; ++chunk)
+    {
+      slots.start_chunk(chunk);
+      for (; pair != sorted_pairs.end() && pair->first < partition_.begin(chunk + 1); ++pair)
+        {
+          first_.push_back(pair->first);
+          second_.push_back(pair->second);
+          target_.push_back(slots.slot(pair->second));
+        }
+      const std::size_t whole = (first_.size() + lanes - 1) / lanes * lanes;
+      first_.resize(whole, n_grains);
+      second_.resize(whole, n_grains + 1);
+      target_.resize(whole, n_grains + 1);
+      chunk_block_.push_back(whole / lanes);
+    }
+  n_slots_ = slots.n_slots();
+  ghosts_.clear();
+  ghost_begin_.assign(1, 0);
+  for (const auto &owned : slots.owned())
+    {
+      ghosts_.insert(ghosts_.end(), owned.begin(), owned.end());
+      ghost_begin_.push_back(ghosts_.size());
+    }
+}
+
+void ContactList::take_history(const ContactList &old)
+{
+  history_.assign(n_lanes() * n_components(), 0.0);
+  occupied_.assign(n_blocks(), 0);
+  const std::uint32_t idle = partition_.n_grains;
+  std::size_t from = 0;
+  for (std::size_t to = 0; to < n_lanes(); ++to)
+    {
+      const Pair key(first_[to], second_[to]);
+      if (key.first == idle)
+        continue;
+      while (from < old.n_lanes() && (old.first_[from] == idle || Pair(old.first_[from], old.second_[from]) < key))
+        ++from;
+      if (from == old.n_lanes())
+        return;
+      if (Pair(old.first_[from], old.second_[from]) != key || !old.occupied_[from / lanes])
+        continue;
+      const double *source = old.history_.data() + (from / lanes) * n_components() * lanes + from % lanes;
+      double *sink = history_.data() + (to / lanes) * n_components() * lanes + to % lanes;
+      for (std::size_t c = 0; c < n_components(); ++c)
+        sink[c * lanes] = source[c * lanes];
+      occupied_[to / lanes] = 1;
+    }
+}
+
 void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains)
 {
-  ContactList next(features_);
-  next.n_pairs_ = sorted_pairs.size();
-  const std::size_t n_blocks = (sorted_pairs.size() + lanes - 1) / lanes;
-  next.first_.assign(n_blocks * lanes, n_grains);
-  next.second_.assign(n_blocks * lanes, n_grains + 1);
-  next.history_.assign(n_blocks * lanes * n_components(), 0.0);
-  next.occupied_.assign(n_blocks, 0);
-
-  std::size_t old = 0;
-  for (std::size_t pair = 0; pair < sorted_pairs.size(); ++pair)
-    {
-      const Pair key = sorted_pairs[pair];
-      next.first_[pair] = key.first;
-      next.second_[pair] = key.second;
-      while (old < n_pairs_ && Pair(first_[old], second_[old]) < key)
-        ++old;
-      if (old < n_pairs_ && Pair(first_[old], second_[old]) == key && occupied_[old / lanes])
-        next.set_history(pair, history(old));
-    }
-  *this = std::move(next);
+  thread_local ContactList next; // its memory is used again
+  next.features_ = features_;
+  next.place(sorted_pairs, n_grains);
+  next.take_history(*this);
+  std::swap(*this, next);
 }
 
 void ContactList::set_features(LawFeatures active)
 {
   if (active == features_)
     return;
-  ContactList next(active);
-  next.n_pairs_ = n_pairs_;
-  next.first_ = first_;
-  next.second_ = second_;
+  ContactList next = *this;
+  next.features_ = active;
   next.history_.assign(first_.size() * n_components(active), 0.0);
   next.occupied_.assign(occupied_.size(), 0);
-  for (std::size_t pair = 0; pair < n_pairs_; ++pair)
+  for (std::size_t pair = 0; pair < n_lanes(); ++pair)
     next.set_history(pair, history(pair));
   *this = std::move(next);
 }

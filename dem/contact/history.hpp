@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/law.hpp"
+#include "dem/contact/partition.hpp"
+
+#include <span>
 
 namespace isostat
 {
+/// Where a chunk adds up what it does to a grain of a later chunk.
+struct Ghost
+{
+  std::uint32_t slot, grain;
+};
+
 /// Pairs of grains that may touch, and what their contacts remember, as arrays of structures of arrays:
 ///
-///     block b:  8 pairs;  first[8b .. 8b+7], second[8b .. 8b+7]
+///     block b:  8 lanes;  first[8b .. 8b+7], second[8b .. 8b+7]
 ///     history:  component c of lane l in block b at  (b * n_components + c) * 8 + l
 ///     components: n' (3), fs (3), [mb (3) with rolling], [mt (3) with twisting]; none at all without friction
 ///
-/// Pairs are sorted by (first, second), first < second. Pairs that do not touch carry zeros and add exact zeros to the
-/// sums, so results do not depend on how many such pairs the list holds. Lanes behind the last pair point at the
-/// packing's padding grains.
+/// Pairs are sorted by (first, second), first < second, and belong to the chunk of their first grain; every chunk fills
+/// whole blocks. Idle lanes point at the packing's padding grains. Pairs that do not touch carry zeros and add exact
+/// zeros to the sums, so results do not depend on how many such pairs the list holds.
+///
+/// Forces go to slots: slot i < n_grains is grain i. A second grain of a later chunk gets a slot of its own, a ghost,
+/// which its owner adds after all chunks are done: chunks never write to the same place, and the sum of a grain is
+/// (its chunk's pairs in order) + (ghosts in order of chunks) for any number of threads.
+/// tested: tests/dem/contact/history_test.cpp
 class ContactList
 {
 public:
@@ -23,14 +37,27 @@ public:
   explicit ContactList(LawFeatures active) : features_(active) {}
 
   std::size_t n_pairs() const { return n_pairs_; }
+  std::size_t n_lanes() const { return first_.size(); } ///< pairs and idle lanes: how far an index runs
   std::size_t n_blocks() const { return first_.size() / lanes; }
   std::size_t n_components() const { return n_components(features_); }
   LawFeatures features() const { return features_; }
   const std::uint32_t *first() const { return first_.data(); }
   const std::uint32_t *second() const { return second_.data(); }
+  /// Slot that the force on the second grain goes to.
+  const std::uint32_t *target() const { return target_.data(); }
   double *history_data() { return history_.data(); }
   /// 1 where a block may hold history; lets the loop skip blocks that do not touch without clearing them again.
   std::uint8_t *occupied() { return occupied_.data(); }
+
+  const Partition &partition() const { return partition_; }
+  /// First block of a chunk; chunk n_chunks: the number of blocks.
+  std::size_t first_block(std::size_t chunk) const { return chunk_block_[chunk]; }
+  /// Ghosts whose grains belong to `chunk`, for each grain in order of the chunks that fill them.
+  std::span<const Ghost> ghosts(std::size_t chunk) const
+  {
+    return std::span(ghosts_).subspan(ghost_begin_[chunk], ghost_begin_[chunk + 1] - ghost_begin_[chunk]);
+  }
+  std::size_t n_slots() const { return n_slots_; } ///< grains, padding, ghosts
 
   ContactHistory history(std::size_t pair) const;
   void set_history(std::size_t pair, const ContactHistory &history);
@@ -46,9 +73,15 @@ public:
   {
     return on.friction ? 6u + (on.rolling ? 3u : 0u) + (on.twisting ? 3u : 0u) : 0u;
   }
-  std::size_t bytes() const { return 8 * first_.size() + 8 * history_.size() + occupied_.size(); }
+  /// Memory that belongs to the state: pairs, slots and history.
+  std::size_t bytes() const
+  {
+    return 12 * first_.size() + 8 * history_.size() + occupied_.size() + sizeof(Ghost) * ghosts_.size();
+  }
 
 private:
+  void place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains);
+  void take_history(const ContactList &old);
   double *component(std::size_t pair, std::size_t c)
   {
     return &history_[((pair / lanes) * n_components() + c) * lanes + pair % lanes];
@@ -60,7 +93,11 @@ private:
 
   LawFeatures features_;
   std::size_t n_pairs_ = 0;
-  AlignedVector<std::uint32_t> first_, second_;
+  std::size_t n_slots_ = 0;
+  Partition partition_;
+  std::vector<std::size_t> chunk_block_{0, 0}, ghost_begin_{0, 0};
+  std::vector<Ghost> ghosts_;
+  AlignedVector<std::uint32_t> first_, second_, target_;
   AlignedVector<double> history_;
   std::vector<std::uint8_t> occupied_;
 };

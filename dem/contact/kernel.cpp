@@ -20,8 +20,10 @@ struct KernelView
   double *history, *action;
   std::uint8_t *occupied;
   std::size_t begin, end; ///< blocks
-  double young, stiffness_ratio, friction, rolling_stiffness, rolling_limit, twisting_stiffness, dt;
-  double *sliding, *rolling, *released, *created;
+  double friction, rolling_limit, dt;
+  double twice_young, half_dt, shear_dt, rolling_dt, twisting_dt; ///< products, so that the loop loads one number
+  double stiffness_ratio, rolling_stiffness, twisting_stiffness;
+  double *sliding = nullptr, *rolling = nullptr, *released = nullptr, *created = nullptr;
 };
 } // namespace isostat
 #endif
@@ -33,15 +35,21 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Scales `z` back to |z| <= limit; returns the mask of lanes that were outside. With a cheap root there is no branch:
-/// about as many vectors have a yielding lane as have none, and a wrong guess costs more than the root.
-HWY_INLINE Mask return_to(Triple &z, V limit)
+/// min(1, limit/|z|): brings `z` back to |z| <= limit. 1 where z is 0. With a cheap root there is no branch: about as
+/// many vectors have a yielding lane as have none, and a wrong guess costs more than the root.
+HWY_INLINE V return_factor(const Triple &z, V limit)
 {
-  const V norm2 = dot(z, z);
+  const D d;
+  const V one = hn::Set(d, 1.0), norm2 = dot(z, z);
+#if HWY_TARGET <= HWY_AVX3
+  // not a number where z is 0; the minimum is then its second operand
+  return V{_mm512_min_pd(hn::Mul(limit, inverse_root(norm2)).raw, one.raw)};
+#else
   const Mask outside = hn::Gt(norm2, hn::Mul(limit, limit));
-  if (HWY_TARGET <= HWY_AVX3 || HWY_UNLIKELY(!hn::AllFalse(D(), outside)))
-    z = scaled(z, hn::IfThenElse(outside, hn::Mul(limit, inverse_root(norm2)), hn::Set(D(), 1.0)));
-  return outside;
+  if (HWY_LIKELY(hn::AllFalse(d, outside)))
+    return one;
+  return hn::IfThenElse(outside, hn::Mul(limit, inverse_root(norm2)), one);
+#endif
 }
 
 /// Work that a return to the yield surface dissipates, (mid-step force).(trial - returned)/stiffness, J.
@@ -83,42 +91,45 @@ struct Loop
     return hn::Mul(energy, hn::Set(D(), 0.5));
   }
 
-  /// Vectors of the pair that all parts of the law share.
+  /// Vectors of a pair that the parts of the law share.
   struct Kinematics
   {
     Triple n0, n, tilt, turn; ///< n', n, a = n' x n, a + s
     V along;                  ///< s = along n'
-    V r1, r2, rr, overlap, fn, ks;
+    V r1, r2, reach, inv_distance, overlap, kn, fn;
     Triple dv, w1, w2;
     Mask touching;
   };
 
   /// z - z x (a + s): history that is normal to n' turned with the contact; (z x a) x s = a (s.z) is 0 for it.
-  static Triple turned(const Kinematics &p, const Triple &z) { return minus_cross(z, p.turn); }
+  static HWY_INLINE Triple turned(const Kinematics &p, const Triple &z) { return minus_cross(z, p.turn); }
+
+  static HWY_INLINE V closed(const Kinematics &p, V v) { return hn::IfThenElseZero(p.touching, v); }
 
   static HWY_INLINE void sub_block(const KernelView &k, std::size_t pair, double *h, bool occupied,
                                    std::uint8_t &touched)
   {
     const D d;
+    Kinematics p;
     const Records x1 = load_records(k.position, k.first + pair), x2 = load_records(k.position, k.second + pair);
     const Quad between = transposed(differences_and_sum(x1, x2));
     const Triple &branch = between.xyz;
-    const V reach = between.w, distance2 = dot(branch, branch);
-    if (HWY_UNLIKELY(hn::AllFalse(d, hn::Lt(distance2, hn::Mul(reach, reach)))))
-      return skip(k, pair, h, occupied, transposed(x1).w, reach);
-    touched = 1;
-    const V inv_distance = inverse_root(distance2);
-    Kinematics p;
-    p.overlap = hn::Sub(reach, root(distance2, inv_distance));
+    p.reach = between.w;
+    const V distance2 = dot(branch, branch);
+    p.inv_distance = inverse_root(distance2);
+    p.overlap = hn::Sub(p.reach, root(distance2, p.inv_distance));
     p.touching = hn::Gt(p.overlap, hn::Zero(d));
+    if (HWY_UNLIKELY(hn::AllFalse(d, p.touching)))
+      return skip(k, pair, h, occupied, transposed(x1).w, p.reach);
+    touched = 1;
     // lanes that do not touch get n = 0, kn = 0 and an empty history: all they add is an exact 0
-    const V inv_closed = hn::IfThenElseZero(p.touching, inv_distance);
-    p.n = scaled(branch, inv_closed);
-    const V stiffness = hn::Mul(inverse(reach), hn::Set(d, 2 * k.young));
+    p.n = {closed(p, hn::Mul(branch.x, p.inv_distance)), closed(p, hn::Mul(branch.y, p.inv_distance)),
+           closed(p, hn::Mul(branch.z, p.inv_distance))};
+    const V stiffness = hn::Mul(inverse(p.reach), hn::Set(d, k.twice_young));
     if constexpr (!Friction)
       {
-        const V r1 = transposed(x1).w, rr = hn::Mul(r1, hn::Sub(reach, r1));
-        const V kn = hn::IfThenElseZero(p.touching, hn::Mul(rr, stiffness));
+        const V r1 = transposed(x1).w, rr = hn::Mul(r1, hn::Sub(p.reach, r1));
+        const V kn = closed(p, hn::Mul(rr, stiffness));
         add_forces(k.action, k.first + pair, k.target + pair, scaled(p.n, hn::Mul(kn, p.overlap)));
         return;
       }
@@ -128,17 +139,15 @@ struct Loop
             differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
         p.dv = moving.xyz;
         p.r1 = moving.w;
-        p.r2 = hn::Sub(reach, p.r1);
-        p.rr = hn::Mul(p.r1, p.r2);
-        const V kn = hn::IfThenElseZero(p.touching, hn::Mul(p.rr, stiffness));
-        p.fn = hn::Mul(kn, p.overlap);
-        p.ks = hn::Mul(kn, hn::Set(d, k.stiffness_ratio));
         p.w1 = transposed(load_records(k.spin, k.first + pair)).xyz;
         p.w2 = transposed(load_records(k.spin, k.second + pair)).xyz;
+        p.r2 = hn::Sub(p.reach, p.r1);
+        p.kn = closed(p, hn::Mul(hn::Mul(p.r1, p.r2), stiffness));
+        p.fn = hn::Mul(p.kn, p.overlap);
         if constexpr (Energy)
-          store_released(k, pair, h, p.touching, p.rr, reach);
+          store_released(k, pair, h, p.touching, hn::Mul(p.r1, p.r2), p.reach);
         turn_with_contact(k, h, p);
-        const Triple fs = shear(k, pair, h, p, hn::Mul(reach, inv_closed), hn::Mul(p.overlap, inv_closed));
+        const Triple fs = shear(k, pair, h, p);
         store3(p.n, h);
 
         // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
@@ -165,7 +174,7 @@ struct Loop
   {
     const D d;
     const Triple n0 = load3(h);
-    const V ks = hn::Div(hn::Mul(rr, hn::Set(d, 2 * k.young * k.stiffness_ratio)),
+    const V ks = hn::Div(hn::Mul(rr, hn::Set(d, k.twice_young * k.stiffness_ratio)),
                          hn::Max(reach, hn::Set(d, 1e-300)));
     const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), hn::Zero(d)));
     hn::StoreU(hn::IfThenElseZero(opened, forgotten(k, h, ks, rr)), d, k.released + pair);
@@ -174,35 +183,41 @@ struct Loop
   /// a = n' x n,  s = (dt/2) [n'.(w1 + w2)] n'
   static HWY_INLINE void turn_with_contact(const KernelView &k, const double *h, Kinematics &p)
   {
-    p.n0 = load3(p.touching, h);
+    p.n0 = load3(h);
     p.tilt = cross(p.n0, p.n);
-    p.along = hn::Mul(hn::Set(D(), 0.5 * k.dt), dot(p.n0, plus(p.w1, p.w2)));
+    p.along = hn::Mul(hn::Set(D(), k.half_dt), dot(p.n0, plus(p.w1, p.w2)));
     p.turn = madd(p.n0, p.along, p.tilt);
   }
 
   /// v_r = alpha (v2 - v1) - (R1 w1 + R2 w2) x n;  fs <- turned(fs) - ks dt [v_r - (v_r.n) n], |fs| <= mu fn
-  static HWY_INLINE Triple shear(const KernelView &k, std::size_t pair, double *h, const Kinematics &p, V alpha,
-                                 V relative_overlap)
+  static HWY_INLINE Triple shear(const KernelView &k, std::size_t pair, double *h, const Kinematics &p)
   {
     const D d;
-    const V dt = hn::Set(d, k.dt);
     const Triple rolling_speed = madd(p.w1, p.r1, scaled(p.w2, p.r2));
+    const V alpha = closed(p, hn::Mul(p.reach, p.inv_distance));
     const Triple vr = minus_cross(scaled(p.dv, alpha), rolling_speed, p.n);
-    const Triple before = turned(p, load3(p.touching, h + at_shear * lanes));
-    const Triple trial = nmadd(nmadd(p.n, dot(vr, p.n), vr), hn::Mul(p.ks, dt), before);
-    Triple fs = trial;
-    const Mask sliding = return_to(fs, hn::Mul(p.fn, hn::Set(d, k.friction)));
+    const Triple before = turned(p, load3(h + at_shear * lanes));
+    const Triple slip_rate = nmadd(p.n, dot(vr, p.n), vr);
+    const Triple trial = nmadd(slip_rate, hn::Mul(p.kn, hn::Set(d, k.shear_dt)), before);
+    const V factor = return_factor(trial, hn::Mul(p.fn, hn::Set(d, k.friction)));
+    const Triple fs = scaled(trial, factor);
     store3(fs, h + at_shear * lanes);
     if constexpr (Energy)
       {
-        hn::StoreU(plastic_work(before, trial, fs, p.ks, hn::And(p.touching, sliding)), d, k.sliding + pair);
+        const V ks = hn::Mul(p.kn, hn::Set(d, k.stiffness_ratio));
+        hn::StoreU(plastic_work(before, trial, fs, ks, yielded(p, factor)), d, k.sliding + pair);
         // fs.(true slip rate - slip rate of the law) dt
         const Triple mid = scaled(plus(before, fs), hn::Set(d, 0.5));
         const Triple arm_gap = scaled(cross(plus(p.w1, p.w2), p.n), hn::Mul(p.overlap, hn::Set(d, 0.5)));
-        const Triple gap = nmadd(p.dv, relative_overlap, arm_gap);
-        hn::StoreU(hn::IfThenElseZero(p.touching, hn::Mul(dot(mid, gap), dt)), d, k.created + pair);
+        const Triple gap = nmadd(p.dv, hn::Mul(p.overlap, p.inv_distance), arm_gap);
+        hn::StoreU(closed(p, hn::Mul(dot(mid, gap), hn::Set(d, k.dt))), d, k.created + pair);
       }
     return fs;
+  }
+
+  static Mask yielded(const Kinematics &p, V factor)
+  {
+    return hn::And(p.touching, hn::Lt(factor, hn::Set(D(), 1.0)));
   }
 
   /// mb <- turned(mb) - kr dt dw_b, |mb| <= rho_r fn;  mt <- turned(mt) - kt dt dw_t;  returns mb + mt
@@ -213,28 +228,31 @@ struct Loop
     if constexpr (Rolling || Twisting)
       {
         const Triple dw = minus(p.w2, p.w1);
-        const V spin_n = dot(dw, p.n), rr_ks = hn::Mul(p.rr, p.ks);
+        const V spin_n = dot(dw, p.n), rr_kn = hn::Mul(hn::Mul(p.r1, p.r2), p.kn);
         if constexpr (Rolling)
           {
-            const Triple before = turned(p, load3(p.touching, h + at_bending * lanes));
-            const V rate = hn::Mul(rr_ks, hn::Set(d, k.rolling_stiffness * k.dt));
+            const Triple before = turned(p, load3(h + at_bending * lanes));
+            const V rate = hn::Mul(rr_kn, hn::Set(d, k.rolling_dt));
             const Triple trial = nmadd(nmadd(p.n, spin_n, dw), rate, before);
-            moment = trial;
-            const Mask rolls =
-                return_to(moment, hn::Mul(p.fn, hn::Mul(hn::Min(p.r1, p.r2), hn::Set(d, k.rolling_limit))));
+            const V factor =
+                return_factor(trial, hn::Mul(p.fn, hn::Mul(hn::Min(p.r1, p.r2), hn::Set(d, k.rolling_limit))));
+            moment = scaled(trial, factor);
             store3(moment, h + at_bending * lanes);
             if constexpr (Energy)
               {
-                const V kr = hn::Mul(rr_ks, hn::Set(d, k.rolling_stiffness));
-                hn::StoreU(plastic_work(before, trial, moment, kr, hn::And(p.touching, rolls)), d, k.rolling + pair);
+                const V kr = hn::Mul(rr_kn, hn::Set(d, k.stiffness_ratio * k.rolling_stiffness));
+                hn::StoreU(plastic_work(before, trial, moment, kr, yielded(p, factor)), d, k.rolling + pair);
               }
           }
         if constexpr (Twisting)
           {
-            const Triple z = load3(p.touching, h + at_twisting * lanes);
-            const V rate = hn::Mul(rr_ks, hn::Set(d, k.twisting_stiffness * k.dt));
+            const Triple z = load3(h + at_twisting * lanes);
+            const V rate = hn::Mul(rr_kn, hn::Set(d, k.twisting_dt));
             const Triple with_tilt = madd(p.tilt, hn::Mul(p.along, dot(p.n0, z)), turned(p, z)); // mt is along n'
-            const Triple mt = nmadd(p.n, hn::Mul(rate, spin_n), with_tilt);
+            const V turned_by = hn::Mul(rate, spin_n);
+            const Triple mt = {closed(p, hn::NegMulAdd(p.n.x, turned_by, with_tilt.x)),
+                               closed(p, hn::NegMulAdd(p.n.y, turned_by, with_tilt.y)),
+                               closed(p, hn::NegMulAdd(p.n.z, turned_by, with_tilt.z))};
             store3(mt, h + at_twisting * lanes);
             moment = Rolling ? plus(moment, mt) : mt;
           }
@@ -242,8 +260,9 @@ struct Loop
     return moment;
   }
 
-  static void run(const KernelView &k)
+  static void run(const KernelView &view)
   {
+    const KernelView k = view; // a copy that no store can alias
     for (std::size_t b = k.begin; b < k.end; ++b)
       {
         std::uint8_t touched = 0;
@@ -268,6 +287,19 @@ ISOSTAT_VARIANT(TwistingEnergy, true, false, true, true)
 ISOSTAT_VARIANT(FullEnergy, true, true, true, true)
 #undef ISOSTAT_VARIANT
 
+/// Adds to each grain what its ghosts have, and clears them.
+void AddGhosts(const Ghost *ghosts, std::size_t n, double *action)
+{
+  const D d;
+  for (std::size_t g = 0; g < n; ++g)
+    for (std::size_t c = 0; c < 8; c += hn::Lanes(d))
+      {
+        double *grain = action + 8 * std::size_t{ghosts[g].grain} + c, *ghost = action + 8 * std::size_t{ghosts[g].slot} + c;
+        hn::Store(hn::Add(hn::Load(d, grain), hn::Load(d, ghost)), d, grain);
+        hn::Store(hn::Zero(d), d, ghost);
+      }
+}
+
 const char *InstructionSet() { return hwy::TargetName(HWY_TARGET); }
 } // namespace HWY_NAMESPACE
 } // namespace isostat
@@ -285,6 +317,7 @@ HWY_EXPORT(SlidingEnergy);
 HWY_EXPORT(RollingEnergy);
 HWY_EXPORT(TwistingEnergy);
 HWY_EXPORT(FullEnergy);
+HWY_EXPORT(AddGhosts);
 HWY_EXPORT(InstructionSet);
 
 namespace
@@ -318,39 +351,56 @@ void run(LawFeatures on, const KernelView &view)
 }
 } // namespace
 
-void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
-                        DissipationPerPair *dissipation)
+void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
+                        double *action, DissipationPerPair *dissipation)
 {
-  KernelView view{packing.position.data(),
-                  packing.velocity.data(),
-                  packing.spin.data(),
-                  list.first(),
-                  list.second(),
-                  list.second(),
-                  list.history_data(),
-                  action,
-                  list.occupied(),
-                  0,
-                  list.n_blocks(),
-                  law.young,
-                  law.stiffness_ratio,
-                  law.friction,
-                  law.rolling_stiffness,
-                  law.rolling_limit,
-                  law.twisting_stiffness,
-                  dt,
-                  nullptr,
-                  nullptr,
-                  nullptr,
-                  nullptr};
+  const double shear = law.stiffness_ratio * dt;
+  KernelView view{.position = packing.position.data(),
+                  .velocity = packing.velocity.data(),
+                  .spin = packing.spin.data(),
+                  .first = list.first(),
+                  .second = list.second(),
+                  .target = list.target(),
+                  .history = list.history_data(),
+                  .action = action,
+                  .occupied = list.occupied(),
+                  .begin = list.first_block(chunk),
+                  .end = list.first_block(chunk + 1),
+                  .friction = law.friction,
+                  .rolling_limit = law.rolling_limit,
+                  .dt = dt,
+                  .twice_young = 2 * law.young,
+                  .half_dt = 0.5 * dt,
+                  .shear_dt = shear,
+                  .rolling_dt = shear * law.rolling_stiffness,
+                  .twisting_dt = shear * law.twisting_stiffness,
+                  .stiffness_ratio = law.stiffness_ratio,
+                  .rolling_stiffness = law.rolling_stiffness,
+                  .twisting_stiffness = law.twisting_stiffness};
   if (!dissipation)
     return run(list.features(), view);
-  dissipation->resize(list.n_blocks() * ContactList::lanes);
+  dissipation->clear(view.begin * ContactList::lanes, view.end * ContactList::lanes);
   view.sliding = dissipation->sliding.data();
   view.rolling = dissipation->rolling.data();
   view.released = dissipation->released.data();
   view.created = dissipation->created.data();
   run_with_energy(list.features(), view);
+}
+
+void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
+{
+  HWY_DYNAMIC_DISPATCH(AddGhosts)(list.ghosts(chunk).data(), list.ghosts(chunk).size(), action);
+}
+
+void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
+                        DissipationPerPair *dissipation)
+{
+  if (dissipation)
+    dissipation->resize(list.n_lanes());
+  for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
+    add_contact_forces(law, packing, dt, list, chunk, action, dissipation);
+  for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
+    add_ghosts(list, chunk, action);
 }
 
 std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }

@@ -3,6 +3,7 @@
 #include "dem/contact/history.hpp"
 #include "dem/packing.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace isostat
@@ -16,21 +17,35 @@ struct DissipationPerPair
   void resize(std::size_t n)
   {
     for (auto *v : {&sliding, &rolling, &released, &created})
-      v->assign(n, 0.0);
+      v->resize(n);
+  }
+  void clear(std::size_t begin, std::size_t end)
+  {
+    for (auto *v : {&sliding, &rolling, &released, &created})
+      std::fill(v->begin() + begin, v->begin() + end, 0.0);
   }
 };
 
-/// Contact forces of all pairs, added to the grains: the SIMD form of contact_force() in law.hpp.
+/// Contact forces of the pairs of one chunk, added to the slots of their grains: the SIMD form of contact_force() in
+/// law.hpp.
 ///
-/// `action` holds one cache line per grain, [Fx Fy Fz 0 Tx Ty Tz 0] (N, N m), and is added to. History in `list` is
+/// `action` holds one cache line per slot, [Fx Fy Fz 0 Tx Ty Tz 0] (N, N m), and is added to. History in `list` is
 /// advanced in place. Sums run in the order of the pair list, lane by lane, so a grain's sum is bitwise the same for
-/// any vector width of one instruction set and for any number of non-touching pairs in the list.
-/// Does not know walls, gravity or damping.
+/// any vector width of one instruction set, any number of non-touching pairs in the list and any number of threads:
+/// chunks write to different slots and may run at the same time. Does not know walls, gravity or damping.
 /// @param dt          s
-/// @param dissipation nullptr: the loop without energy sums; otherwise resized to the list and overwritten
-/// cost: about 120 multiply-adds per pair, with AVX-512 no divide and no root (estimates and Newton steps) and 400
-/// bytes of traffic; see benchmarks/README.md
+/// @param action      list.n_slots() lines
+/// @param dissipation nullptr: the loop without energy sums; otherwise as large as the list, its part is overwritten
+/// cost: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with AVX-512 no divide
+/// and no root (estimates and series); 400 bytes of traffic per pair; see benchmarks/README.md
 /// tested: tests/dem/contact/kernel_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
+void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
+                        double *action, DissipationPerPair *dissipation);
+
+/// Adds to the grains of a chunk what other chunks have left in their ghosts, and clears the ghosts.
+void add_ghosts(const ContactList &list, std::size_t chunk, double *action);
+
+/// Both for all chunks, one after the other; resizes `dissipation`.
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
                         DissipationPerPair *dissipation = nullptr);
 

@@ -24,7 +24,7 @@ std::vector<Element> closed_contacts(const LawParams &law, const Packing &packin
 {
   std::vector<Element> elements;
   elements.reserve(contacts.n_pairs());
-  for (std::size_t p = 0; p < contacts.n_pairs(); ++p)
+  for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
       const Vec3 branch = packing.centre(j) - packing.centre(i);

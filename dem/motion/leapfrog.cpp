@@ -41,17 +41,18 @@ struct Advance
 };
 
 template <bool Measure>
-MotionReport integrate_all(Packing &packing, double *action, double dt, double damping, double speed_limit)
+MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t end, double *action, const Advance &advance,
+                             double speed_limit)
 {
   const D4 d;
-  const Advance advance{dt, damping};
   constexpr std::size_t width = hn::MaxLanes(D4());
-  const V4 limit2 = hn::Set(d, speed_limit * speed_limit), step = hn::Set(d, dt);
+  const V4 limit2 = hn::Set(d, speed_limit * speed_limit), step = hn::Set(d, advance.dt);
   V4 loss = hn::Zero(d), greatest = hn::Zero(d);
   auto sane = hn::Ge(greatest, greatest);
-  double *x = packing.position.data(), *v = packing.velocity.data(), *w = packing.spin.data();
-  const std::size_t n = packing.n_grains();
-  for (std::size_t i = 0; i < n; ++i, x += 4, v += 4, w += 4, action += 8)
+  double *x = packing.position.data() + 4 * begin, *v = packing.velocity.data() + 4 * begin,
+         *w = packing.spin.data() + 4 * begin;
+  action += 8 * begin;
+  for (std::size_t i = begin; i < end; ++i, x += 4, v += 4, w += 4, action += 8)
     {
       const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
       for (std::size_t half = 0; half < 4; half += width)
@@ -82,13 +83,15 @@ MotionReport integrate_all(Packing &packing, double *action, double dt, double d
   return report;
 }
 
-MotionReport Integrate(Packing &packing, double *action, double dt, double damping, double speed_limit)
+MotionReport Integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
+                       double speed_limit)
 {
-  return integrate_all<false>(packing, action, dt, damping, speed_limit);
+  return integrate_range<false>(packing, begin, end, action, {dt, damping}, speed_limit);
 }
-MotionReport IntegrateMeasured(Packing &packing, double *action, double dt, double damping, double speed_limit)
+MotionReport IntegrateMeasured(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt,
+                               double damping, double speed_limit)
 {
-  return integrate_all<true>(packing, action, dt, damping, speed_limit);
+  return integrate_range<true>(packing, begin, end, action, {dt, damping}, speed_limit);
 }
 } // namespace HWY_NAMESPACE
 } // namespace isostat
@@ -100,11 +103,18 @@ namespace isostat
 HWY_EXPORT(Integrate);
 HWY_EXPORT(IntegrateMeasured);
 
+MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
+                       double speed_limit, bool measure_damping)
+{
+  if (measure_damping)
+    return HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, begin, end, action, dt, damping, speed_limit);
+  return HWY_DYNAMIC_DISPATCH(Integrate)(packing, begin, end, action, dt, damping, speed_limit);
+}
+
 MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
                        bool measure_damping)
 {
-  return measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, action, dt, damping, speed_limit)
-                         : HWY_DYNAMIC_DISPATCH(Integrate)(packing, action, dt, damping, speed_limit);
+  return integrate(packing, 0, packing.n_grains(), action, dt, damping, speed_limit, measure_damping);
 }
 } // namespace isostat
 #endif

@@ -24,4 +24,8 @@ struct MotionReport
 /// tested: tests/dem/motion/leapfrog_test.cpp
 MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
                        bool measure_damping);
+
+/// The same for grains [begin, end).
+MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
+                       double speed_limit, bool measure_damping);
 } // namespace isostat

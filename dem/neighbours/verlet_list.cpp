@@ -9,9 +9,25 @@ namespace isostat
 {
 namespace
 {
-constexpr double initial_skin = 0.03, least_skin = 0.01, greatest_skin = 0.5; // of the smallest radius
-constexpr std::uint64_t frequent = 300, rare = 3000;                          // steps between rebuilds
+// Tight skin, of the smallest radius. Gaps between grains that have just parted are as small as overlaps: a skin much
+// smaller than this one saves few pairs and is used up at once.
+constexpr double initial_skin = 0.005, least_skin = 0.001, greatest_skin = 0.3;
+constexpr double wide_over_tight = 8;
+constexpr std::uint64_t frequent = 60, rare = 240; // steps between selections
+
+double wall_gap(const Packing &packing, const RigidBox &box, std::uint32_t i, int wall)
+{
+  const double x = packing.position[4 * i + wall / 2];
+  return (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]) - packing.radius(i);
+}
 } // namespace
+
+void VerletList::invalidate()
+{
+  slack_ = -1;
+  tight_ = {};
+  wide_ = {};
+}
 
 void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts)
 {
@@ -19,61 +35,98 @@ void VerletList::update(const Packing &packing, const RigidBox &box, double grea
   slack_ -= 4 * greatest_step; // both grains of a pair, and the box's homogeneous part
   if (slack_ > 0)
     return;
-  if (built_position_.size() == packing.position.size() && (slack_ = remaining_slack(packing, box)) > 0)
+  slack_ = tight_.slack(packing, box, skin_, greatest_reach_);
+  if (slack_ > 0)
     return;
-  rebuild(packing, box, contacts);
+  choose_skin(packing.min_radius());
+  // a pair left out of the wide list is still apart by the slack that remains of it
+  if (wide_.slack(packing, box, wide_skin_, greatest_reach_) <= skin_)
+    search(packing, box);
+  select(packing, box, contacts);
 }
 
-double VerletList::remaining_slack(const Packing &packing, const RigidBox &box) const
+double VerletList::Reference::slack(const Packing &now, const RigidBox &box_now, double skin,
+                                    double greatest_reach) const
 {
-  const Vec3 centre = box.centre(), built_centre = built_box_.centre();
-  const Vec3 stretch = box.edges().cwiseQuotient(built_box_.edges());
+  if (position.size() != now.position.size())
+    return -1;
+  const Vec3 centre = box_now.centre(), built_centre = box.centre();
+  const Vec3 stretch = box_now.edges().cwiseQuotient(box.edges());
   double moved2 = 0, moved_in_box2 = 0;
-  for (std::size_t i = 0; i < packing.n_grains(); ++i)
+  for (std::size_t i = 0; i < now.n_grains(); ++i)
     {
-      const Vec3 x = packing.centre(i), x0(&built_position_[4 * i]);
+      const Vec3 x = now.centre(i), x0(&position[4 * i]);
       moved2 = std::max(moved2, (x - x0).squaredNorm());
       moved_in_box2 = std::max(moved_in_box2, (x - centre - stretch.cwiseProduct(x0 - built_centre)).squaredNorm());
     }
   // as they are: two grains approach by at most 2 moved; a wall comes nearer by its own way
-  const double wall = std::max((box.lower - built_box_.lower).cwiseAbs().maxCoeff(),
-                               (box.upper - built_box_.upper).cwiseAbs().maxCoeff());
+  const double wall =
+      std::max((box_now.lower - box.lower).cwiseAbs().maxCoeff(), (box_now.upper - box.upper).cwiseAbs().maxCoeff());
   const double moved = std::sqrt(moved2);
-  const double as_is = skin_ - std::max(2 * moved, moved + wall);
+  const double as_is = skin - std::max(2 * moved, moved + wall);
   // with the box: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
   const double shrink = std::max(0.0, 1 - stretch.minCoeff());
-  const double with_box = skin_ * (1 - shrink) - shrink * greatest_reach_ - 2 * std::sqrt(moved_in_box2);
+  const double with_box = skin * (1 - shrink) - shrink * greatest_reach - 2 * std::sqrt(moved_in_box2);
   return std::max(as_is, with_box);
 }
 
-void VerletList::rebuild(const Packing &packing, const RigidBox &box, ContactList &contacts)
+void VerletList::choose_skin(double r_min)
 {
-  const double r_min = packing.min_radius();
   if (n_rebuilds_ == 0)
     skin_ = initial_skin * r_min;
   else if (steps_since_rebuild_ < frequent)
     skin_ = std::min(1.3 * skin_, greatest_skin * r_min);
   else if (steps_since_rebuild_ > rare)
     skin_ = std::max(0.8 * skin_, least_skin * r_min);
+}
 
-  contacts.replace_pairs(find_pairs(packing, skin_), static_cast<std::uint32_t>(packing.n_grains()));
+void VerletList::search(const Packing &packing, const RigidBox &box)
+{
+  wide_skin_ = wide_over_tight * skin_;
+  candidates_ = find_pairs(packing, wide_skin_);
   for (int wall = 0; wall < 6; ++wall)
     {
-      const int axis = wall / 2;
-      near_wall_[wall].clear();
+      wall_candidates_[wall].clear();
       for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
-        {
-          const double x = packing.position[4 * i + axis];
-          const double gap = (wall % 2 ? box.upper[axis] - x : x - box.lower[axis]) - packing.radius(i);
-          if (gap < skin_)
-            near_wall_[wall].push_back(i);
-        }
+        if (wall_gap(packing, box, i, wall) < wide_skin_)
+          wall_candidates_[wall].push_back(i);
     }
-  built_position_ = packing.position;
-  built_box_ = box;
+  wide_ = {packing.position, box};
   greatest_reach_ = 2 * packing.max_radius();
+  ++n_searches_;
+}
+
+void VerletList::select(const Packing &packing, const RigidBox &box, ContactList &contacts)
+{
+  thread_local std::vector<ContactList::Pair> pairs; // its memory is used again
+  pairs.clear();
+  for (const auto &pair : candidates_)
+    {
+      const double *p = &packing.position[4 * pair.first], *q = &packing.position[4 * pair.second];
+      const double dx = q[0] - p[0], dy = q[1] - p[1], dz = q[2] - p[2], reach = p[3] + q[3] + skin_;
+      if (dx * dx + dy * dy + dz * dz < reach * reach)
+        pairs.push_back(pair);
+    }
+  contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()));
+  select_near_walls(packing, box, contacts.partition());
+  tight_ = {packing.position, box};
   slack_ = skin_;
   steps_since_rebuild_ = 0;
   ++n_rebuilds_;
+}
+
+void VerletList::select_near_walls(const Packing &packing, const RigidBox &box, const Partition &partition)
+{
+  for (int wall = 0; wall < 6; ++wall)
+    {
+      std::vector<std::uint32_t> &near = near_wall_[wall];
+      near.clear();
+      for (std::uint32_t i : wall_candidates_[wall])
+        if (wall_gap(packing, box, i, wall) < skin_)
+          near.push_back(i);
+      near_wall_begin_[wall].clear();
+      for (std::size_t chunk = 0; chunk <= partition.n_chunks; ++chunk)
+        near_wall_begin_[wall].push_back(std::ranges::lower_bound(near, partition.begin(chunk)) - near.begin());
+    }
 }
 } // namespace isostat

@@ -5,15 +5,18 @@
 #include "dem/packing.hpp"
 
 #include <array>
+#include <span>
 
 namespace isostat
 {
 /// Keeps the list of pairs and of grains near walls complete while grains move: whatever touches is in the list.
 ///
-/// Pairs closer than a skin are listed. A cheap bound on what grains and walls have moved is summed every step; when it
-/// uses up the slack, the true displacements are looked at, both as they are and less the box's homogeneous strain, and
-/// only if neither fits in the skin is the list rebuilt. The skin follows the flow: it widens when rebuilds come often
-/// and shrinks when they are rare. Results do not depend on it (see ContactList).
+/// Two skins: a wide list of candidates, found with the cell grid now and then, and a tight list of those that touch or
+/// nearly touch, chosen from it often, which is what the loop runs over. A cheap bound on what grains and walls have
+/// moved is summed every step; when it uses up the slack, the true displacements are looked at, both as they are and
+/// less the box's homogeneous strain, and only if neither fits in the skin is the list made again. The tight skin
+/// follows the flow: it widens when it is used up soon and shrinks when it lasts. Results do not depend on it (see
+/// ContactList).
 class VerletList
 {
 public:
@@ -21,22 +24,39 @@ public:
   /// @param greatest_step  bound on what any grain or wall has moved since the last call, m
   void update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts);
 
-  /// Grains within the skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
+  /// Grains within the tight skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
   const std::array<std::vector<std::uint32_t>, 6> &near_wall() const { return near_wall_; }
+  /// Those of one chunk.
+  std::span<const std::uint32_t> near_wall(int wall, std::size_t chunk) const
+  {
+    const std::size_t *begin = &near_wall_begin_[wall][chunk];
+    return std::span(near_wall_[wall]).subspan(begin[0], begin[1] - begin[0]);
+  }
 
-  void invalidate() { slack_ = -1; }
-  std::uint64_t n_rebuilds() const { return n_rebuilds_; }
-  double skin() const { return skin_; }
+  void invalidate();
+  std::uint64_t n_rebuilds() const { return n_rebuilds_; } ///< of the tight list
+  std::uint64_t n_searches() const { return n_searches_; } ///< of the wide one
+  double skin() const { return skin_; }                    ///< tight, m
 
 private:
-  double remaining_slack(const Packing &packing, const RigidBox &box) const;
-  void rebuild(const Packing &packing, const RigidBox &box, ContactList &contacts);
+  /// Positions a list was made from.
+  struct Reference
+  {
+    AlignedVector<double> position;
+    RigidBox box;
+    double slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach) const;
+  };
+  void choose_skin(double r_min);
+  void search(const Packing &packing, const RigidBox &box);
+  void select(const Packing &packing, const RigidBox &box, ContactList &contacts);
+  void select_near_walls(const Packing &packing, const RigidBox &box, const Partition &partition);
 
-  double skin_ = 0, slack_ = -1;
-  std::uint64_t steps_since_rebuild_ = 0, n_rebuilds_ = 0;
-  AlignedVector<double> built_position_;
-  RigidBox built_box_;
+  double skin_ = 0, wide_skin_ = 0, slack_ = -1;
+  std::uint64_t steps_since_rebuild_ = 0, n_rebuilds_ = 0, n_searches_ = 0;
+  Reference tight_, wide_;
   double greatest_reach_ = 0; ///< largest R1 + R2, m
-  std::array<std::vector<std::uint32_t>, 6> near_wall_;
+  std::vector<ContactList::Pair> candidates_;
+  std::array<std::vector<std::uint32_t>, 6> wall_candidates_, near_wall_;
+  std::array<std::vector<std::size_t>, 6> near_wall_begin_;
 };
 } // namespace isostat
