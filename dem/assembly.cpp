@@ -5,6 +5,7 @@
 #include "dem/motion/leapfrog.hpp"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace isostat
 {
@@ -50,6 +51,18 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
       if (const double overlap = wall_overlap(packing, box, i, wall); overlap > 0)
         visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
 }
+
+MotionReport sum_of(const std::vector<MotionReport> &parts)
+{
+  MotionReport all;
+  for (const MotionReport &part : parts) // in order of chunks
+    {
+      all.greatest_speed = std::max(all.greatest_speed, part.greatest_speed);
+      all.exploded |= part.exploded;
+      all.damping_loss += part.damping_loss;
+    }
+  return all;
+}
 } // namespace
 
 Assembly::Assembly(const Snapshot &initial)
@@ -73,36 +86,50 @@ Assembly::Assembly(const Snapshot &initial)
 
 void Assembly::set_law(const LawParams &law)
 {
+  evaluate();
   law_ = law;
   contacts_.set_features(law.active());
 }
 
 void Assembly::compute_forces()
 {
+  if (std::exchange(forces_known_, true))
+    return;
   verlet_.update(packing_, box_, greatest_step_, contacts_);
   action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
+  wall_sums_.resize(contacts_.partition().n_chunks);
+  for (std::size_t chunk = 0; chunk < wall_sums_.size(); ++chunk)
+    add_wall_forces(chunk);
+  sum_wall_forces();
+  if (gravity != Vec3::Zero())
+    add_gravity();
+  pending_ = true;
+  if (measure_energy)
+    energy_started_ ? sum_dissipation() : start_energy();
+}
+
+void Assembly::evaluate_chunk(std::size_t chunk) const
+{
+  add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(),
+                     measure_energy ? &dissipation_ : nullptr);
+}
+
+void Assembly::evaluate() const
+{
+  if (!std::exchange(pending_, false))
+    return;
   if (measure_energy)
     dissipation_.resize(contacts_.n_lanes());
   const int n_chunks = static_cast<int>(contacts_.partition().n_chunks);
-  wall_sums_.resize(n_chunks);
-  DissipationPerPair *dissipation = measure_energy ? &dissipation_ : nullptr;
 #pragma omp parallel num_threads(std::clamp(threads, 1, n_chunks)) if (threads > 1 && n_chunks > 1)
   {
 #pragma omp for schedule(static)
     for (int chunk = 0; chunk < n_chunks; ++chunk)
-      {
-        add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(), dissipation);
-        add_wall_forces(chunk);
-      }
+      evaluate_chunk(chunk);
 #pragma omp for schedule(static)
     for (int chunk = 0; chunk < n_chunks; ++chunk)
       add_ghosts(contacts_, chunk, action_.data());
   }
-  sum_wall_forces();
-  if (gravity != Vec3::Zero())
-    add_gravity();
-  if (measure_energy)
-    energy_started_ ? sum_dissipation() : start_energy();
 }
 
 void Assembly::start_energy()
@@ -155,6 +182,7 @@ void Assembly::add_gravity()
 
 void Assembly::sum_dissipation()
 {
+  evaluate();
   // in pair order, so that the sums do not depend on the list either
   for (std::size_t p = 0; p < contacts_.n_lanes() && !dissipation_.sliding.empty(); ++p)
     {
@@ -172,22 +200,40 @@ MotionReport Assembly::move_grains(double speed_limit)
   const Partition &partition = contacts_.partition();
   const int n_chunks = static_cast<int>(partition.n_chunks);
   motion_reports_.resize(n_chunks);
-#pragma omp parallel for schedule(static) num_threads(std::clamp(threads, 1, n_chunks)) if (threads > 1 && n_chunks > 1)
-  for (int chunk = 0; chunk < n_chunks; ++chunk)
+  const bool evaluating = std::exchange(pending_, false);
+  if (evaluating && measure_energy)
+    dissipation_.resize(contacts_.n_lanes());
+  const auto move_chunk = [&](int chunk) {
+    if (evaluating)
+      add_ghosts(contacts_, chunk, action_.data());
     motion_reports_[chunk] = integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), action_.data(),
                                        time_step, damping, speed_limit, measure_energy);
-  MotionReport all;
-  for (const MotionReport &part : motion_reports_) // in order of chunks
+  };
+  if (threads <= 1 || n_chunks == 1)
+    // Pairs belong to their first grain, the lower one: once its chunk is done, no later pair reads or pushes it.
+    for (int chunk = 0; chunk < n_chunks; ++chunk)
+      {
+        if (evaluating)
+          evaluate_chunk(chunk);
+        move_chunk(chunk);
+      }
+  else
+#pragma omp parallel num_threads(std::min(threads, n_chunks))
     {
-      all.greatest_speed = std::max(all.greatest_speed, part.greatest_speed);
-      all.exploded |= part.exploded;
-      all.damping_loss += part.damping_loss;
+      if (evaluating)
+#pragma omp for schedule(static)
+        for (int chunk = 0; chunk < n_chunks; ++chunk)
+          evaluate_chunk(chunk);
+#pragma omp for schedule(static)
+      for (int chunk = 0; chunk < n_chunks; ++chunk)
+        move_chunk(chunk);
     }
-  return all;
+  return sum_of(motion_reports_);
 }
 
 void Assembly::move(const RigidBox &next_box)
 {
+  forces_known_ = false;
   const double speed_limit = explosion_step * min_radius_ / time_step;
   const MotionReport report = move_grains(speed_limit);
   if (report.exploded)
@@ -237,6 +283,7 @@ Vec3 Assembly::wall_stress() const
 
 Vec3 Assembly::contact_stress() const
 {
+  evaluate();
   Vec3 sum = Vec3::Zero();
   for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
     sum -= force.cwiseProduct(branch); // push-apart is compression: negative
@@ -249,6 +296,7 @@ Vec3 Assembly::contact_stress() const
 
 double Assembly::unbalanced_force_ratio() const
 {
+  evaluate();
   std::vector<std::uint8_t> in_contact(packing_.n_grains(), 0);
   double force_sum = 0;
   std::size_t n_contacts = 0;
@@ -314,6 +362,7 @@ Snapshot Assembly::checkpoint() const
 
 Snapshot Assembly::snapshot() const
 {
+  evaluate();
   Snapshot s = without_contacts();
   s.contacts.reserve(contacts_.n_pairs());
   for (std::size_t p = 0; p < contacts_.n_lanes(); ++p)

@@ -16,7 +16,9 @@ namespace isostat
 ///     compute_forces()    x, v, history  ->  contact and wall forces, new history
 ///     move(next box)      forces         ->  v, x; walls go to `next box`
 ///
-/// Between the halves the state is consistent: a driver reads stresses there, a recorder takes snapshots. After move()
+/// compute_forces() itself only needs to know what the walls feel. Contact forces are evaluated when somebody looks at
+/// them, or else in move(), chunk by chunk with the motion of the chunk's grains while they are in the cache; the bits
+/// are the same. Between the halves the state is consistent: a driver reads stresses there, a recorder takes snapshots. After move()
 /// the state is what a checkpoint keeps. Nothing here decides where walls go: that is the drivers' business
 /// (dem/drive).
 class Assembly
@@ -37,7 +39,11 @@ public:
   const Packing &packing() const { return packing_; }
   const RigidBox &box() const { return box_; }
   const LawParams &law() const { return law_; }
-  const ContactList &contacts() const { return contacts_; }
+  const ContactList &contacts() const
+  {
+    evaluate();
+    return contacts_;
+  }
   double solid_volume() const { return solid_volume_; }
   double d50() const { return d50_; }
   std::uint64_t step() const { return step_; }
@@ -81,6 +87,9 @@ public:
   void set_wall_memory(const std::array<double, wall_memory_size> &memory);
 
 private:
+  /// Contact forces of this step, if they are still pending.
+  void evaluate() const;
+  void evaluate_chunk(std::size_t chunk) const;
   void add_wall_forces(std::size_t chunk);
   void sum_wall_forces();
   MotionReport move_grains(double speed_limit);
@@ -93,10 +102,12 @@ private:
   Packing packing_;
   RigidBox box_;
   LawParams law_;
-  ContactList contacts_;
+  mutable ContactList contacts_; ///< mutable, as the three below: evaluate() fills in what is pending
   VerletList verlet_;
-  AlignedVector<double> action_; ///< [F 0 T 0] per grain
-  DissipationPerPair dissipation_;
+  mutable AlignedVector<double> action_; ///< [F 0 T 0] per slot
+  mutable DissipationPerPair dissipation_;
+  bool forces_known_ = false;    ///< compute_forces() has been called in this step: again is for free
+  mutable bool pending_ = false; ///< contact forces of this step are not evaluated yet
   /// What the grains of one chunk do to the walls.
   struct WallSums
   {
