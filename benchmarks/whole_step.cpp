@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct Options
 {
   std::string packing, exported;
-  double rate = 5, time_step = 4.8e-8, friction_degrees = 18;
+  double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
@@ -69,6 +69,7 @@ void measure(const Options &options)
   Assembly assembly(initial);
   assembly.time_step = options.time_step;
   assembly.threads = options.threads;
+  assembly.damping = options.damping;
   const StrainPath path{assembly.box()};
   double axial = 0, stress = 0;
   const auto run = [&](int steps) {
@@ -109,6 +110,7 @@ int main(int argc, char **argv)
   app.add_option("--rate", options.rate, "axial strain rate, 1/s");
   app.add_option("--time-step", options.time_step, "s");
   app.add_option("--friction", options.friction_degrees, "degrees");
+  app.add_option("--damping", options.damping, "local damping");
   app.add_option("--steps", options.steps, "timed steps per repeat");
   app.add_option("--warm-up", options.warm_up, "steps before");
   app.add_option("--threads", options.threads, "threads that share a step");

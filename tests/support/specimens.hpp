@@ -44,4 +44,26 @@ inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees
     }
   return made[key];
 }
+
+/// `n` copies of a specimen in a row along x in one long box: a larger packing without its preparation. Grains of two
+/// copies that stood at their walls may overlap by some 1e-7 m.
+inline Snapshot side_by_side(const Snapshot &specimen, std::size_t n)
+{
+  const double edge = specimen.box.edges()[0];
+  const std::size_t grains = specimen.grains.n_grains();
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  Snapshot row;
+  for (std::size_t copy = 0; copy < n; ++copy)
+    for (std::size_t i = 0; i < grains; ++i)
+      {
+        centres.push_back(specimen.grains.centre(i) + Vec3(copy * edge, 0, 0));
+        radii.push_back(specimen.grains.radius(i));
+      }
+  row.grains = make_packing(centres, radii, specimen.grains.density);
+  row.box = specimen.box;
+  row.box.upper[0] += (n - 1) * edge;
+  row.law = specimen.law;
+  return row;
+}
 } // namespace isostat::test

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Threads that share a packing change no bit: 20,000 steps of shear that open and close contacts and rebuild the list.
+#include "dem/assembly.hpp"
+#include "dem/drive/strain_path.hpp"
+#include "tests/support/specimens.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+/// What a run leaves behind; the walls' forces of every step enter as a sum, which no error survives.
+struct Outcome
+{
+  Snapshot end;
+  double wall_force_sum = 0;
+  std::uint64_t n_rebuilds = 0;
+};
+
+Outcome sheared(const Snapshot &initial, int threads, int steps, bool look)
+{
+  Assembly a(initial);
+  a.threads = threads;
+  a.time_step = 5e-8;
+  const StrainPath path{a.box()};
+  Outcome out;
+  for (int step = 0; step < steps; ++step)
+    {
+      a.compute_forces();
+      if (look && step % 7 == 0) // the other way through a step: contact forces first, motion later
+        a.contact_stress();
+      for (double f : a.wall_forces())
+        out.wall_force_sum = 0.999 * out.wall_force_sum + f;
+      a.move(path.box(isochoric(5 * (step + 1) * a.time_step)));
+    }
+  out.end = a.checkpoint();
+  out.n_rebuilds = a.verlet_list().n_rebuilds();
+  return out;
+}
+
+void expect_same_bits(const Outcome &a, const Outcome &b)
+{
+  EXPECT_EQ(a.wall_force_sum, b.wall_force_sum);
+  EXPECT_EQ(a.end.grains.position, b.end.grains.position);
+  EXPECT_EQ(a.end.grains.velocity, b.end.grains.velocity);
+  EXPECT_EQ(a.end.grains.spin, b.end.grains.spin);
+  ASSERT_EQ(a.end.contacts.size(), b.end.contacts.size());
+  for (std::size_t c = 0; c < a.end.contacts.size(); ++c)
+    {
+      const ContactHistory &g = a.end.contacts[c].history, &h = b.end.contacts[c].history;
+      ASSERT_TRUE(g.normal == h.normal && g.shear_force == h.shear_force && g.bending_moment == h.bending_moment &&
+                  g.twisting_moment == h.twisting_moment)
+          << "contact " << c;
+    }
+}
+} // namespace
+
+TEST(Threads, ChangeNoBitInTwentyThousandSteps)
+{
+  const Snapshot initial = test::side_by_side(test::specimen(1000, 10), 5);
+  ASSERT_GE(Partition(static_cast<std::uint32_t>(initial.grains.n_grains())).n_chunks, 4u);
+  const Outcome one = sheared(initial, 1, 20000, false);
+  std::printf("%zu grains, %zu contacts at the end, %llu rebuilds\n", initial.grains.n_grains(),
+              one.end.contacts.size(), static_cast<unsigned long long>(one.n_rebuilds));
+  EXPECT_GT(one.n_rebuilds, 50u);
+  for (int threads : {2, 3, 4})
+    {
+      SCOPED_TRACE(threads);
+      expect_same_bits(one, sheared(initial, threads, 20000, threads == 3));
+    }
+}
+
+TEST(Threads, LookingAtForcesChangesNoBit)
+{
+  const Snapshot initial = test::side_by_side(test::specimen(1000, 10), 3);
+  expect_same_bits(sheared(initial, 1, 500, false), sheared(initial, 1, 500, true));
+}
+
+TEST(Partition, CoversEveryGrainOnce)
+{
+  for (std::uint32_t n : {1u, 7u, 500u, 1249u, 1250u, 1875u, 10000u, 99999u})
+    {
+      const Partition p(n);
+      EXPECT_EQ(p.begin(0), 0u);
+      EXPECT_EQ(p.begin(p.n_chunks), n);
+      for (std::uint32_t i = 0; i < n; ++i)
+        {
+          const std::uint32_t c = p.chunk_of(i);
+          ASSERT_TRUE(p.begin(c) <= i && i < p.begin(c + 1)) << n << ' ' << i;
+        }
+    }
+  EXPECT_EQ(Partition(500).n_chunks, 1u); // a small packing pays for no threads
+  EXPECT_EQ(Partition(10000).n_chunks, 8u);
+}
+} // namespace isostat
