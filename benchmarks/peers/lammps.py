@@ -20,8 +20,8 @@ class Lammps:
         "One normal stiffness kn for all contacts (Isostat: 2 E r1 r2/(r1 + r2)), chosen so that the packing starts "
         "with the mean stress it has in Isostat, one at walls likewise; tangential, rolling and twisting stiffness "
         "follow from kn with mean radii. Velocity Verlet; lever arms without overlap; it sorts grains by itself. ")
-    law = ("Law: hooke, linear_history, rolling sds, twisting {twisting}; elastic frictionless walls that move uniformly, "
-           "in Isostat exponentially (1e-7 of an edge apart after 1,500 steps). ")
+    law = ("Law: hooke, linear_history, rolling sds, twisting {twisting}; elastic frictionless walls that move "
+           "uniformly, in Isostat exponentially (1e-7 of an edge apart after 1,500 steps). ")
     damping = ("No damping in both codes.", "Damping is viscous along the contact normal, with the loss per cycle of "
                "the local damping 0.2 in Isostat; give whole_step an option --damping and both run without.")
 

@@ -117,10 +117,11 @@ def page(comparisons, command, build, versions, rounds):
     return "\n".join([
         "# Side by side with other codes", "",
         f"Written by `benchmarks/side_by_side.py` on {datetime.date.today().isoformat()}; do not edit. The same "
-        "packing, rate, time step and cores; rounds alternate, isostat before and after each run of the peer; medians of "
-        f"{rounds} rounds. Ratio: steps per second of isostat over those of the peer. Stresses and contacts: isostat / "
-        f"peer after {comparisons[0].steps} steps from the same start; agreement: p', q and contacts are no further "
-        f"apart. Time steps: {dts}. A number of threads is one of MPI ranks in LAMMPS and LIGGGHTS.", "",
+        "packing, rate, time step and cores; rounds alternate, isostat before and after each run of the peer; medians "
+        f"of {rounds} rounds. Ratio: steps per second of isostat over those of the peer. Stresses and contacts: "
+        f"isostat / peer after {comparisons[0].steps} steps from the same start; agreement: p', q (of the larger of p' "
+        f"and q) and contacts are no further apart. Time steps: {dts}. A number of threads is one of MPI ranks in "
+        "LAMMPS and LIGGGHTS.", "",
         "```sh", command, "```", "", *table(comparisons), "",
         "## What differs", "", *(f"- {name}: {code.differs}" for name, code in codes.items()), "",
         "## Machine and versions", "", *machine(build), *(f"- {v}" for v in versions), ""])
