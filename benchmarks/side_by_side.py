@@ -1,79 +1,234 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Isostat and YADE on the same packing, law and core, interleaved: ratio of steps per second.
+"""Isostat, YADE, LAMMPS and LIGGGHTS on the same packing, law and cores, interleaved: ratios of steps per second.
 
-    side_by_side.py SPECIMEN.h5 [--build build/release] [--rounds 5] [--core 0] [--rate 5] [--time-step 4.8e-8]
+    side_by_side.py SPECIMEN... [--peers yade,lammps,liggghts] [--threads 1,2] [--rounds 5] [--cores 0,1]
 
-Installs YADE from Debian if it is missing. Both codes read the same text of spheres and box (contacts start without
-history in both), shear it at constant volume at the same rate and time step, first 500 steps untimed. Rounds alternate
-A B A B; each prints both speeds, and the stresses both have reached show that they ran the same test. The last line is
-`ratio yade <grains> <threads> <median>`.
-"""
+SPECIMEN is what `whole_step` reads: a specimen (.h5), text of spheres (x y z r, box in a comment), or a folder of
+tables comp_{particles,contacts,walls}_step0. It is exported as text, and every code starts from that text: no contact
+has a history. Each shears the packing at constant volume, at the same rate and time step; the first --warm-up steps are
+not timed.
+Peers are Debian packages, installed if they are missing (apt-get, as root or with sudo).
+
+  yade      grains stored by size, as generated; and `yade-morton`, stored along a space-filling curve as ours are
+  yade-state  (with --yade-state) YADE from its own saved state, ours from the folder of tables, both with history
+  lammps    pair_style granular, one constant stiffness matched to the mean stress of the packing
+  liggghts  hooke/stiffness with epsd2, likewise; and `liggghts-static`: rate 0 in both codes, walls at rest, because
+            the meshes that are its moving walls cost it a quarter of its time
+
+In each round isostat runs before and after each peer. A round prints both speeds, and p', q and contacts of both codes
+after the same number of steps: where they differ by more than 1 % (yade) or 5 % (lammps, liggghts) the ratio is
+marked as not one of the same test. Lines for programs to read:
+
+    ratio <peer> <grains> <threads> <median>
+
+What differs between the codes is printed and written, with machine and versions, to --report.
+Exit code 0: done; 1: a program failed, or two codes did not run the same test; 2: bad input, nothing written."""
 import argparse
+import dataclasses
+import os
 import pathlib
-import re
-import shutil
-import statistics
+import shlex
 import subprocess
 import sys
 import tempfile
 
-HERE = pathlib.Path(__file__).resolve().parent
+from peers import packing as packings
+from peers import report
+from peers.codes import Isostat, Test, Yade, together
+from peers.lammps import Lammps, Liggghts, LiggghtsStatic
+from peers.process import PeerError
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PEERS = ("yade", "lammps", "liggghts")
 
 
-def install_yade():
-    if shutil.which("yade"):
-        return
-    print("installing yade", flush=True)
-    prefix = [] if subprocess.run(["id", "-u"], capture_output=True, text=True).stdout.strip() == "0" else ["sudo"]
-    subprocess.run(prefix + ["apt-get", "install", "-y", "--no-install-recommends", "yade"], check=True,
-                   stdout=subprocess.DEVNULL)
+class BadInput(Exception):
+    pass
 
 
-def run(command, name):
-    """The figures of one timed block, as a dictionary."""
-    out = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    lines = [line for line in out.stdout.splitlines() if line.startswith(name + " ")]
-    if not lines:
-        sys.exit(f"{name} printed no figures:\n{out.stdout[-2000:]}\n{out.stderr[-2000:]}")
-    return {key: float(value) for key, value in re.findall(r"(\w+) ([-+0-9.e]+)(?= |$)", lines[-1][len(name) + 1:])}
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = parser.add_argument
+    add("specimens", nargs="+", metavar="SPECIMEN", help="specimen (.h5), text of spheres or folder of tables")
+    add("--peers", default=",".join(PEERS), help="any of yade,lammps,liggghts (default: all)")
+    add("--threads", default="1", help="numbers of threads, such as 1,2: MPI ranks in LAMMPS and LIGGGHTS (default: 1)")
+    add("--rounds", type=int, default=5, help="alternating rounds of which medians are taken (default: 5)")
+    add("--cores", default=",".join(map(str, sorted(os.sched_getaffinity(0)))),
+        help="cores to pin to; T threads use the first T (default: those this command may use)")
+    add("--build", default=str(ROOT / "build" / "release"), help="build tree of isostat (default: build/release)")
+    add("--rate", type=float, default=5, help="axial strain rate, 1/s (default: 5)")
+    add("--time-step", type=float, help="s (default: 4.8e-8, below 5,000 grains 5e-8)")
+    add("--warm-up", type=int, default=500, help="untimed steps (default: 500)")
+    add("--steps", type=int, default=1000, help="timed steps (default: 1000)")
+    add("--yade-state", action="append", default=[], metavar="FILE.yade.bz2",
+        help="state of YADE that belongs to a folder of tables; once per folder, in their order")
+    add("--twisting", choices=("sds", "marshall"), default="sds", help="twisting model of LAMMPS (default: sds)")
+    add("--skin", type=float, default=0.05, help="skin of LAMMPS and LIGGGHTS, in mean radii (default: 0.05)")
+    add("--report", default=str(ROOT / "docs" / "results" / "side_by_side.md"),
+        help="page of results, written when all rounds are done (default: docs/results/side_by_side.md)")
+    add("--no-report", action="store_true", help="print only")
+    return parser.parse_args()
+
+
+def numbers(text, option, least):
+    try:
+        values = [int(word) for word in text.split(",")]
+    except ValueError:
+        values = []
+    if not values or min(values) < least:
+        raise BadInput(f"{option} {text}: expected whole numbers from {least}, separated by commas")
+    return values
+
+
+def check(options):
+    """Options as lists; BadInput before anything is installed, run or written."""
+    options.peers = options.peers.split(",")
+    for peer in options.peers:
+        if peer not in PEERS:
+            raise BadInput(f"--peers {peer}: expected some of {','.join(PEERS)}")
+    options.threads = numbers(options.threads, "--threads", 1)
+    options.cores = numbers(options.cores, "--cores", 0)
+    if max(options.threads) > len(options.cores):
+        raise BadInput(f"--threads {max(options.threads)} on {len(options.cores)} cores: give more with --cores")
+    for name, least in (("rounds", 1), ("steps", 1), ("warm_up", 1)):
+        if getattr(options, name) < least:
+            raise BadInput(f"--{name.replace('_', '-')} {getattr(options, name)}: must be at least {least}")
+    for name in ("rate", "time_step", "skin"):
+        if getattr(options, name) is not None and not getattr(options, name) > 0:
+            raise BadInput(f"--{name.replace('_', '-')} {getattr(options, name)}: must be above 0")
+    for path in options.specimens + options.yade_state:
+        if not os.path.exists(path):
+            raise BadInput(f"{path}: there is no such file or folder")
+    options.specimens = [os.path.abspath(path) for path in options.specimens]
+    folders = [path for path in options.specimens if os.path.isdir(path)]
+    if len(options.yade_state) > len(folders):
+        raise BadInput(f"--yade-state given {len(options.yade_state)} times for {len(folders)} folders of tables")
+    options.state_of = dict(zip(folders, map(os.path.abspath, options.yade_state)))
+    program = pathlib.Path(options.build) / "bin" / "whole_step"
+    if not program.exists():
+        raise BadInput(f"{program} is not there; build it: cmake --preset release && "
+                       "cmake --build --preset release --target whole_step")
+    isostat = Isostat(program, options.cores[0])
+    if max(options.threads) > 1 and not isostat.has("--threads"):
+        raise BadInput(f"{program} has no option --threads; ask for --threads 1")
+    return isostat
+
+
+def peers_on(specimen, options, isostat, folder, morton):
+    """(code, what whole_step reads, its damping) of every comparison on one specimen."""
+    undamped = isostat.has("--damping")
+    damping = 0 if undamped else None
+    for peer in options.peers:
+        if peer == "yade":
+            yield Yade(), folder / "packing.txt", None
+            yield Yade("yade-morton", morton), folder / "packing.txt", None
+            if specimen in options.state_of:
+                yield Yade("yade-state", options.state_of[specimen]), specimen, None
+        elif peer == "lammps":
+            yield Lammps(undamped, options.skin, options.twisting), folder / "packing.txt", damping
+        else:
+            yield Liggghts(undamped, options.skin), folder / "packing.txt", damping
+            yield LiggghtsStatic(undamped, options.skin), folder / "packing.txt", damping
+
+
+def export(isostat, specimen, morton, options):
+    """The specimen as text along the Morton curve; BadInput if it cannot be read or does not suit the peers."""
+    try:
+        packing = isostat.export(specimen, morton, options.cores[0])
+        if set(options.peers) & {"lammps", "liggghts"}:
+            packings.matched_stiffness(packing)
+        return packing
+    except (PeerError, ValueError) as error:
+        raise BadInput(f"{specimen}: {error}") from error
+
+
+def compare_on(specimen, options, isostat, folder):
+    """All rounds on one specimen, for all numbers of threads."""
+    morton = folder / "morton.txt"
+    packing = packings.by_size(export(isostat, specimen, morton, options))
+    packings.write_packing(folder / "packing.txt", packing)
+    grains = len(packing.spheres)
+    dt = options.time_step or (4.8e-8 if grains >= 5000 else 5e-8)
+    done = []
+    for threads in options.threads:
+        test = Test(packing, dt, options.rate, options.warm_up, options.steps, threads, options.cores[:threads], folder)
+        runs = list(peers_on(specimen, options, isostat, folder, morton))
+        comparisons = [report.Comparison(code, public_name(specimen), grains, threads, dt, test.n_steps())
+                       for code, _, _ in runs]
+        for number in range(1, options.rounds + 1):
+            for comparison, (code, source, damping) in zip(comparisons, runs):
+                shared = dataclasses.replace(test, rate=0.0) if code.at_rest else test
+                before = isostat.run(shared, source, damping)
+                peer = code.run(shared)
+                after = isostat.run(shared, source, damping)
+                comparison.rounds.append(report.Round(together([before, after]), peer))
+                print(report.round_line(number, options.rounds, comparison, comparison.rounds[-1]), flush=True)
+                for line in report.warnings(comparison, comparison.rounds[-1]):
+                    print(line, flush=True)
+        done += comparisons
+    return done
+
+
+def public_name(path):
+    """Inside the repository the path from its root, elsewhere the last name only: results name no machine's folders."""
+    path = pathlib.Path(path)
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else path.name
+
+
+def public_command():
+    """The command as the page shows it: without where it writes and without folders outside the repository."""
+    words, given = [], iter(sys.argv[1:])
+    for word in given:
+        if word in ("--report", "--build"):
+            next(given, None)
+        elif not word.startswith(("--report=", "--build=")):
+            words.append(public_name(os.path.abspath(word)) if "/" in word or os.path.isdir(word) else word)
+    return shlex.join(["python3", "benchmarks/side_by_side.py", *words])
+
+
+def version_of_isostat(isostat):
+    found = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    return f"Isostat at commit {found.stdout.strip() or 'unknown'}, instruction set {isostat.instruction_set}"
+
+
+def run(options):
+    isostat = check(options)
+    with tempfile.TemporaryDirectory() as scratch:
+        for number, specimen in enumerate(options.specimens):  # all can be read, before hours are spent on the first
+            export(isostat, specimen, pathlib.Path(scratch) / f"check{number}.txt", options)
+        for code in {"yade": Yade(), "lammps": Lammps(False), "liggghts": Liggghts(False)}.values():
+            if code.name in options.peers:
+                code.install(max(options.threads))
+        comparisons = []
+        for number, specimen in enumerate(options.specimens):
+            folder = pathlib.Path(scratch) / str(number)
+            folder.mkdir()
+            comparisons += compare_on(specimen, options, isostat, folder)
+    codes = {c.code.name: c.code for c in comparisons}
+    for name, code in codes.items():
+        print(f"differs {name}: {code.differs}")
+    for comparison in comparisons:
+        print("\n".join(report.ratio_lines(comparison)))
+    if not options.no_report:
+        versions = [version_of_isostat(isostat)] + sorted({code.version() for code in codes.values()})
+        page = report.page(comparisons, public_command(), options.build, versions, options.rounds)
+        report.write_replacing(options.report, page)
+    return 0 if all(c.is_same_test() for c in comparisons) else 1
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("specimen")
-    parser.add_argument("--build", default="build/release")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--core", default="0")
-    parser.add_argument("--rate", type=float, default=5)
-    parser.add_argument("--time-step", type=float, default=4.8e-8)
-    parser.add_argument("--yade-steps", type=int, default=300)
-    parser.add_argument("--our-steps", type=int, default=3000)
-    options = parser.parse_args()
-    install_yade()
-    ours = pathlib.Path(options.build) / "bin" / "whole_step"
-    pin = ["taskset", "-c", options.core]
-    ratios = []
-    with tempfile.TemporaryDirectory() as folder:
-        packing = str(pathlib.Path(folder) / "packing.txt")
-        subprocess.run([str(ours), options.specimen, "--export", packing], check=True)
-        grains = sum(1 for line in open(packing) if not line.startswith("#"))
-        for number in range(options.rounds):
-            a = run(pin + [str(ours), packing, "--rate", str(options.rate), "--time-step", str(options.time_step),
-                           "--steps", str(options.our_steps), "--warm-up", "500"], "isostat")
-            b = run(pin + ["yade", "-n", "-x", "-j1", str(HERE / "peers" / "yade_shear.py"), packing, str(options.rate),
-                           str(options.time_step), str(options.yade_steps), "1"], "yade")
-            # the same test: our stresses after as many steps as YADE took
-            check = run(pin + [str(ours), packing, "--rate", str(options.rate), "--time-step", str(options.time_step),
-                               "--steps", str(options.yade_steps), "--warm-up", "500"], "isostat")
-            ratios.append(a["steps_per_s"] / b["steps_per_s"])
-            print(f"round {number + 1}: isostat {a['steps_per_s']:.1f} steps/s ({a['ns_per_contact_step']:.1f} ns per contact), "
-                  f"yade {b['steps_per_s']:.2f} steps/s ({b['ns_per_contact_step']:.0f} ns), ratio {ratios[-1]:.1f}; "
-                  f"after {500 + options.yade_steps} steps p' {check['p_kPa']:.2f} / {b['p_kPa']:.2f} kPa, "
-                  f"q {check['q_kPa']:.2f} / {b['q_kPa']:.2f} kPa, contacts {check['contacts']:.0f} / {b['contacts']:.0f}",
-                  flush=True)
-    print(f"ratio yade {grains} 1 {statistics.median(ratios):.1f}")
+    try:
+        return run(parse_arguments())
+    except BadInput as error:
+        print(f"side_by_side: {error}", file=sys.stderr)
+        return 2
+    except PeerError as error:
+        print(f"side_by_side: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

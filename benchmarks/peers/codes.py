@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Isostat and YADE in the comparison (LAMMPS and LIGGGHTS: lammps.py). Each has run(test) -> Figures: a block of
+constant-volume shear, timed, and the state at its end."""
+import dataclasses
+import pathlib
+import re
+
+from . import packing as packings
+from .process import PeerError, execute, install, installed_version, last_lines
+
+HERE = pathlib.Path(__file__).resolve().parent
+LEAST_SECONDS, MOST_RUNS = 0.5, 20  # a block is repeated, from the same start, until its timed seconds reach this
+
+
+@dataclasses.dataclass
+class Test:
+    """What every code is given."""
+    packing: packings.Packing  # in the order of the main comparison
+    time_step: float
+    rate: float
+    warm_up: int
+    steps: int
+    threads: int
+    cores: list
+    folder: pathlib.Path  # scratch
+
+    def n_steps(self):
+        return self.warm_up + self.steps
+
+
+@dataclasses.dataclass
+class Figures:
+    steps_per_s: float
+    p: float  # kPa
+    q: float  # kPa
+    contacts: float  # between grains and with walls
+    cores: float  # processor time over elapsed time; nan where unknown
+
+    def nanoseconds(self):
+        return 1e9 / self.steps_per_s / self.contacts
+
+
+def repeated(run, steps):
+    """Runs again until enough seconds are timed; speeds are those of all runs together, the state that of the last."""
+    done = [run()]
+    while sum(steps / f.steps_per_s for f in done) < LEAST_SECONDS and len(done) < MOST_RUNS:
+        done.append(run())
+    return together(done)
+
+
+def together(runs):
+    speed = len(runs) / sum(1 / f.steps_per_s for f in runs)
+    return dataclasses.replace(runs[-1], steps_per_s=speed, cores=min(f.cores for f in runs))
+
+
+def printed_figures(text, name):
+    lines = [line for line in text.splitlines() if line.startswith(name + " ")]
+    found = dict(re.findall(r"(\w+) ([-+0-9.e]+)(?= |$)", lines[-1][len(name) + 1:])) if lines else {}
+    if not {"steps_per_s", "p_kPa", "q_kPa", "contacts"} <= found.keys():
+        raise PeerError(f"{name} printed no figures; its last lines:\n{last_lines(text)}")
+    return {key: float(value) for key, value in found.items()}
+
+
+class Isostat:
+    name = "isostat"
+
+    def __init__(self, program, core):
+        self.program = pathlib.Path(program).resolve()
+        self.options = execute([self.program, "--help"], [core], None).text
+        self.instruction_set = ""
+
+    def has(self, option):
+        return option in self.options
+
+    def export(self, specimen, path, core):
+        execute([self.program, specimen, "--export", path], [core], None)
+        return packings.read_packing(path)
+
+    def run(self, test, source, damping=None):
+        """`source` is what whole_step reads: text of spheres, or a folder of tables with contact history."""
+        command = [self.program, source, "--rate", test.rate, "--time-step", test.time_step, "--steps", test.steps,
+                   "--warm-up", test.warm_up]
+        command += ["--threads", test.threads] if test.threads > 1 else []
+        command += ["--damping", damping] if damping is not None else []
+
+        def once():
+            out = execute(command, test.cores, test.folder)
+            f = printed_figures(out.text, "isostat")
+            self.instruction_set = (re.findall(r"instruction_set (\S+)", out.text) or [""])[-1]
+            return Figures(f["steps_per_s"], f["p_kPa"], f["q_kPa"], f["contacts"], out.cores)
+        return repeated(once, test.steps)
+
+
+class Yade:
+    name, program, package = "yade", "yade", "yade"
+    tolerance = 0.01
+    at_rest = False
+
+    def __init__(self, name="yade", file=None):
+        """`file` is a packing that is not the main one, or a state saved by YADE."""
+        self.name, self.file = name, file
+        self.differs = {
+            "yade": "Grains are stored by size, largest first, the order in which a packing is generated; contacts "
+                    "start without history in both codes. Law, damping, walls, rate and step are the same.",
+            "yade-morton": "As yade, but its grains are stored along the Morton curve that Isostat always uses.",
+            "yade-state": "YADE goes on from its own saved state with contact history, grains as generated; Isostat "
+                          "from the tables of that state, with the same history. YADE needs about twice the time per "
+                          "step after it has loaded a state than for the same packing built in the running program, "
+                          "whatever the order of its grains.",
+        }[name]
+
+    def version(self):
+        return "YADE " + installed_version(self.package)
+
+    def install(self, threads):
+        install(self.program, self.package)
+
+    def run(self, test):
+        path = self.file
+        if path is None:
+            path = test.folder / "by_size.txt"
+            packings.write_packing(path, test.packing)
+        command = ["yade", "-n", "-x", f"-j{test.threads}", HERE / "yade_shear.py", path, test.rate, test.time_step,
+                   test.warm_up, test.steps]
+        out = execute(command, test.cores, test.folder)
+        f = printed_figures(out.text, "yade")
+        if f.get("grains") != len(test.packing.spheres):
+            raise PeerError(f"{path} has {f.get('grains', 0):.0f} grains, the specimen has {len(test.packing.spheres)}")
+        return Figures(f["steps_per_s"], f["p_kPa"], f["q_kPa"], f["contacts"], f["cores"])
