@@ -6,7 +6,7 @@ import json
 import numpy as np
 
 Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, stand in the reversal itself
-N_STRAINS = 501
+STRAIN_SPACING = 1e-5
 
 
 class History:
@@ -64,10 +64,10 @@ def cyclic_path(history, n_reversals):
 
 
 def monotonic_path(history, strain):
-    """p'/p0' and q/p0' at equal axial strain from 0 to `strain`, shape (2, N_STRAINS); None if the test ended before."""
+    """p'/p0' and q/p0' at equal axial strain from 0 to `strain`, shape (2, points); None if the test ended before."""
     if history.eps_y[-1] < strain * (1 - 1e-3):
         return None
-    grid = np.linspace(0, strain, N_STRAINS)
+    grid = np.linspace(0, strain, round(strain / STRAIN_SPACING) + 1)
     order = np.maximum.accumulate(history.eps_y)
     return np.array([np.interp(grid, order, column) for column in (history.p, history.q)]) / history.p0
 

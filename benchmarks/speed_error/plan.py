@@ -48,8 +48,8 @@ class Setting:
     family: str  # default, tolerance, wide, rate, inertia, step, damping, grains, reference
     motion: tuple = ()
     grains: int = BASE_GRAINS
-    cyclic_steps: float = 3.1e5  # for the estimate of time: to the end of the cyclic test,
-    monotonic_steps: float = 4.5e4  # ... of the monotonic one; one core, any N
+    cyclic_steps: float = 4e5  # for the estimate of time: to the end of the cyclic test,
+    monotonic_steps: float = 4e4  # ... of the monotonic one; one core, any N
     reversals_after: int = 2  # the cyclic test ends so many reversals after the onset
     cyclic: bool = True
     monotonic: bool = True
@@ -60,7 +60,9 @@ class Setting:
 class Limits:
     """Where tests end, and what the early path is."""
 
-    strain: float = 0.005  # monotonic
+    strain: float = 0.005  # monotonic; beyond some 0.2 % single avalanches part the paths of one specimen
+    early_strain: float = 0.001
+    longer_strain: float = 0.002  # the reference ends here
     cycles: int = 60  # cyclic, if it does not liquefy
     cyclic_strain: float = 0.03  # ends the liquefied part, if it comes first
     early_reversals: int = 3
@@ -94,7 +96,8 @@ class Run:
     def stage(self):
         limits = self.limits
         if self.kind == "monotonic":
-            return (f'[[stage]]\nkind = "undrained-monotonic"\nstrain = {limits.strain}\n'
+            strain = limits.longer_strain if self.setting.family == "reference" else limits.strain
+            return (f'[[stage]]\nkind = "undrained-monotonic"\nstrain = {strain}\n'
                     f"liquefaction_ratio = 1e-6\nmax_steps = {limits.max_steps}\n")
         if self.kind == "cyclic":
             after = self.setting.reversals_after if limits.reversals_after is None else limits.reversals_after
@@ -130,8 +133,9 @@ def rate(value, **more):
     return Setting(f"rate{value:g}", f"{value:g} 1/s", "rate", (("strain_rate", f'"{value:g} 1/s"'),), **more)
 
 
-def inertia(exponent, **more):
-    return Setting(f"I1e{exponent}", f"I = 1e{exponent}", "inertia", (("inertial_number", f"1e{exponent}"),), **more)
+def inertia(exponent, digit=1, **more):
+    number = f"{digit}e{exponent}"
+    return Setting(f"I{number}", f"I = {number}", "inertia", (("inertial_number", number),), **more)
 
 
 def safety(value, **more):
@@ -158,33 +162,38 @@ SLOW = "I1e-5"  # the slow limit of cycles to liquefaction
 
 def full_settings():
     """Steps measured on one or two specimens."""
+    slow_reference = {"cyclic_steps": 6e5, "monotonic": False}
     return [
         default(),
-        reference(cyclic_steps=2.5e5, monotonic_steps=1.7e6),
-        inertia(-5, reversals_after=0, cyclic_steps=4e5, monotonic_steps=4.2e5),
-        tolerance(0.003, cyclic_steps=5e5, monotonic_steps=1.2e5),
-        tolerance(0.005, cyclic_steps=4e5, monotonic_steps=8e4),
-        tolerance(0.02),
-        tolerance(0.05),
-        wide(0.003, cyclic_steps=1e6),
-        wide(0.01, cyclic_steps=1e6),
-        wide(0.05),
-        inertia(-4, cyclic_steps=6e5),
-        inertia(-3, cyclic_steps=1e5, monotonic_steps=1e4),
-        inertia(-2, cyclic_steps=3e4, monotonic_steps=3e3),
+        reference(cyclic_steps=3.7e5, monotonic_steps=8e5),
+        inertia(-5, reversals_after=0, cyclic_steps=5e5, monotonic_steps=5.4e5),
+        tolerance(0.003, cyclic_steps=1e6, monotonic_steps=1.2e5),
+        tolerance(0.005, cyclic_steps=7e5, monotonic_steps=8e4),
+        tolerance(0.02, cyclic_steps=2.5e5),
+        tolerance(0.05, cyclic_steps=2.2e5),
+        wide(0.01, cyclic_steps=3.5e5),
+        wide(0.02, cyclic_steps=1.7e5),
+        wide(0.05, cyclic_steps=8e4),
+        wide(0.1, cyclic_steps=6e4),
+        inertia(-4, cyclic_steps=9e5, monotonic_steps=6e4),
+        inertia(-4, 3, cyclic_steps=3e5, monotonic_steps=2e4),
+        inertia(-3, cyclic_steps=1.1e5, monotonic_steps=7e3),
+        inertia(-2, cyclic_steps=1e4, monotonic_steps=1e3),
         rate(0.5, cyclic_steps=9e5, monotonic_steps=1.7e5),
-        rate(2, cyclic_steps=2e5),
-        rate(5, cyclic_steps=1e5, monotonic_steps=2e4),
-        safety(0.4, cyclic_steps=6e5, monotonic_steps=9e4),
-        safety(0.2, cyclic_steps=1.2e6, monotonic_steps=1.8e5),
+        rate(2, cyclic_steps=2.5e5),
+        rate(5, cyclic_steps=9e4, monotonic_steps=2e4),
+        rate(10, cyclic_steps=5e4, monotonic_steps=1e4),
+        rate(20, cyclic_steps=3e4, monotonic_steps=5e3),
+        safety(0.4, cyclic_steps=8e5, monotonic_steps=8e4),
+        safety(0.2, cyclic_steps=1.6e6, monotonic_steps=1.6e5),
         damping(0.1),
         damping(0.5),
         default(1000),
-        reference(1000, cyclic_steps=2.5e5, monotonic=False),
+        reference(1000, **slow_reference),
         default(5000, most=5),
-        reference(5000, cyclic_steps=2.5e5, monotonic=False, most=5),
+        reference(5000, most=5, **slow_reference),
         default(10000, cyclic_steps=8e5, most=5),
-        reference(10000, cyclic_steps=2.5e5, monotonic=False, most=5),
+        reference(10000, most=5, **slow_reference),
     ]
 
 

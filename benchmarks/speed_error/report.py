@@ -5,6 +5,7 @@ import math
 from speed_error import paths
 
 TARGETS = (0.05, 0.02, 0.01, 0.005, 0.002)
+ADAPTIVE = ("default", "tolerance", "wide")
 GOOD = 0.02  # error of the path that is accepted
 
 
@@ -57,10 +58,14 @@ def error_table(results):
             continue
         rows.append([name_of(row, results.base), plus_minus(row.error("early", 0), 2, 100),
                      plus_minus(row.error("early", 1), 2, 100), plus_minus(row.error("longer", 1), 2, 100),
-                     plus_minus(row.error("monotonic", 0), 2, 100), plus_minus(row.error("monotonic", 1), 2, 100)])
+                     plus_minus(row.error("monotonic", 0), 2, 100), plus_minus(row.error("monotonic", 1), 2, 100),
+                     plus_minus(row.error("monotonic_longer", 1), 2, 100),
+                     plus_minus(paths.ensemble(row.last_stress), 3)])
     early, longer = results.limits.early_reversals, results.limits.longer_reversals
     return table(["setting", f"cyclic, to reversal {early}: rms", "largest", f"to reversal {longer}: largest",
-                  f"monotonic, to {100 * results.limits.strain:g} %: rms", "largest"], rows)
+                  f"monotonic, to {100 * results.limits.early_strain:g} %: rms", "largest",
+                  f"to {100 * results.limits.longer_strain:g} %: largest",
+                  f"p'/p0' at {100 * results.limits.strain:g} %"], rows)
 
 
 def ensemble_table(results):
@@ -158,7 +163,7 @@ def floor_of(results, window):
 
 
 def user_sentence(results):
-    candidates = [r for r in compared(results) if r.family in ("default", "tolerance", "wide") and r.n_tests
+    candidates = [r for r in compared(results) if r.family in ADAPTIVE and r.n_tests
                   and not math.isnan(r.minutes)]
     reversal, parts, last = results.limits.longer_reversals, [], None
     for target in TARGETS:
@@ -192,48 +197,64 @@ def verdict_of(results, strain, window, reversal):
         rows = [r for r in whole if r.family in families and results.qualifies(r, target, window)]
         return cheapest(rows, lambda r: results.whole_test(r, strain))
 
-    found = {t: [best(t, "default", "tolerance", "wide"), best(t, "rate"), best(t, "inertia")] for t in TARGETS}
     cells = []
-    for target, rows in found.items():
+    for target in TARGETS:
+        rows = best(target, *ADAPTIVE), best(target, "rate"), best(target, "inertia")
         steps = [results.whole_test(r, strain) if r else math.nan for r in rows]
         cells.append([f"{100 * target:g}"] + [f"{r.setting.label}: {count(s)}" if r else "none" for r, s in
                                               zip(rows, steps)] +
                      [number(steps[0] / steps[1]), number(steps[0] / steps[2])])
     text = table([f"error to reversal {reversal}, %", "adaptive: steps", "fixed strain rate: steps",
                   "fixed inertial number: steps", "adaptive / strain rate", "adaptive / inertial number"], cells)
-    adaptive, *fixed = found[GOOD]
-    sentences = [compare(results, strain, adaptive, other, what, reversal)
-                 for other, what in zip(fixed, ("strain rate", "inertial number"))]
-    return text + "\n\n" + "\n".join(f"- {s}" for s in sentences + same_quality(results, whole, strain, window))
+    path = [r for r in whole if r.error(window)[0] <= GOOD]
+    both = [r for r in path if results.within_scatter(r)]
+    sentences = [compare(results, strain, rows, family, f"{100 * GOOD:g} % to reversal {reversal}{condition}")
+                 for rows, condition in ((both, " and cycles within the scatter"), (path, ", whatever the cycles"))
+                 for family in ("rate", "inertia")]
+    sentences += [at_equal_quality(results, strain, path, whole, family) for family in ("rate", "inertia")]
+    return text + "\n\n" + "\n".join(f"- {s}" for s in sentences)
 
 
-def compare(results, strain, adaptive, other, what, reversal):
+def compare(results, strain, rows, family, condition):
+    """One sentence: the cheapest adaptive setting among `rows` against the cheapest of a family of fixed ones."""
+    what = {"rate": "fixed strain rate", "inertia": "fixed inertial number"}[family]
+
+    def steps(row):
+        return results.whole_test(row, strain)
+
+    adaptive = cheapest([r for r in rows if r.family in ADAPTIVE], steps)
+    other = cheapest([r for r in rows if r.family == family], steps)
     if adaptive is None or other is None:
-        missing = "adaptive rate" if adaptive is None else f"fixed {what}"
-        return f"No {missing} that was run meets both conditions: no ratio of adaptive to fixed {what}."
-    ratio = results.whole_test(adaptive, strain) / results.whole_test(other, strain)
-    return (f"**The adaptive rate {'reaches' if ratio <= 0.5 else 'does not reach'} {100 * GOOD:g} % to reversal {reversal} "
-            f"in at most half the steps of the best fixed {what}:** {adaptive.setting.label} takes {ratio:.2f} of the steps "
-            f"of {other.setting.label} ({adaptive.mean('steps') / other.mean('steps'):.2f} as counted, without bringing the "
-            f"strains to the same amount). Median η of their liquefied parts: {number(adaptive.mean('indicator_after'), 4)} "
-            f"and {number(other.mean('indicator_after'), 4)}.")
+        missing = [name for name, row in (("adaptive rate", adaptive), (what, other)) if row is None]
+        return f"{condition[0].upper() + condition[1:]}: reached by no {' and no '.join(missing)} that was run."
+    ratio = steps(adaptive) / steps(other)
+    return (f"{condition[0].upper() + condition[1:]}: the adaptive rate **{'reaches' if ratio <= 0.5 else 'does not reach'}** "
+            f"it in at most half the steps of the best {what}. {adaptive.setting.label} takes {ratio:.2f} of the steps of "
+            f"{other.setting.label} ({adaptive.mean('steps') / other.mean('steps'):.2f} as counted, strains not brought to "
+            f"the same amount); median η of the liquefied parts {number(adaptive.mean('indicator_after'), 4)} and "
+            f"{number(other.mean('indicator_after'), 4)}.")
 
 
-def same_quality(results, whole, strain, window):
-    """The same where the liquefied part, too, must be as near to equilibrium as with the default tolerance."""
-    base = results.base
-    eta = base.mean("indicator_after")
-    if math.isnan(eta) or not results.qualifies(base, GOOD, window):
-        return []
-    fixed = [r for r in whole if r.family in ("rate", "inertia") and results.qualifies(r, GOOD, window)
-             and r.mean("indicator_after") <= 1.1 * eta]
-    best = cheapest(fixed, lambda r: results.whole_test(r, strain))
-    if best is None:
-        return [f"No fixed rate that was run meets both conditions with a median η in the liquefied part as low as the "
-                f"default tolerance has ({number(eta, 4)}, 10 % allowed)."]
-    ratio = results.whole_test(base, strain) / results.whole_test(best, strain)
-    return [f"Asked, too, for a median η in the liquefied part as low as that of the default tolerance ({number(eta, 4)}, "
-            f"10 % allowed), the best fixed rate is {best.setting.label}; the default takes {ratio:.2f} of its steps."]
+def at_equal_quality(results, strain, rows, whole, family):
+    """Steps of the fixed rate that has the median η of the adaptive setting in the liquefied part, interpolated."""
+    what = {"rate": "fixed strain rate", "inertia": "fixed inertial number"}[family]
+    limit = 1.1 * results.base.mean("indicator_after")
+    adaptive = cheapest([r for r in rows if r.family in ADAPTIVE and r.mean("indicator_after") <= limit],
+                        lambda r: results.whole_test(r, strain))
+    head = f"Equally near to equilibrium when liquefied, {what}: "
+    if adaptive is None:
+        return head + f"no adaptive rate within {100 * GOOD:g} % has a median η up to {number(limit, 4)} (default + 10 %)."
+    eta = adaptive.mean("indicator_after")
+    points = sorted((r.mean("indicator_after"), results.whole_test(r, strain), r.setting.label) for r in whole
+                    if r.family == family and not math.isnan(r.mean("indicator_after")))
+    for (low, many, slower), (high, few, faster) in zip(points, points[1:]):
+        if low <= eta <= high and high > low:
+            share = math.log(eta / low) / math.log(high / low)
+            ratio = results.whole_test(adaptive, strain) / math.exp((1 - share) * math.log(many) + share * math.log(few))
+            return (head + f"{adaptive.setting.label} has a median η of {number(eta, 4)} and takes {ratio:.2f} of the steps "
+                    f"of the fixed one with that η, interpolated between {slower} and {faster}: "
+                    f"**{'at most' if ratio <= 0.5 else 'more than'} half**.")
+    return head + f"none was run on both sides of η = {number(eta, 4)} ({adaptive.setting.label})."
 
 
 TEXT = """# Speed against error
@@ -253,7 +274,7 @@ after liquefaction (or a strain of 3 %), monotonic compression to {strain:g} %. 
 
 **Errors** are distances in the p'-q plane over p0', against a run of the same specimen with I = {slow_number} and 0.2 of
 the critical step: cyclic at equal q, point by point (1 kPa apart, and at the reversals) up to reversal {early}, and up to
-reversal {longer}; monotonic at equal strain. "Largest" is the worst point of a path; figures are means over
+reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the worst point of a path; figures are means over
 realisations ± their standard error, in percent of p0'. **Cycles** and I_R at onset are ensembles: mean ± standard error,
 standard deviation beside it. The slow limit is {slow}. "Wide" lets the rate go from 0.02 to 20 1/s.
 
@@ -267,7 +288,8 @@ Steps of the whole cyclic test, liquefied part included, of the cheapest setting
 the path (mean over realisations) within a target and whose mean cycles to liquefaction lie within one standard deviation
 of the slow limit ({cycles}). Specimens strain differently after liquefaction, so its steps are brought to the same strain
 travelled, {travelled} % (that of the default). Adaptive: any tolerance, wide bounds or not. Settings that were run to the
-onset only cannot compete.
+onset only cannot compete. The fixed rates stand a factor of 2 to 4 apart, the inertial numbers 3 to 10, the tolerances 2 to
+3: a ratio is no surer than that.
 
 {verdict}
 
@@ -316,6 +338,7 @@ def write(results, command):
         command=command, state=state, after=after, strain=100 * results.limits.strain, base=base.setting.grains,
         seeds=len(seeds), seed_list=", ".join(map(str, seeds)), early=results.limits.early_reversals,
         slow_number=dict(reference[0].setting.motion)["inertial_number"] if reference else "–",
+        early_strain=100 * results.limits.early_strain, longer_strain=100 * results.limits.longer_strain,
         longer=results.limits.longer_reversals, slow=slow.setting.label if slow else "not run",
         cycles=f"{number(cycles[0])}, standard deviation {number(cycles[1])}", travelled=percent(strain),
         recommendation=recommendation(results), sentence=user_sentence(results), verdict=verdict(results, strain),

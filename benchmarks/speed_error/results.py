@@ -17,6 +17,8 @@ class Row:
     early: list = dataclasses.field(default_factory=list)  # (rms, largest) of the cyclic path
     longer: list = dataclasses.field(default_factory=list)
     monotonic: list = dataclasses.field(default_factory=list)
+    monotonic_longer: list = dataclasses.field(default_factory=list)
+    last_stress: list = dataclasses.field(default_factory=list)  # p'/p0' at the end of the monotonic test
     cycles: dict = dataclasses.field(default_factory=dict)  # by seed; only those that liquefied
     redundancy: dict = dataclasses.field(default_factory=dict)
     n_tests: int = 0  # cyclic tests done
@@ -108,11 +110,15 @@ class Results:
         is_reference = run.setting.family == "reference"
         where = (run.kind, run.setting.grains, run.seed)
         if run.kind == "monotonic":
-            path = paths.monotonic_path(history, self.limits.strain)
+            early = paths.monotonic_path(history, self.limits.early_strain)
+            longer = paths.monotonic_path(history, self.limits.longer_strain)
             if is_reference:
-                references[where] = path
+                references[where] = early, longer
             else:
-                self.append(row.monotonic, paths.deviation(path, references.get(where)))
+                first, second = references.get(where, (None, None))
+                self.append(row.monotonic, paths.deviation(early, first))
+                self.append(row.monotonic_longer, paths.deviation(longer, second))
+                self.append(row.last_stress, history.p[-1] / history.p0)
             row.monotonic_steps.append(float(history.step[-1] - history.step[0]))
             row.monotonic_cpu.append(record["cpu"])
             return
