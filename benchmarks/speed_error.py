@@ -39,8 +39,8 @@ def parse():
 
 def plan_of(options):
     if options.quick:
-        limits = plan.Limits(strain=0.001, early_strain=0.0005, longer_strain=0.001, cycles=30, early_reversals=2, longer_reversals=4, max_steps=120_000,
-                             reversals_after=1)
+        limits = plan.Limits(strain=0.001, early_strain=0.0005, longer_strain=0.001, cycles=30,
+                             early_reversals=2, longer_reversals=4, max_steps=120_000, reversals_after=1)
         return plan.runs(plan.quick_settings(), (1, 2), limits, options.only)
     return plan.runs(plan.full_settings(), range(1, options.realisations + 1), plan.Limits(), options.only)
 

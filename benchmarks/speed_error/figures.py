@@ -36,7 +36,8 @@ def spread_labels(axes, points):
     for (x, y, label, colour), mark in sorted(zip(points, marks), key=lambda item: -item[1][1]):
         for dx, dy in places:
             text = axes.annotate(label, (x, y), (dx, dy), textcoords="offset points", fontsize=7.5, color=colour,
-                                 bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85}, ha="left" if dx > 0 else "right" if dx < 0 else "center", va="center",
+                                 bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85},
+                                 ha="left" if dx > 0 else "right" if dx < 0 else "center", va="center",
                                  arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "#9a9a9a", "shrinkB": 3}
                                  if max(abs(dx), abs(dy)) > 8 else None)
             text.update_positions(renderer)
@@ -99,7 +100,8 @@ def pareto(results, path):
                       "part included")
         scatter_panel(right, [r for r in rows if r.monotonic],
                       lambda r: paths.ensemble(r.monotonic_cpu)[0] / 60, "monotonic",
-                      f"(b) monotonic: path to {100 * results.limits.early_strain:g} % strain; time to {100 * results.limits.strain:g} %")
+                      f"(b) monotonic: path to {100 * results.limits.early_strain:g} % strain; time to "
+                      f"{100 * results.limits.strain:g} %")
         shown = {r.family for r in rows}
         handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
                    for family, (c, m, text) in LOOK.items() if family in shown]

@@ -105,7 +105,8 @@ class Run:
             if self.setting.family == "reference":  # for the path only
                 after, cycles = 0, limits.longer_reversals // 2
             return (f'[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "{QAMP / 1e3:g} kPa"\n'
-                    f"until = {{ cycles = {cycles}, reversals_after_liquefaction = {after}, strain = {limits.cyclic_strain:g} }}\n"
+                    f"until = {{ cycles = {cycles}, reversals_after_liquefaction = {after}, "
+                    f"strain = {limits.cyclic_strain:g} }}\n"
                     f"max_steps = {limits.max_steps}\n")
         return ""
 

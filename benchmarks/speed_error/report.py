@@ -98,7 +98,8 @@ def cost_table(results):
                      number(paths.ensemble(row.cpu)[0], 1), number(paths.ensemble(row.wall)[0], 1),
                      number(row.milliseconds_per_step, 4), count(paths.ensemble(row.monotonic_steps)[0]),
                      number(paths.ensemble(row.monotonic_cpu)[0], 1)])
-    return table(["setting", "steps", "to the onset", "liquefied", "reversals liquefied", "strain travelled liquefied, %", "steps per 1 % of it",
+    return table(["setting", "steps", "to the onset", "liquefied", "reversals liquefied", "strain travelled liquefied, %",
+                  "steps per 1 % of it",
                   "median η liquefied", "CPU s", "wall s", "ms per step", "monotonic: steps", "CPU s"], rows)
 
 
@@ -274,7 +275,8 @@ after liquefaction (or a strain of 3 %), monotonic compression to {strain:g} %. 
 
 **Errors** are distances in the p'-q plane over p0', against a run of the same specimen with I = {slow_number} and 0.2 of
 the critical step: cyclic at equal q, point by point (1 kPa apart, and at the reversals) up to reversal {early}, and up to
-reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the worst point of a path; figures are means over
+reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the worst point of a
+path; figures are means over
 realisations ± their standard error, in percent of p0'. **Cycles** and I_R at onset are ensembles: mean ± standard error,
 standard deviation beside it. The slow limit is {slow}. "Wide" lets the rate go from 0.02 to 20 1/s.
 

@@ -157,12 +157,12 @@ class Campaign:
             print(f"  see {self.store.path(run, 'logs', '.log')}", file=sys.stderr, flush=True)
 
     def contention(self):
-        """Wall over CPU time of the runs done: above 1 where cores are shared."""
+        """Wall over CPU time of the runs done: above 1 where others use the cores too."""
         records = [self.store.record(run) for run in self.runs]
         cpu = sum(r.get("cpu", 0) for r in records)
         wall = sum(r.get("wall", 0) for r in records)
-        shared = max(1.0, self.jobs / len(self.cores))  # our own sharing is in the wall time already
-        return max(1.0, wall / cpu / shared) if cpu > 0 else 1.0
+        ours = max(1.0, self.jobs / len(self.cores))  # our own sharing is in the wall time already
+        return max(1.0, wall / cpu / ours) if cpu > 0 else 1.0
 
     def execute(self, run, core):
         store = self.store
@@ -180,7 +180,7 @@ class Campaign:
         log.parent.mkdir(parents=True, exist_ok=True)
         started = time.monotonic()
         with open(log, "a" if resume else "w") as out:
-            # a session of its own: Ctrl-C reaches us first, and we tell the runs
+            # a group of its own: Ctrl-C reaches us first, and we tell the runs
             process = subprocess.Popen(["taskset", "-c", str(core), *command], stdin=subprocess.DEVNULL, stdout=out,
                                        stderr=subprocess.STDOUT, start_new_session=True)
             self.processes[run.name] = process
