@@ -130,28 +130,40 @@ def cheapest(rows, key):
     return min(keyed, key=lambda pair: pair[0], default=(None, None))[1]
 
 
+def path_error(row):
+    """The worse of cyclic (longer window) and monotonic (early window); the cyclic one if the other was not run."""
+    cyclic, monotonic = row.error("longer")[0], row.error("monotonic")[0]
+    return cyclic if math.isnan(monotonic) else max(cyclic, monotonic)
+
+
+def errors_of(row):
+    return f"{percent(row.error('longer')[0])} and {percent(row.error('monotonic')[0])} %"
+
+
 def recommendation(results):
-    """Tolerance and time step with the fewest steps whose path before liquefaction is within GOOD."""
+    """Tolerance and time step with the fewest steps whose paths before liquefaction are within GOOD."""
     found = []
     for families in (("default", "tolerance"), ("default", "step")):
-        rows = [r for r in results.of_families(*families) if r.n_tests and r.error("longer")[0] <= GOOD]
+        rows = [r for r in results.of_families(*families) if r.n_tests and path_error(r) <= GOOD]
         # the same bounds may make two tolerances take the same steps: then the more careful one is taken
         found.append(cheapest(rows, lambda r: (round(results.whole_test(r, results.base.mean("strain_after")), -2),
-                                               r.error("longer")[0])))
+                                               path_error(r))))
     tolerance, step = found
     reversal, floor = results.limits.longer_reversals, floor_of(results, "longer")
     if tolerance is None or step is None:
         what = "tolerances" if tolerance is None else "time steps"
-        return (f"**Recommended:** none of the {what} that were run keeps the path to reversal {reversal} within "
+        return (f"**Recommended:** none of the {what} that were run keeps the early paths within "
                 f"{100 * GOOD:g} %. {floor}")
     keys = dict(tolerance.setting.motion)
-    text = (f"**Recommended:** `quasi_static_tolerance = {keys.get('quasi_static_tolerance', '0.01')}` (largest error to "
-            f"reversal {reversal}: {percent(tolerance.error('longer')[0])} % of p0', to reversal "
-            f"{results.limits.early_reversals}: {percent(tolerance.error('early')[0])} %) and `time_step_safety = "
-            f"{dict(step.setting.motion).get('time_step_safety', '0.8')}` ({percent(step.error('longer')[0])} % and "
-            f"{percent(step.error('early')[0])} %): the fewest steps among those within {100 * GOOD:g} % before liquefaction.")
+    text = (f"**Recommended:** `quasi_static_tolerance = {keys.get('quasi_static_tolerance', '0.01')}` (largest error of the "
+            f"cyclic path to reversal {reversal} and of the monotonic one to {100 * results.limits.early_strain:g} %: "
+            f"{errors_of(tolerance)}) and `time_step_safety = "
+            f"{dict(step.setting.motion).get('time_step_safety', '0.8')}` ({errors_of(step)}): the fewest steps among "
+            f"those within {100 * GOOD:g} % in both.")
     outside = dict.fromkeys(r.setting.label for r in (tolerance, step) if not results.within_scatter(r))
-    if outside:
+    if results.slow is None or len(results.slow.cycles) < 2:
+        text += " Too few realisations to judge cycles to liquefaction."
+    elif outside:
         text += f" But cycles to liquefaction ({', '.join(outside)}) lie outside the scatter of the slow limit."
     return f"{text} {floor}"
 
@@ -160,7 +172,7 @@ def floor_of(results, window):
     """How far the slow limit itself lies from the reference: it differs in the time step only."""
     slow = results.slow
     value = slow.error(window)[0] if slow else math.nan
-    return f"The slow limit itself is {percent(value)} % from the reference there." if not math.isnan(value) else ""
+    return f"The slow limit itself is {percent(value)} % from the reference in the cyclic one." if not math.isnan(value) else ""
 
 
 def user_sentence(results):
@@ -168,7 +180,7 @@ def user_sentence(results):
                   and not math.isnan(r.minutes)]
     reversal, parts, last = results.limits.longer_reversals, [], None
     for target in TARGETS:
-        row = cheapest([r for r in candidates if r.error("longer")[0] <= target], lambda r: r.minutes)
+        row = cheapest([r for r in candidates if path_error(r) <= target], lambda r: r.minutes)
         if row is None:
             parts.append(f"{100 * target:g} % is not reached by any tolerance that was run")
             break
@@ -176,11 +188,12 @@ def user_sentence(results):
             parts.append(f"{100 * target:g} % error costs {row.minutes:.2g} minutes ({row.setting.label})")
         last = row
     text = (f"**For users:** in a cyclic test of {results.base.setting.grains:,} grains on one core, run to the end of the "
-            f"liquefied part, with the error taken at the worst point of the path to reversal {reversal}, "
+            f"liquefied part, with the error taken at the worst point of the cyclic path to reversal {reversal} and of the "
+            f"monotonic one to {100 * results.limits.early_strain:g} %, "
             + ", ".join(parts))
     largest = results.grains_rows()[-1] if results.grains_rows() else None
     if largest is not None and largest is not results.base and largest.n_tests:
-        text += (f"; with {largest.setting.grains:,} grains the default ({percent(largest.error('longer')[0])} %) costs "
+        text += (f"; with {largest.setting.grains:,} grains the default ({percent(path_error(largest))} %) costs "
                  f"{largest.minutes:.2g} minutes")
     return text + "."
 
