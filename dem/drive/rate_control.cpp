@@ -8,13 +8,20 @@
 namespace isostat
 {
 RateControl::RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate)
-    : fixed_(stage_rate ? stage_rate : motion.strain_rate), tolerance_(motion.quasi_static_tolerance),
-      floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
+    : fixed_(stage_rate ? stage_rate : motion.strain_rate), inertial_number_(motion.inertial_number),
+      tolerance_(motion.quasi_static_tolerance), floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
 {}
+
+double reference_stress(double mean_stress, double p0) { return std::max(mean_stress, 0.05 * p0); }
+
+double rate_of(double inertial_number, double d50, double density, double p_r)
+{
+  return inertial_number * std::sqrt(p_r / density) / d50;
+}
 
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
 {
-  const double p_r = std::max(mean_stress, 0.05 * p0);
+  const double p_r = reference_stress(mean_stress, p0);
   const double inertia = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density, p_r);
   const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
   return std::max(
@@ -27,6 +34,12 @@ void RateControl::update(const Assembly &assembly, double mean_stress, DriveStat
   if (fixed_)
     {
       state.rate = *fixed_;
+      return;
+    }
+  if (inertial_number_)
+    {
+      state.rate = rate_of(*inertial_number_, assembly.d50(), assembly.packing().density,
+                           reference_stress(mean_stress, state.p0));
       return;
     }
   const double factor = std::clamp(std::sqrt(tolerance_ / std::max(state.indicator, 1e-12)), 0.7, 1.2);

@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// Chooses the strain rate from a quasi-static tolerance (DESIGN 4), or keeps a fixed one.
+/// Chooses the strain rate from a quasi-static tolerance (DESIGN 4), or keeps a fixed rate or inertial number.
 ///
 /// The indicator is what inertia adds to a quasi-static answer, relative to the stress at hand:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0),
@@ -14,21 +14,32 @@ namespace isostat
 /// bad as a 1 % imbalance. Below 5 % of p0 errors are thus judged against 5 % of p0: in the liquefied state stresses
 /// vanish, and with them what a relative error could mean. eta is continuous in p': a jump there would make p' linger
 /// at it. Every 50 steps
-///     rate <- rate clamp(sqrt(tolerance/eta), 0.7, 1.2)   within [floor, ceiling].
+///     rate <- rate clamp(sqrt(tolerance/eta), 0.7, 1.2)   within [floor, ceiling],
+/// or, with a fixed inertial number, rate <- I sqrt(p_r/rho)/d50, without bounds. A fixed rate of a stage goes before
+/// both.
+/// tested: tests/dem/drive/rate_control_test.cpp
 class RateControl
 {
 public:
   RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate);
 
-  /// The rate a stage starts with, 1/s.
+  /// The rate a stage starts with, 1/s. With a fixed inertial number it is the floor until the first update, which
+  /// comes before the first step of a shear stage.
   double initial_rate() const { return fixed_ ? *fixed_ : floor_; }
   /// Updates state.rate and state.indicator.     @pre compute_forces()
   void update(const Assembly &assembly, double mean_stress, DriveState &state) const;
 
 private:
-  std::optional<double> fixed_;
+  std::optional<double> fixed_, inertial_number_;
   double tolerance_, floor_, ceiling_;
 };
+
+/// p_r = max(p', 0.05 p0), the stress that inertia is judged against, Pa.
+double reference_stress(double mean_stress, double p0);
+
+/// Rate of the inertial number I at stress p_r, I sqrt(p_r/rho)/d50, 1/s.
+/// @param d50  m   @param density  of the grains, kg/m3   @param p_r  Pa
+double rate_of(double inertial_number, double d50, double density, double p_r);
 
 /// eta above; also where the rate is fixed it is recorded.
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);

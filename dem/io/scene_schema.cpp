@@ -22,7 +22,9 @@ constexpr Section sections[] = {
     {"specimen",
      "How the specimen is made. Exactly one of `relative_density`, `void_ratio`, `preparation_friction` and "
      "`file` is to be given."},
-    {"motion", "Equations of motion and their time step. The rate of loading follows from a tolerance, or is fixed."},
+    {"motion",
+     "Equations of motion and their time step. The rate of loading follows from a tolerance, from an inertial "
+     "number, or is fixed."},
     {"stage",
      "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "
      "only prepares its specimen. A key that does not belong to the kind of its stage is an error."},
@@ -163,6 +165,11 @@ constexpr Key keys[] = {
    .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .group = Group::rate,
    .text = "Fixed axial strain rate instead of the tolerance.",
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.strain_rate; }},
+  {.path = "motion.inertial_number", .presence = Presence::optional, .value = "1e-4", .range = fraction,
+   .reason = "because at 1 inertia is as large as the stress", .group = Group::rate,
+   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate is I sqrt(p_r / density) / d50 "
+           "with p_r = max(p', 0.05 p0'), renewed every 50 steps, without floor or ceiling.",
+   .field = [](Scene &s, Stage &) -> Field { return &s.motion.inertial_number; }},
   {.path = "motion.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .value = "0.2 1/s", .range = positive, .text = "Lowest rate the tolerance may lead to.",
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.rate_floor; }},

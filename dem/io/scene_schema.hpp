@@ -40,7 +40,7 @@ enum class Group
   none,
   size_curve,  ///< at most one of grading.curve, grading.table
   preparation, ///< exactly one of specimen.relative_density, void_ratio, preparation_friction, file
-  rate         ///< at most one of motion.strain_rate, quasi_static_tolerance
+  rate         ///< at most one of motion.strain_rate, inertial_number, quasi_static_tolerance
 };
 
 /// Allowed values, on the scale of Quantity::scale (SI; degrees for angles).

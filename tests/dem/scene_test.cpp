@@ -169,6 +169,24 @@ TEST(SceneOverride, TakesThePlaceOfWhatItExcludes)
   EXPECT_FALSE(scene.specimen.relative_density);
   EXPECT_EQ(scene.specimen.preparation_friction, parse_quantity("10 deg", Dimension::angle).value);
   EXPECT_EQ(scene.motion.strain_rate, 0.5);
+  EXPECT_FALSE(scene.motion.inertial_number);
+  const Scene slow = parse_scene(to_toml(scene), "s", {"motion.inertial_number=1e-5"});
+  EXPECT_FALSE(slow.motion.strain_rate);
+  EXPECT_EQ(slow.motion.inertial_number, 1e-5);
+  const Scene back = parse_scene(to_toml(slow), "s", {"motion.quasi_static_tolerance=0.02"});
+  EXPECT_FALSE(back.motion.inertial_number);
+  EXPECT_EQ(back.motion.quasi_static_tolerance, 0.02);
+}
+
+TEST(Scene, InertialNumber)
+{
+  EXPECT_FALSE(parse_scene(smallest, "s").motion.inertial_number);
+  for (const double number : {1e-12, 1e-4, 0.999})
+    {
+      const Scene scene = parse_scene(smallest + fmt::format("[motion]\ninertial_number = {}\n", number), "s");
+      EXPECT_EQ(scene.motion.inertial_number, number);
+      EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene) << to_toml(scene);
+    }
 }
 
 /// A value the key can hold, with random digits.
@@ -199,6 +217,7 @@ TEST(Scene, RoundTripToTheBit)
     text += "[[stage]]\nkind = \"" + stage + "\n";
   const Overrides variants[] = {{},
                                 {"motion.strain_rate=0.1/s", "specimen.preparation_friction=9 deg"},
+                                {"motion.inertial_number=1e-4"},
                                 {"specimen.void_ratio=0.7", "grading.table=[['0.1 mm', 3], ['0.3 mm', 100]]"},
                                 {"specimen.file=a.h5", "motion.time_step=3 ns"}};
   for (const Overrides &variant : variants)

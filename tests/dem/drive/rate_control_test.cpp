@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/rate_control.hpp"
+
+#include "dem/measure/unbalanced.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
@@ -87,6 +89,38 @@ TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
   for (int k = 0; k < 50; ++k)
     RateControl(motion, {}).update(assembly, 200e3, state);
   EXPECT_EQ(state.rate, 0.1);
+}
+
+TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
+{
+  Assembly assembly(test::specimen(500, 10));
+  assembly.time_step = dt;
+  assembly.compute_forces();
+  const double d50 = assembly.d50(), density = assembly.packing().density, p0 = 200e3;
+  MotionSpec motion;
+  motion.inertial_number = 1e-4;
+  const RateControl control(motion, {});
+  DriveState state;
+  state.p0 = p0;
+  state.rate = control.initial_rate();
+  for (const double p : {200e3, 350e3, 20e3, 10e3, 200e3}) // up and down, at once: no memory, no floor or ceiling
+    {
+      control.update(assembly, p, state);
+      EXPECT_NEAR(inertial_number(state.rate, d50, density, p), 1e-4, 1e-16);
+      EXPECT_GT(state.indicator, 0);
+    }
+  for (const double p : {5e3, 100.0, 0.0, -1e3}) // below 5 % of p0 the rate is that of 5 %
+    {
+      control.update(assembly, p, state);
+      EXPECT_NEAR(inertial_number(state.rate, d50, density, 0.05 * p0), 1e-4, 1e-16);
+    }
+  motion.inertial_number = 1e-2;
+  RateControl(motion, {}).update(assembly, p0, state);
+  EXPECT_GT(state.rate, motion.rate_ceiling);
+  EXPECT_NEAR(state.rate, 1e-2 * std::sqrt(p0 / density) / d50, 1e-9 * state.rate);
+  const RateControl stage_rate(motion, 0.3); // the stage's own rate goes before
+  stage_rate.update(assembly, p0, state);
+  EXPECT_EQ(state.rate, 0.3);
 }
 
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)
