@@ -5,6 +5,7 @@
 #include "dem/motion/leapfrog.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 #include <utility>
 
 namespace isostat
@@ -52,6 +53,12 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
         visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
 }
 
+/// Threads that pay for themselves: two chunks for each.
+int useful_threads(std::uint32_t n_grains)
+{
+  return std::clamp(static_cast<int>(Partition(n_grains).n_chunks / 2), 1, omp_get_max_threads());
+}
+
 MotionReport sum_of(const std::vector<MotionReport> &parts)
 {
   MotionReport all;
@@ -71,6 +78,7 @@ Assembly::Assembly(const Snapshot &initial)
       d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
 {
   verlet_.update(packing_, box_, 0.0, contacts_);
+  threads = default_threads > 0 ? default_threads : useful_threads(contacts_.partition().n_grains);
   const std::uint32_t idle = contacts_.partition().n_grains;
   std::size_t pair = 0;
   for (const Contact &c : initial.contacts)

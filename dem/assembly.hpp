@@ -18,9 +18,9 @@ namespace isostat
 ///
 /// compute_forces() itself only needs to know what the walls feel. Contact forces are evaluated when somebody looks at
 /// them, or else in move(), chunk by chunk with the motion of the chunk's grains while they are in the cache; the bits
-/// are the same. Between the halves the state is consistent: a driver reads stresses there, a recorder takes snapshots. After move()
-/// the state is what a checkpoint keeps. Nothing here decides where walls go: that is the drivers' business
-/// (dem/drive).
+/// are the same. Between the halves the state is consistent: a driver reads stresses there, a recorder takes snapshots.
+/// After move() the state is what a checkpoint keeps. Nothing here decides where walls go: that is the drivers'
+/// business (dem/drive).
 class Assembly
 {
 public:
@@ -71,8 +71,11 @@ public:
   /// moved
   EnergyBalance energy() const;
 
-  double time_step = 0;        ///< s; set before the first step
-  int threads = 1;             ///< that share a step; changes no bit of any result
+  double time_step = 0; ///< s; set before the first step
+  int threads = 1;      ///< that share a step; changes no bit of any result
+  /// What `threads` starts from in every new assembly: a number, or 0 for as many as the process may use and the
+  /// packing can feed. Set once by a program that has a core to itself; otherwise one thread.
+  inline static int default_threads = 1;
   double damping = 0.2;        ///< local damping [-]
   Vec3 gravity = Vec3::Zero(); ///< m/s2
   bool measure_energy = false;

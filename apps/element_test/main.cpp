@@ -33,6 +33,7 @@ struct Options
   std::vector<std::string> set;
   bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
        no_figures = false;
+  int threads = 0;
 };
 
 /// The state of a run: fresh from the specimen, or from a checkpoint.
@@ -75,6 +76,7 @@ Run start(const Scene &scene, const fs::path &folder, bool quiet)
 void run_test(const Options &options)
 {
   const Scene scene = read_scene(options.scene, options.set);
+  Assembly::default_threads = options.threads;
   if (options.validate)
     {
       fmt::print("{}", to_toml(scene));
@@ -136,6 +138,10 @@ int run_command(int argc, char **argv)
   app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  app.add_option("-t,--threads", options.threads,
+                 "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
+                 "results do not depend on it. Give 1 to runs that go side by side")
+      ->check(CLI::Range(0, 1024));
   options.command_line = command_line(argc, argv);
   return parse_and_run(app, argc, argv, [&] {
     if (options.print_defaults)

@@ -174,8 +174,8 @@ struct Loop
   {
     const D d;
     const Triple n0 = load3(h);
-    const V ks = hn::Div(hn::Mul(rr, hn::Set(d, k.twice_young * k.stiffness_ratio)),
-                         hn::Max(reach, hn::Set(d, 1e-300)));
+    const V ks =
+        hn::Div(hn::Mul(rr, hn::Set(d, k.twice_young * k.stiffness_ratio)), hn::Max(reach, hn::Set(d, 1e-300)));
     const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), hn::Zero(d)));
     hn::StoreU(hn::IfThenElseZero(opened, forgotten(k, h, ks, rr)), d, k.released + pair);
   }
@@ -215,10 +215,7 @@ struct Loop
     return fs;
   }
 
-  static Mask yielded(const Kinematics &p, V factor)
-  {
-    return hn::And(p.touching, hn::Lt(factor, hn::Set(D(), 1.0)));
-  }
+  static Mask yielded(const Kinematics &p, V factor) { return hn::And(p.touching, hn::Lt(factor, hn::Set(D(), 1.0))); }
 
   /// mb <- turned(mb) - kr dt dw_b, |mb| <= rho_r fn;  mt <- turned(mt) - kt dt dw_t;  returns mb + mt
   static HWY_INLINE Triple moments(const KernelView &k, std::size_t pair, double *h, const Kinematics &p)
@@ -294,7 +291,8 @@ void AddGhosts(const Ghost *ghosts, std::size_t n, double *action)
   for (std::size_t g = 0; g < n; ++g)
     for (std::size_t c = 0; c < 8; c += hn::Lanes(d))
       {
-        double *grain = action + 8 * std::size_t{ghosts[g].grain} + c, *ghost = action + 8 * std::size_t{ghosts[g].slot} + c;
+        double *grain = action + 8 * std::size_t{ghosts[g].grain} + c,
+               *ghost = action + 8 * std::size_t{ghosts[g].slot} + c;
         hn::Store(hn::Add(hn::Load(d, grain), hn::Load(d, ghost)), d, grain);
         hn::Store(hn::Zero(d), d, ghost);
       }

@@ -72,7 +72,6 @@ HWY_INLINE Triple minus_cross(const Triple &c, const Triple &a, const Triple &b)
 /// z - z x a
 HWY_INLINE Triple minus_cross(const Triple &z, const Triple &a) { return minus_cross(z, z, a); }
 
-
 /// Components of history, 8 lanes apart.
 HWY_INLINE Triple load3(const double *h) { return {hn::LoadU(D(), h), hn::LoadU(D(), h + 8), hn::LoadU(D(), h + 16)}; }
 /// ... of the lanes in `m`, 0 in the others

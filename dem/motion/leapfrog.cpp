@@ -41,8 +41,8 @@ struct Advance
 };
 
 template <bool Measure>
-MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t end, double *action, const Advance &advance,
-                             double speed_limit)
+MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t end, double *action,
+                             const Advance &advance, double speed_limit)
 {
   const D4 d;
   constexpr std::size_t width = hn::MaxLanes(D4());
