@@ -4,6 +4,7 @@
 #include "dem/error.hpp"
 #include "dem/motion/leapfrog.hpp"
 
+#include <chrono>
 #include <fmt/format.h>
 #include <omp.h>
 #include <utility>
@@ -53,10 +54,10 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
         visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
 }
 
-/// Threads that pay for themselves: two chunks for each.
+/// Threads that pay for themselves: four chunks for each.
 int useful_threads(std::uint32_t n_grains)
 {
-  return std::clamp(static_cast<int>(Partition(n_grains).n_chunks / 2), 1, omp_get_max_threads());
+  return std::clamp(static_cast<int>(Partition(n_grains).n_chunks / 4), 1, omp_get_max_threads());
 }
 
 MotionReport sum_of(const std::vector<MotionReport> &parts)
@@ -103,17 +104,49 @@ void Assembly::compute_forces()
 {
   if (std::exchange(forces_known_, true))
     return;
-  verlet_.update(packing_, box_, greatest_step_, contacts_);
+  verlet_.update(packing_, box_, greatest_step_, contacts_, n_threads());
   action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
   wall_sums_.resize(contacts_.partition().n_chunks);
-  for (std::size_t chunk = 0; chunk < wall_sums_.size(); ++chunk)
+  if (measure_energy)
+    dissipation_.resize(contacts_.n_lanes());
+  const bool at_once = n_threads() > 1;
+  for_chunks([&](std::size_t chunk) {
     add_wall_forces(chunk);
+    if (at_once)
+      evaluate_chunk(chunk);
+  });
+  pending_ = at_once ? Pending::ghosts : Pending::contacts;
   sum_wall_forces();
   if (gravity != Vec3::Zero())
     add_gravity();
-  pending_ = true;
   if (measure_energy)
     energy_started_ ? sum_dissipation() : start_energy();
+}
+
+int Assembly::n_threads() const { return std::clamp(threads, 1, static_cast<int>(contacts_.partition().n_chunks)); }
+
+template <typename Work>
+void Assembly::for_chunks(const Work &work) const
+{
+  const Partition &partition = contacts_.partition();
+  const int n = n_threads();
+  if (n == 1)
+    {
+      for (std::size_t chunk = 0; chunk < partition.n_chunks; ++chunk)
+        work(chunk);
+      return;
+    }
+  shares_.update(n, partition.n_chunks, [&](std::size_t chunk) { // a block of pairs costs as much as 16 grains to move
+    return 16.0 * contacts_.first_block(chunk) + partition.begin(chunk);
+  });
+#pragma omp parallel num_threads(n)
+  {
+    const int thread = omp_get_thread_num();
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t chunk = shares_.begin(thread); chunk < shares_.begin(thread + 1); ++chunk)
+      work(chunk);
+    shares_.add_time(thread, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
 }
 
 void Assembly::evaluate_chunk(std::size_t chunk) const
@@ -124,20 +157,11 @@ void Assembly::evaluate_chunk(std::size_t chunk) const
 
 void Assembly::evaluate() const
 {
-  if (!std::exchange(pending_, false))
-    return;
-  if (measure_energy)
-    dissipation_.resize(contacts_.n_lanes());
-  const int n_chunks = static_cast<int>(contacts_.partition().n_chunks);
-#pragma omp parallel num_threads(std::clamp(threads, 1, n_chunks)) if (threads > 1 && n_chunks > 1)
-  {
-#pragma omp for schedule(static)
-    for (int chunk = 0; chunk < n_chunks; ++chunk)
-      evaluate_chunk(chunk);
-#pragma omp for schedule(static)
-    for (int chunk = 0; chunk < n_chunks; ++chunk)
-      add_ghosts(contacts_, chunk, action_.data());
-  }
+  if (pending_ == Pending::contacts)
+    for_chunks([&](std::size_t chunk) { evaluate_chunk(chunk); });
+  if (pending_ != Pending::nothing)
+    for_chunks([&](std::size_t chunk) { add_ghosts(contacts_, chunk, action_.data()); });
+  pending_ = Pending::nothing;
 }
 
 void Assembly::start_energy()
@@ -205,37 +229,21 @@ void Assembly::sum_dissipation()
 
 MotionReport Assembly::move_grains(double speed_limit)
 {
+  if (pending_ == Pending::contacts && n_threads() > 1) // threads were added since compute_forces()
+    evaluate();
   const Partition &partition = contacts_.partition();
-  const int n_chunks = static_cast<int>(partition.n_chunks);
-  motion_reports_.resize(n_chunks);
-  const bool evaluating = std::exchange(pending_, false);
-  if (evaluating && measure_energy)
-    dissipation_.resize(contacts_.n_lanes());
-  const auto move_chunk = [&](int chunk) {
-    if (evaluating)
+  const Pending pending = std::exchange(pending_, Pending::nothing);
+  motion_reports_.resize(partition.n_chunks);
+  for_chunks([&](std::size_t chunk) {
+    // On one thread the chunks come in order. Pairs belong to their first grain, the lower one: once its chunk is
+    // done, no later pair reads or pushes it, and all its ghosts are filled.
+    if (pending == Pending::contacts)
+      evaluate_chunk(chunk);
+    if (pending != Pending::nothing)
       add_ghosts(contacts_, chunk, action_.data());
     motion_reports_[chunk] = integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), action_.data(),
                                        time_step, damping, speed_limit, measure_energy);
-  };
-  if (threads <= 1 || n_chunks == 1)
-    // Pairs belong to their first grain, the lower one: once its chunk is done, no later pair reads or pushes it.
-    for (int chunk = 0; chunk < n_chunks; ++chunk)
-      {
-        if (evaluating)
-          evaluate_chunk(chunk);
-        move_chunk(chunk);
-      }
-  else
-#pragma omp parallel num_threads(std::min(threads, n_chunks))
-    {
-      if (evaluating)
-#pragma omp for schedule(static)
-        for (int chunk = 0; chunk < n_chunks; ++chunk)
-          evaluate_chunk(chunk);
-#pragma omp for schedule(static)
-      for (int chunk = 0; chunk < n_chunks; ++chunk)
-        move_chunk(chunk);
-    }
+  });
   return sum_of(motion_reports_);
 }
 

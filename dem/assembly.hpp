@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/kernel.hpp"
+#include "dem/contact/shares.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/measure/energy.hpp"
 #include "dem/measure/snapshot.hpp"
@@ -93,6 +94,10 @@ private:
   /// Contact forces of this step, if they are still pending.
   void evaluate() const;
   void evaluate_chunk(std::size_t chunk) const;
+  int n_threads() const;
+  /// Calls work(chunk) for all chunks: in order on one thread, in shares on several.
+  template <typename Work>
+  void for_chunks(const Work &work) const;
   void add_wall_forces(std::size_t chunk);
   void sum_wall_forces();
   MotionReport move_grains(double speed_limit);
@@ -109,8 +114,15 @@ private:
   VerletList verlet_;
   mutable AlignedVector<double> action_; ///< [F 0 T 0] per slot
   mutable DissipationPerPair dissipation_;
-  bool forces_known_ = false;    ///< compute_forces() has been called in this step: again is for free
-  mutable bool pending_ = false; ///< contact forces of this step are not evaluated yet
+  bool forces_known_ = false; ///< compute_forces() has been called in this step: again is for free
+  enum class Pending
+  {
+    nothing,
+    ghosts,  ///< contact forces are there, ghosts are not added yet
+    contacts ///< contact forces are not evaluated yet
+  };
+  mutable Pending pending_ = Pending::nothing;
+  mutable ThreadShares shares_;
   /// What the grains of one chunk do to the walls.
   struct WallSums
   {

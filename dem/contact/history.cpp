@@ -107,37 +107,46 @@ void ContactList::place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_g
     }
 }
 
-void ContactList::take_history(const ContactList &old)
+void ContactList::take_history(const ContactList &old, std::size_t chunk)
 {
-  history_.assign(n_lanes() * n_components(), 0.0);
-  occupied_.assign(n_blocks(), 0);
+  const std::size_t n_c = n_components(), end = lanes * first_block(chunk + 1);
+  std::fill(history_.data() + first_block(chunk) * n_c * lanes, history_.data() + first_block(chunk + 1) * n_c * lanes,
+            0.0);
+  std::fill(occupied_.begin() + first_block(chunk), occupied_.begin() + first_block(chunk + 1), std::uint8_t{0});
+  if (old.partition_.n_grains != partition_.n_grains)
+    return;
   const std::uint32_t idle = partition_.n_grains;
-  std::size_t from = 0;
-  for (std::size_t to = 0; to < n_lanes(); ++to)
+  std::size_t from = lanes * old.first_block(chunk);
+  const std::size_t from_end = lanes * old.first_block(chunk + 1);
+  for (std::size_t to = lanes * first_block(chunk); to < end && first_[to] != idle; ++to)
     {
       const Pair key(first_[to], second_[to]);
-      if (key.first == idle)
-        continue;
-      while (from < old.n_lanes() && (old.first_[from] == idle || Pair(old.first_[from], old.second_[from]) < key))
+      while (from < from_end && Pair(old.first_[from], old.second_[from]) < key)
         ++from;
-      if (from == old.n_lanes())
+      if (from == from_end)
         return;
       if (Pair(old.first_[from], old.second_[from]) != key || !old.occupied_[from / lanes])
         continue;
-      const double *source = old.history_.data() + (from / lanes) * n_components() * lanes + from % lanes;
-      double *sink = history_.data() + (to / lanes) * n_components() * lanes + to % lanes;
-      for (std::size_t c = 0; c < n_components(); ++c)
+      const double *source = old.history_.data() + (from / lanes) * n_c * lanes + from % lanes;
+      double *sink = history_.data() + (to / lanes) * n_c * lanes + to % lanes;
+      for (std::size_t c = 0; c < n_c; ++c)
         sink[c * lanes] = source[c * lanes];
       occupied_[to / lanes] = 1;
     }
 }
 
-void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains)
+void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads)
 {
-  thread_local ContactList next; // its memory is used again
+  thread_local ContactList scratch; // its memory is used again
+  ContactList &next = scratch;      // for all threads
   next.features_ = features_;
   next.place(sorted_pairs, n_grains);
-  next.take_history(*this);
+  next.history_.resize(next.n_lanes() * n_components());
+  next.occupied_.resize(next.n_blocks());
+  const int n_chunks = static_cast<int>(next.partition_.n_chunks);
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+  for (int chunk = 0; chunk < n_chunks; ++chunk)
+    next.take_history(*this, chunk);
   std::swap(*this, next);
 }
 

@@ -64,7 +64,8 @@ public:
 
   /// Replaces the pairs; history goes over to pairs that stay, the rest starts from zero.
   /// @param sorted_pairs  by (first, second)   @param n_grains  index of the first padding grain
-  void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains);
+  /// @param threads  that share the work
+  void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads = 1);
 
   /// Switches parts of the law on or off; history of parts that stay is kept.
   void set_features(LawFeatures active);
@@ -81,7 +82,7 @@ public:
 
 private:
   void place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains);
-  void take_history(const ContactList &old);
+  void take_history(const ContactList &old, std::size_t chunk);
   double *component(std::size_t pair, std::size_t c)
   {
     return &history_[((pair / lanes) * n_components() + c) * lanes + pair % lanes];

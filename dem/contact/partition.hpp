@@ -10,10 +10,11 @@ namespace isostat
 /// along a space-filling curve: a chunk is a compact region, and few pairs reach into another one.
 struct Partition
 {
-  static constexpr std::uint32_t grains_per_chunk = 1250; ///< 0.5 MB of grains and contacts: a quarter of an L2 cache
+  static constexpr std::uint32_t grains_per_chunk = 625;    ///< 0.25 MB of grains and contacts
+  static constexpr std::uint32_t grains_for_threads = 2500; ///< fewer grains are one chunk: threads would only cost
 
   explicit Partition(std::uint32_t grains = 0)
-      : n_grains(grains), n_chunks(grains < grains_per_chunk ? 1 : (grains + grains_per_chunk / 2) / grains_per_chunk)
+      : n_grains(grains), n_chunks(grains < grains_for_threads ? 1 : (grains + grains_per_chunk / 2) / grains_per_chunk)
   {}
 
   /// First grain of a chunk; begin(n_chunks) is the number of grains.

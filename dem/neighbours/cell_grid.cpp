@@ -82,22 +82,31 @@ void collect_partners(const Packing &packing, const Cells &cells, std::uint32_t 
 }
 } // namespace
 
-std::vector<ContactList::Pair> find_pairs(const Packing &packing, double skin)
+std::vector<ContactList::Pair> find_pairs(const Packing &packing, double skin, int threads)
 {
-  std::vector<ContactList::Pair> pairs;
   if (packing.n_grains() == 0)
-    return pairs;
+    return {};
   const Cells cells = sort_into_cells(packing, 2 * packing.max_radius() + skin);
-  pairs.reserve(4 * packing.n_grains());
-  std::vector<std::uint32_t> partners;
-  for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
+  const auto n = static_cast<std::uint32_t>(packing.n_grains());
+  std::vector<std::vector<ContactList::Pair>> parts(threads);
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+  for (int t = 0; t < threads; ++t)
     {
-      partners.clear();
-      collect_partners(packing, cells, i, skin, partners);
-      std::sort(partners.begin(), partners.end());
-      for (std::uint32_t j : partners)
-        pairs.emplace_back(i, j);
+      const auto begin = static_cast<std::uint32_t>(std::uint64_t{n} * t / threads),
+                 end = static_cast<std::uint32_t>(std::uint64_t{n} * (t + 1) / threads);
+      parts[t].reserve(4 * (end - begin));
+      std::vector<std::uint32_t> partners;
+      for (std::uint32_t i = begin; i < end; ++i)
+        {
+          partners.clear();
+          collect_partners(packing, cells, i, skin, partners);
+          std::sort(partners.begin(), partners.end());
+          for (std::uint32_t j : partners)
+            parts[t].emplace_back(i, j);
+        }
     }
-  return pairs;
+  for (int t = 1; t < threads; ++t)
+    parts[0].insert(parts[0].end(), parts[t].begin(), parts[t].end());
+  return std::move(parts[0]);
 }
 } // namespace isostat

@@ -29,30 +29,32 @@ void VerletList::invalidate()
   wide_ = {};
 }
 
-void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts)
+void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
+                        int threads)
 {
   ++steps_since_rebuild_;
   slack_ -= 4 * greatest_step; // both grains of a pair, and the box's homogeneous part
   if (slack_ > 0)
     return;
-  slack_ = tight_.slack(packing, box, skin_, greatest_reach_);
+  slack_ = tight_.slack(packing, box, skin_, greatest_reach_, threads);
   if (slack_ > 0)
     return;
   choose_skin(packing.min_radius());
   // a pair left out of the wide list is still apart by the slack that remains of it
-  if (wide_.slack(packing, box, wide_skin_, greatest_reach_) <= skin_)
-    search(packing, box);
-  select(packing, box, contacts);
+  if (wide_.slack(packing, box, wide_skin_, greatest_reach_, threads) <= skin_)
+    search(packing, box, threads);
+  select(packing, box, contacts, threads);
 }
 
-double VerletList::Reference::slack(const Packing &now, const RigidBox &box_now, double skin,
-                                    double greatest_reach) const
+double VerletList::Reference::slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach,
+                                    int threads) const
 {
   if (position.size() != now.position.size())
     return -1;
   const Vec3 centre = box_now.centre(), built_centre = box.centre();
   const Vec3 stretch = box_now.edges().cwiseQuotient(box.edges());
   double moved2 = 0, moved_in_box2 = 0;
+#pragma omp parallel for schedule(static) reduction(max : moved2, moved_in_box2) num_threads(threads) if (threads > 1)
   for (std::size_t i = 0; i < now.n_grains(); ++i)
     {
       const Vec3 x = now.centre(i), x0(&position[4 * i]);
@@ -80,10 +82,10 @@ void VerletList::choose_skin(double r_min)
     skin_ = std::max(0.8 * skin_, least_skin * r_min);
 }
 
-void VerletList::search(const Packing &packing, const RigidBox &box)
+void VerletList::search(const Packing &packing, const RigidBox &box, int threads)
 {
   wide_skin_ = wide_over_tight * skin_;
-  candidates_ = find_pairs(packing, wide_skin_);
+  candidates_ = find_pairs(packing, wide_skin_, threads);
   for (int wall = 0; wall < 6; ++wall)
     {
       wall_candidates_[wall].clear();
@@ -96,7 +98,7 @@ void VerletList::search(const Packing &packing, const RigidBox &box)
   ++n_searches_;
 }
 
-void VerletList::select(const Packing &packing, const RigidBox &box, ContactList &contacts)
+void VerletList::select(const Packing &packing, const RigidBox &box, ContactList &contacts, int threads)
 {
   thread_local std::vector<ContactList::Pair> pairs; // its memory is used again
   pairs.clear();
@@ -107,7 +109,7 @@ void VerletList::select(const Packing &packing, const RigidBox &box, ContactList
       if (dx * dx + dy * dy + dz * dz < reach * reach)
         pairs.push_back(pair);
     }
-  contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()));
+  contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()), threads);
   select_near_walls(packing, box, contacts.partition());
   tight_ = {packing.position, box};
   slack_ = skin_;

@@ -22,7 +22,9 @@ class VerletList
 public:
   /// Makes the list valid for the present positions.
   /// @param greatest_step  bound on what any grain or wall has moved since the last call, m
-  void update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts);
+  /// @param threads        that share the work; the list does not depend on it
+  void update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
+              int threads = 1);
 
   /// Grains within the tight skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
   const std::array<std::vector<std::uint32_t>, 6> &near_wall() const { return near_wall_; }
@@ -44,11 +46,11 @@ private:
   {
     AlignedVector<double> position;
     RigidBox box;
-    double slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach) const;
+    double slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach, int threads) const;
   };
   void choose_skin(double r_min);
-  void search(const Packing &packing, const RigidBox &box);
-  void select(const Packing &packing, const RigidBox &box, ContactList &contacts);
+  void search(const Packing &packing, const RigidBox &box, int threads);
+  void select(const Packing &packing, const RigidBox &box, ContactList &contacts, int threads);
   void select_near_walls(const Packing &packing, const RigidBox &box, const Partition &partition);
 
   double skin_ = 0, wide_skin_ = 0, slack_ = -1;
