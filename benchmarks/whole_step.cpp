@@ -5,6 +5,7 @@
 //   whole_step results/specimens/specimen-....h5 --rate 5 --time-step 4.8e-8 --steps 1500
 //   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
 //   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
+//   whole_step specimen.h5 --copies 10           ten copies in a row in one box
 #include "apps/common/main_guard.hpp"
 #include "dem/assembly.hpp"
 #include "dem/drive/strain_path.hpp"
@@ -13,6 +14,7 @@
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/space_filling.hpp"
+#include "tests/support/specimens.hpp"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -26,6 +28,7 @@ struct Options
 {
   std::string packing, exported;
   double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2;
+  std::size_t copies = 1;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
@@ -63,7 +66,7 @@ std::size_t n_contacts(const Assembly &assembly)
 
 void measure(const Options &options)
 {
-  const Snapshot initial = load(options);
+  const Snapshot initial = options.copies > 1 ? test::row_of_copies(load(options), options.copies) : load(options);
   if (!options.exported.empty())
     return export_text(initial, options.exported);
   Assembly assembly(initial);
@@ -89,14 +92,17 @@ void measure(const Options &options)
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       assembly.compute_forces();
       const std::size_t contacts = n_contacts(assembly);
+      const double grains = static_cast<double>(assembly.packing().n_grains());
+      const MemoryUse memory = assembly.memory();
       const StressInvariants s = invariants(assembly.wall_stress());
       assembly.move(assembly.box());
       fmt::print(
           "isostat steps_per_s {:.1f} ms_per_step {:.4f} contacts {} ns_per_contact_step {:.2f} p_kPa {:.2f} q_kPa "
-          "{:.2f} list_rebuilds {} instruction_set {}\n",
+          "{:.2f} grains {} threads {} state_bytes_per_grain {:.0f} working_bytes_per_grain {:.0f} list_rebuilds {} "
+          "instruction_set {}\n",
           options.steps / seconds, 1e3 * seconds / options.steps, contacts,
-          1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3,
-          assembly.verlet_list().n_rebuilds(), instruction_set());
+          1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3, grains, options.threads,
+          memory.state / grains, memory.working / grains, assembly.verlet_list().n_rebuilds(), instruction_set());
     }
 }
 } // namespace
@@ -107,6 +113,8 @@ int main(int argc, char **argv)
   Options options;
   app.add_option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres")->required();
   app.add_option("--export", options.exported, "write the packing as text and stop");
+  app.add_option("--copies", options.copies, "run so many copies of the packing, side by side, without contact history")
+      ->check(CLI::PositiveNumber);
   app.add_option("--rate", options.rate, "axial strain rate, 1/s");
   app.add_option("--time-step", options.time_step, "s");
   app.add_option("--friction", options.friction_degrees, "degrees");

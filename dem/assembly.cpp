@@ -399,6 +399,17 @@ Snapshot Assembly::snapshot() const
   return s;
 }
 
+MemoryUse Assembly::memory() const
+{
+  std::size_t closed = 0;
+  for_closed_pairs(law_, packing_, contacts(),
+                   [&](std::uint32_t, std::uint32_t, const Vec3 &, const Vec3 &) { ++closed; });
+  const std::size_t numbers = packing_.position.size() + packing_.velocity.size() + packing_.spin.size();
+  const std::size_t grains = 8 * numbers + sizeof(std::uint32_t) * packing_.id.size();
+  const std::size_t history = closed * (sizeof(ContactList::Pair) + 8 * contacts_.n_components());
+  return {grains + history, contacts_.bytes() - history + 8 * action_.size() + verlet_.bytes()};
+}
+
 EnergyBalance Assembly::energy() const
 {
   EnergyBalance balance = tally;

@@ -12,6 +12,13 @@
 
 namespace isostat
 {
+/// Bytes in use.
+struct MemoryUse
+{
+  std::size_t state;   ///< what the next step depends on: grains, and pair and history of closed contacts
+  std::size_t working; ///< the rest: pairs that are only near, slots, forces, positions the lists were made from
+};
+
 /// The granular assembly in its rigid box, and one time step of it in two halves:
 ///
 ///     compute_forces()    x, v, history  ->  contact and wall forces, new history
@@ -62,6 +69,8 @@ public:
   double unbalanced_force_ratio() const;
   /// Sum of stiffnesses of the contacts with the two walls of an axis, N/m: what the servo divides by.
   double wall_stiffness_sum(int axis) const { return wall_stiffness_sum_[axis]; }
+
+  MemoryUse memory() const;
 
   /// State with all contacts in force.  @pre compute_forces(), not yet moved
   Snapshot snapshot() const;

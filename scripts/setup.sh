@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   git g++ cmake ninja-build pkg-config clang-format
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev libhwy-dev librandom123-dev
-  libpugixml-dev libboost-dev libgtest-dev libgmock-dev zlib1g-dev
+  libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev
   python3 python3-matplotlib python3-numpy python3-h5py
 )
 

@@ -39,6 +39,10 @@ public:
   std::uint64_t n_rebuilds() const { return n_rebuilds_; } ///< of the tight list
   std::uint64_t n_searches() const { return n_searches_; } ///< of the wide one
   double skin() const { return skin_; }                    ///< tight, m
+  std::size_t bytes() const
+  {
+    return 8 * (tight_.position.size() + wide_.position.size()) + sizeof(ContactList::Pair) * candidates_.size();
+  }
 
 private:
   /// Positions a list was made from.

@@ -45,9 +45,9 @@ inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees
   return made[key];
 }
 
-/// `n` copies of a specimen in a row along x in one long box: a larger packing without its preparation. Grains of two
-/// copies that stood at their walls may overlap by some 1e-7 m.
-inline Snapshot side_by_side(const Snapshot &specimen, std::size_t n)
+/// `n` copies of a specimen in a row along x in one long box, every other one mirrored: a larger packing without its
+/// preparation. Where a wall was, a grain now leans on its mirror image.
+inline Snapshot row_of_copies(const Snapshot &specimen, std::size_t n)
 {
   const double edge = specimen.box.edges()[0];
   const std::size_t grains = specimen.grains.n_grains();
@@ -57,7 +57,10 @@ inline Snapshot side_by_side(const Snapshot &specimen, std::size_t n)
   for (std::size_t copy = 0; copy < n; ++copy)
     for (std::size_t i = 0; i < grains; ++i)
       {
-        centres.push_back(specimen.grains.centre(i) + Vec3(copy * edge, 0, 0));
+        Vec3 x = specimen.grains.centre(i);
+        if (copy % 2 == 1)
+          x[0] = specimen.box.lower[0] + specimen.box.upper[0] - x[0];
+        centres.push_back(x + Vec3(copy * edge, 0, 0));
         radii.push_back(specimen.grains.radius(i));
       }
   row.grains = make_packing(centres, radii, specimen.grains.density);

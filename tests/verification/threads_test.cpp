@@ -59,7 +59,7 @@ void expect_same_bits(const Outcome &a, const Outcome &b)
 
 TEST(Threads, ChangeNoBitInTwentyThousandSteps)
 {
-  const Snapshot initial = test::side_by_side(test::specimen(1000, 2), 5);
+  const Snapshot initial = test::row_of_copies(test::specimen(1000, 2), 5);
   ASSERT_GE(Partition(static_cast<std::uint32_t>(initial.grains.n_grains())).n_chunks, 4u);
   const Outcome one = sheared(initial, 1, 20000, false);
   std::printf("%zu grains, %zu contacts at the end, %llu rebuilds\n", initial.grains.n_grains(),
@@ -75,7 +75,7 @@ TEST(Threads, ChangeNoBitInTwentyThousandSteps)
 
 TEST(Threads, LookingAtForcesChangesNoBit)
 {
-  const Snapshot initial = test::side_by_side(test::specimen(1000, 2), 5);
+  const Snapshot initial = test::row_of_copies(test::specimen(1000, 2), 5);
   expect_same_bits(sheared(initial, 1, 500, false), sheared(initial, 1, 500, true));
 }
 

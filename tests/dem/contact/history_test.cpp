@@ -137,4 +137,62 @@ TEST(ContactList, SwitchingPartsOfTheLawKeepsWhatStays)
           }
       }
 }
+
+TEST(ContactList, ChunksHaveBlocksAndGhostsOfTheirOwn)
+{
+  const std::uint32_t n = 5000; // each grain with the next one and with one far away
+  std::vector<Pair> pairs;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j : {i + 1, i + 1000})
+      if (j < n)
+        pairs.emplace_back(i, j);
+  ContactList list(full);
+  list.replace_pairs(pairs, n);
+  const Partition &partition = list.partition();
+  ASSERT_GE(partition.n_chunks, 4u);
+  std::vector<std::uint32_t> grain_of(list.n_slots(), n); // of ghosts
+  for (std::size_t chunk = 0; chunk < partition.n_chunks; ++chunk)
+    for (const Ghost &g : list.ghosts(chunk))
+      {
+        EXPECT_EQ(partition.chunk_of(g.grain), chunk);
+        ASSERT_EQ(grain_of.at(g.slot), n) << "one slot, one grain";
+        grain_of[g.slot] = g.grain;
+      }
+  std::size_t seen = 0;
+  for (std::size_t chunk = 0; chunk < partition.n_chunks; ++chunk)
+    for (std::size_t lane = 8 * list.first_block(chunk); lane < 8 * list.first_block(chunk + 1); ++lane)
+      {
+        const std::uint32_t i = list.first()[lane], j = list.second()[lane], slot = list.target()[lane];
+        if (i == n)
+          continue;
+        ASSERT_EQ(Pair(i, j), pairs[seen++]);
+        EXPECT_EQ(partition.chunk_of(i), chunk);
+        EXPECT_EQ(slot < n, partition.chunk_of(j) == chunk) << "another chunk's grain is reached through a ghost";
+        EXPECT_EQ(slot < n ? slot : grain_of[slot], j);
+      }
+  EXPECT_EQ(seen, pairs.size());
+}
+
+TEST(ContactList, HistoryGoesOverInEveryChunkOnAnyNumberOfThreads)
+{
+  const std::uint32_t n = 5000;
+  std::vector<Pair> old_pairs, new_pairs;
+  for (std::uint32_t i = 0; i + 3 < n; ++i)
+    {
+      old_pairs.emplace_back(i, i + 1 + i % 2);
+      new_pairs.emplace_back(i, i + 1 + i % 3);
+    }
+  for (int threads : {1, 2, 3})
+    {
+      ContactList list(full);
+      list.replace_pairs(old_pairs, n);
+      for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
+        if (list.first()[lane] < n)
+          list.set_history(lane, marked(pair_at(list, lane)));
+      list.replace_pairs(new_pairs, n, threads);
+      for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
+        if (const Pair p = pair_at(list, lane); p.first < n)
+          expect_equal(list.history(lane), p.second - p.first == 1 + p.first % 2 ? marked(p) : ContactHistory{});
+    }
+}
 } // namespace isostat

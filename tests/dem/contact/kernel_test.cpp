@@ -274,6 +274,52 @@ TEST_P(ContactKernel, DissipationIsNotNegativeAndNotNaN)
   EXPECT_GT(released, 0);
 }
 
+TEST_P(ContactKernel, ChunksAndGhostsAddUpToTheScalarSums)
+{
+  // random clouds side by side, as many as make several chunks; pairs that reach across from each cloud to the next
+  const LawParams law = law_of(variants[4]);
+  const Cloud cloud = random_cloud(15);
+  const auto n = static_cast<std::uint32_t>(cloud.packing.n_grains());
+  const std::uint32_t copies = 3000 / n + 1, total = n * copies;
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  std::vector<Pair> pairs;
+  for (std::uint32_t copy = 0; copy < copies; ++copy)
+    for (std::uint32_t i = 0; i < n; ++i)
+      {
+        centres.push_back(cloud.packing.centre(i)); // copies lie upon each other: a grain touches its next image, too
+        radii.push_back(cloud.packing.radius(i));
+        for (const Pair &p : cloud.pairs)
+          if (p.first == i)
+            pairs.emplace_back(copy * n + i, copy * n + p.second);
+        if (const auto p = std::ranges::find(cloud.pairs, i, &Pair::first); p != cloud.pairs.end() && copy + 1 < copies)
+          pairs.emplace_back(copy * n + i, (copy + 1) * n + p->second);
+      }
+  Packing packing = make_packing(centres, radii, 2650);
+  ContactList list(law.active());
+  list.replace_pairs(pairs, total);
+  ASSERT_GT(list.partition().n_chunks, 3u);
+  ASSERT_GT(list.n_slots(), total + Packing::n_padding);
+  AlignedVector<double> action(8 * list.n_slots(), 0.0), expected(8 * total, 0.0);
+  add_contact_forces(law, packing, dt, list, action.data());
+  for (const auto &[i, j] : pairs)
+    {
+      const ContactPair pair{packing.centre(i), Vec3::Zero(), Vec3::Zero(),      packing.centre(j),
+                             Vec3::Zero(),      Vec3::Zero(), packing.radius(i), packing.radius(j)};
+      ContactHistory fresh;
+      const ContactForce f = contact_force(law, pair, dt, fresh);
+      for (int k = 0; k < 3; ++k)
+        {
+          expected[8 * i + k] -= f.force[k];
+          expected[8 * j + k] += f.force[k];
+        }
+    }
+  const auto force = [](const AlignedVector<double> &v, std::size_t i) { return Vec3(&v[8 * i]); };
+  EXPECT_LE(misfit(action, expected, total, force), tolerance);
+  for (std::size_t slot = total; slot < list.n_slots(); ++slot)
+    EXPECT_EQ(force(action, slot), Vec3::Zero()) << "ghosts are left empty";
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, ContactKernel, testing::ValuesIn(test::instruction_sets()),
                          [](const auto &set) { return std::string(hwy::TargetName(set.param)); });
 } // namespace isostat

@@ -163,7 +163,9 @@ TEST(FindPairs, EqualsBruteForce)
     for (const double skin : {0.0, 1e-3, 0.3})
       {
         const Packing packing = random_packing(random, 300, half_edges, 0.1);
-        EXPECT_EQ(find_pairs(packing, skin), all_pairs(packing, skin)) << half_edges.transpose() << " skin " << skin;
+        for (int threads : {1, 2, 3})
+          EXPECT_EQ(find_pairs(packing, skin, threads), all_pairs(packing, skin))
+              << half_edges.transpose() << " skin " << skin << " threads " << threads;
       }
 }
 
