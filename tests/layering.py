@@ -43,6 +43,7 @@ DEM = {
     "neighbours": GRAINS,
     "motion": GRAINS,
     "assembly": GRAINS | {"neighbours", "motion", "measure"},
+    "assembly_views": GRAINS | {"neighbours", "motion", "measure", "assembly"},
     "measure": GRAINS,
     "io": GRAINS | {"io/units", "measure", "scene"},
     "drive": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io"},

@@ -14,12 +14,6 @@ namespace
 constexpr double initial_skin = 0.005, least_skin = 0.001, greatest_skin = 0.3;
 constexpr double wide_over_tight = 8;
 constexpr std::uint64_t frequent = 60, rare = 240; // steps between selections
-
-double wall_gap(const Packing &packing, const RigidBox &box, std::uint32_t i, int wall)
-{
-  const double x = packing.position[4 * i + wall / 2];
-  return (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]) - packing.radius(i);
-}
 } // namespace
 
 void VerletList::invalidate()

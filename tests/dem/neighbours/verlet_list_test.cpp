@@ -53,12 +53,6 @@ Packing random_packing(Random &random, std::size_t n, const Vec3 &half_edges, do
   return make_packing(centres, radii, 2650);
 }
 
-double wall_gap(const Packing &p, const RigidBox &box, std::uint32_t i, int wall)
-{
-  const double x = p.centre(i)[wall / 2];
-  return (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]) - p.radius(i);
-}
-
 ContactHistory marked(const Pair &p) { return {Vec3(1, p.first, p.second), Vec3(2, p.first, p.second), {}, {}}; }
 
 /// Grains that drift and jitter in a box that deforms, with a list that follows them.
