@@ -47,8 +47,9 @@ def name_of(row, base):
 
 
 def compared(results):
-    """Rows of the base number of grains that are held against the reference."""
-    return [r for r in results.rows.values() if r.family not in ("reference", "grains")]
+    """Rows of the base number of grains that are held against the reference, run on as many specimens as the default."""
+    return [r for r in results.rows.values()
+            if r.family not in ("reference", "grains") and r.n_tests >= results.base.n_tests]
 
 
 def error_table(results):
@@ -144,7 +145,7 @@ def recommendation(results):
     """Tolerance and time step with the fewest steps whose paths before liquefaction are within GOOD."""
     found = []
     for families in (("default", "tolerance"), ("default", "step")):
-        rows = [r for r in results.of_families(*families) if r.n_tests and path_error(r) <= GOOD]
+        rows = [r for r in compared(results) if r.family in families and path_error(r) <= GOOD]
         # the same bounds may make two tolerances take the same steps: then the more careful one is taken
         found.append(cheapest(rows, lambda r: (round(results.whole_test(r, results.base.mean("strain_after")), -2),
                                                path_error(r))))
@@ -175,22 +176,26 @@ def floor_of(results, window):
     return f"The slow limit itself is {percent(value)} % from the reference in the cyclic one." if not math.isnan(value) else ""
 
 
-def user_sentence(results):
-    candidates = [r for r in compared(results) if r.family in ADAPTIVE and r.n_tests
-                  and not math.isnan(r.minutes)]
-    reversal, parts, last = results.limits.longer_reversals, [], None
-    for target in TARGETS:
-        row = cheapest([r for r in candidates if path_error(r) <= target], lambda r: r.minutes)
+def costs(candidates, error):
+    """"x % error costs y minutes (setting)" for each target that some setting reaches."""
+    parts, last = [], None
+    for target in (0.1,) + TARGETS:
+        row = cheapest([r for r in candidates if error(r) <= target], lambda r: r.minutes)
         if row is None:
-            parts.append(f"{100 * target:g} % is not reached by any tolerance that was run")
-            break
+            return parts + [f"{100 * target:g} % is not reached by any tolerance that was run"]
         if row is not last:
             parts.append(f"{100 * target:g} % error costs {row.minutes:.2g} minutes ({row.setting.label})")
         last = row
+    return parts
+
+
+def user_sentence(results):
+    candidates = [r for r in compared(results) if r.family in ADAPTIVE and not math.isnan(r.minutes)]
     text = (f"**For users:** in a cyclic test of {results.base.setting.grains:,} grains on one core, run to the end of the "
-            f"liquefied part, with the error taken at the worst point of the cyclic path to reversal {reversal} and of the "
-            f"monotonic one to {100 * results.limits.early_strain:g} %, "
-            + ", ".join(parts))
+            f"liquefied part, with the error taken at the worst point of the cyclic path to reversal "
+            f"{results.limits.longer_reversals}, " + ", ".join(costs(candidates, lambda r: r.error("longer")[0]))
+            + f". With that of the monotonic path to {100 * results.limits.early_strain:g} % as well, "
+            + ", ".join(costs(candidates, path_error)))
     largest = results.grains_rows()[-1] if results.grains_rows() else None
     if largest is not None and largest is not results.base and largest.n_tests:
         text += (f"; with {largest.setting.grains:,} grains the default ({percent(path_error(largest))} %) costs "
