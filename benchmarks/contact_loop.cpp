@@ -28,10 +28,12 @@ struct Variant
   LawFeatures on;
   bool energy;
 };
-constexpr Variant variants[] = {
-    {"frictionless", {false, false, false}, false}, {"sliding", {true, false, false}, false},
-    {"rolling", {true, true, false}, false},        {"twisting", {true, false, true}, false},
-    {"full", {true, true, true}, false},            {"full+energy", {true, true, true}, true}};
+constexpr Variant variants[] = {{"frictionless", {false, false, false}, false},
+                                {"sliding", {true, false, false}, false},
+                                {"rolling", {true, true, false}, false},
+                                {"twisting", {true, false, true}, false},
+                                {"full", {true, true, true}, false},
+                                {"full+energy", {true, true, true}, true}};
 
 Packing moving_packing(std::size_t copies)
 {
