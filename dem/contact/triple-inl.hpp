@@ -35,10 +35,6 @@ HWY_INLINE Triple minus(const Triple &a, const Triple &b)
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
 HWY_INLINE Triple scaled(const Triple &a, V s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
-HWY_INLINE Triple masked(Mask m, const Triple &a)
-{
-  return {hn::IfThenElseZero(m, a.x), hn::IfThenElseZero(m, a.y), hn::IfThenElseZero(m, a.z)};
-}
 /// a s + b
 HWY_INLINE Triple madd(const Triple &a, V s, const Triple &b)
 {
@@ -74,11 +70,6 @@ HWY_INLINE Triple minus_cross(const Triple &z, const Triple &a) { return minus_c
 
 /// Components of history, 8 lanes apart.
 HWY_INLINE Triple load3(const double *h) { return {hn::LoadU(D(), h), hn::LoadU(D(), h + 8), hn::LoadU(D(), h + 16)}; }
-/// ... of the lanes in `m`, 0 in the others
-HWY_INLINE Triple load3(Mask m, const double *h)
-{
-  return {hn::MaskedLoad(m, D(), h), hn::MaskedLoad(m, D(), h + 8), hn::MaskedLoad(m, D(), h + 16)};
-}
 HWY_INLINE void store3(const Triple &a, double *h)
 {
   hn::StoreU(a.x, D(), h);
