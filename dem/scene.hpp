@@ -30,7 +30,8 @@ struct GradingSpec
 struct SpecimenSpec
 {
   std::string domain = "rigid-box";
-  double pressure = 200e3; ///< p0', Pa
+  std::string consolidation = "isotropic"; ///< or "k0": vertical stress `pressure`, no lateral strain; cell only
+  double pressure = 200e3;                 ///< p0'; with "k0" the vertical effective stress, Pa
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
   std::string file;                           ///< a prepared specimen (.h5) or a folder of text tables
@@ -63,9 +64,12 @@ enum class StageKind
   rebalance, ///< keep the pressure until forces are in balance
   undrained_monotonic,
   undrained_cyclic,
-  drained,    ///< axial strain, lateral stresses kept
-  constant_p, ///< axial strain, mean stress kept
-  hold        ///< walls at rest
+  drained,                      ///< axial strain, lateral stresses kept
+  constant_p,                   ///< axial strain, mean stress kept
+  hold,                         ///< walls at rest
+  k0_compress,                  ///< axial stress to `pressure`, no lateral strain: periodic cell only, as the next two
+  undrained_simple_shear,       ///< shear strain gamma_xy at constant volume and shape otherwise
+  undrained_cyclic_simple_shear ///< the same between +-stress_ratio times the initial vertical stress
 };
 
 /// One stage of the programme; which keys a kind takes is in the schema (dem/io/scene_schema.cpp).
@@ -77,6 +81,7 @@ struct Stage
   bool extension = false;           ///< first loading direction of shear stages
   double strain = 0;                ///< axial strain at which a monotonic, drained or constant-p stage ends [-]
   double deviator_amplitude = 60e3; ///< q_amp, Pa: undrained-cyclic
+  double stress_ratio = 0.15;       ///< CSR = tau_amp / sigma'_v0 [-]: undrained-cyclic-simple-shear
   double liquefaction_ratio = 0.01; ///< p'/p0 below which the specimen counts as liquefied
   std::uint64_t max_cycles = 200;   ///< undrained-cyclic ends after so many
   std::uint64_t reversals_after_liquefaction = 10; ///< ... or so many reversals after initial liquefaction

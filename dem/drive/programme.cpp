@@ -240,6 +240,12 @@ std::string to_string(StageKind kind)
       return "constant-p";
     case StageKind::hold:
       return "hold";
+    case StageKind::k0_compress:
+      return "k0-compress";
+    case StageKind::undrained_simple_shear:
+      return "undrained-simple-shear";
+    case StageKind::undrained_cyclic_simple_shear:
+      return "undrained-cyclic-simple-shear";
     }
   return "?";
 }

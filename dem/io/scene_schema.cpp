@@ -11,8 +11,17 @@ constexpr const char *curve_choices[] = {"karlsruhe-fine-sand"};
 constexpr const char *domain_choices[] = {"rigid-box", "periodic-cell"};
 constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
 constexpr const char *direction_choices[] = {"compression", "extension"};
-constexpr const char *kind_choices[] = {"compress",         "friction", "rebalance",  "undrained-monotonic",
-                                        "undrained-cyclic", "drained",  "constant-p", "hold"};
+constexpr const char *kind_choices[] = {"compress",
+                                        "friction",
+                                        "rebalance",
+                                        "undrained-monotonic",
+                                        "undrained-cyclic",
+                                        "drained",
+                                        "constant-p",
+                                        "hold",
+                                        "k0-compress",
+                                        "undrained-simple-shear",
+                                        "undrained-cyclic-simple-shear"};
 
 constexpr Section sections[] = {
     {"grading", "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from."},
