@@ -76,19 +76,19 @@ enum class StageKind
 struct Stage
 {
   StageKind kind = StageKind::hold;
-  double pressure = 0;              ///< Pa: compress, rebalance (0: the specimen's pressure)
+  double pressure = 0;              ///< Pa: compress, rebalance, k0-compress (0: the specimen's pressure)
   double friction = 0;              ///< tan(phi): friction
-  bool extension = false;           ///< first loading direction of shear stages
-  double strain = 0;                ///< axial strain at which a monotonic, drained or constant-p stage ends [-]
+  bool extension = false;           ///< first loading direction; simple shear: gamma_xy falls first
+  double strain = 0;                ///< axial, in simple shear gamma_xy: its amount ends a stage [-]
   double deviator_amplitude = 60e3; ///< q_amp, Pa: undrained-cyclic
   double stress_ratio = 0.15;       ///< CSR = tau_amp / sigma'_v0 [-]: undrained-cyclic-simple-shear
   double liquefaction_ratio = 0.01; ///< p'/p0 below which the specimen counts as liquefied
-  std::uint64_t max_cycles = 200;   ///< undrained-cyclic ends after so many
+  std::uint64_t max_cycles = 200;   ///< a cyclic stage ends after so many
   std::uint64_t reversals_after_liquefaction = 10; ///< ... or so many reversals after initial liquefaction
-  double max_strain = 0.15;                        ///< ... or when |axial strain| exceeds this
+  double max_strain = 0.15;                        ///< ... or when |axial strain| or |gamma_xy| exceeds this
   std::uint64_t max_steps = 0;                     ///< any stage: stop after so many steps (0: no limit)
   double balance = 1e-4;                           ///< unbalanced-force ratio that ends compress, rebalance, hold
-  std::optional<double> strain_rate;               ///< fixed rate of this stage, 1/s, instead of [motion]
+  std::optional<double> strain_rate;               ///< fixed rate (axial or of gamma_xy), 1/s, instead of [motion]
 
   bool operator==(const Stage &) const = default;
 };
@@ -140,8 +140,8 @@ Scene parse_scene(const std::string &text, const std::string &name, const std::v
 /// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s to the bit
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
-/// no effect: the value of a switched-off part of the law, of a key that another one excludes, and of a stage key
-/// foreign to the kind of its stage.
+/// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign
+/// to the kind of its stage, and of the consolidation in a rigid box.
 std::string to_toml(const Scene &scene);
 
 /// A commented TOML scene with all defaults, units, ranges and one sentence per key (--print-defaults).

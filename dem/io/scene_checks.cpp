@@ -32,10 +32,27 @@ void check_group(const SceneDocument &document, Group group, bool one_needed)
                     fmt::format("must have exactly one of {}. Give for example relative_density = 0.64.", names));
 }
 
+/// Throws for what a rigid box cannot do.
+void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, const std::string &path,
+               std::string_view otherwise)
+{
+  if (specimen.domain != "periodic-cell")
+    document.refuse(path, fmt::format("needs the periodic cell, but specimen.domain is \"{}\" ({}). Give domain = "
+                                      "\"periodic-cell\" in [specimen], or {}.",
+                                      specimen.domain, document.where("specimen.domain"), otherwise));
+}
+
 void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
 {
-  if (specimen.domain == "periodic-cell")
-    document.refuse("specimen.domain", "is not available yet. Use \"rigid-box\".");
+  if (specimen.consolidation == "k0")
+    {
+      need_cell(document, specimen, "specimen.consolidation", "leave consolidation out");
+      if (document.find("specimen.file"))
+        document.refuse("specimen.consolidation",
+                        fmt::format("excludes specimen.file ({}): the file says how it was consolidated. Leave "
+                                    "consolidation out, or add a stage of kind \"k0-compress\".",
+                                    document.where("specimen.file")));
+    }
   if (specimen.e_min >= specimen.e_max)
     document.refuse(document.find("specimen.e_min") ? "specimen.e_min" : "specimen.e_max",
                     fmt::format("e_min must be below e_max, but they are {} and {}. Correct one of them.",
@@ -55,6 +72,21 @@ void check_contact(const SceneDocument &document, const Scene &scene)
                       "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
 }
 
+void check_stages(const SceneDocument &document, const Scene &scene)
+{
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    switch (scene.stages[i].kind)
+      {
+      case StageKind::k0_compress:
+      case StageKind::undrained_simple_shear:
+      case StageKind::undrained_cyclic_simple_shear:
+        need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
+        break;
+      default:
+        break;
+      }
+}
+
 void check_motion(const SceneDocument &document, const MotionSpec &motion)
 {
   if (motion.rate_floor > motion.rate_ceiling)
@@ -72,6 +104,7 @@ void check_scene(const SceneDocument &document, const Scene &scene)
   check_group(document, Group::rate, false);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
+  check_stages(document, scene);
   check_motion(document, scene.motion);
 }
 } // namespace isostat

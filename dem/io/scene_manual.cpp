@@ -86,7 +86,7 @@ std::string cell(std::string_view text)
 void write_row(std::string &text, const Key &key)
 {
   text += fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name(), kind_text(key), default_text(key),
-                      allowed_text(key), key.stages ? stages_text(key) + " | " : "", cell(key.text));
+                      allowed_text(key), key.stages ? stages_text(key.stages) + " | " : "", cell(key.text));
 }
 
 void write_table(std::string &text, std::string_view section)

@@ -60,10 +60,12 @@ void check_kind(const SceneDocument &document, StageKind kind, const std::string
   for (const Key &key : scene_schema())
     {
       const std::string path = joined(prefix, key.name());
-      if (key.section() == "stage" && !key.belongs_to(kind) && document.find(path))
+      const unsigned stages = stages_of(key.path);
+      const bool belongs = (stages >> static_cast<unsigned>(kind)) & 1u;
+      if (key.section() == "stage" && !belongs && document.find(path))
         document.refuse(path, fmt::format("does not belong to a stage of kind \"{}\", only to {}. Remove it or change "
                                           "the kind.",
-                                          name, stages_text(key)));
+                                          name, stages_text(stages)));
     }
 }
 

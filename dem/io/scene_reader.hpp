@@ -14,7 +14,7 @@ Scene fill_scene(const SceneDocument &document);
 void read_value(const SceneDocument &document, const Key &key, const std::string &path, const toml::node &node,
                 const Field &field);
 
-/// Rules that bind several keys: those that exclude each other, limits in order, what is not available yet.
+/// Rules that bind several keys: those that exclude each other, limits in order, what needs the periodic cell.
 /// @throws InputError      tested: tests/dem/scene_test.cpp, tests/dem/io/scene_error_test.cpp
 void check_scene(const SceneDocument &document, const Scene &scene);
 } // namespace isostat

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a scene file. A new key is one entry here, one field in dem/scene.hpp and, if it takes part in a rule
-// that binds several keys, a line in dem/io/scene_checks.cpp.
+// that binds several keys, a line in dem/io/scene_checks.cpp. A stage key whose range or meaning depends on the kind of
+// stage has an entry for each meaning, with the same field and without kinds in common.
 #include "dem/io/scene_schema.hpp"
 
 namespace isostat
@@ -9,6 +10,7 @@ namespace
 {
 constexpr const char *curve_choices[] = {"karlsruhe-fine-sand"};
 constexpr const char *domain_choices[] = {"rigid-box", "periodic-cell"};
+constexpr const char *consolidation_choices[] = {"isotropic", "k0"};
 constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
 constexpr const char *direction_choices[] = {"compression", "extension"};
 constexpr const char *kind_choices[] = {"compress",
@@ -36,17 +38,22 @@ constexpr Section sections[] = {
      "number, or is fixed."},
     {"stage",
      "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "
-     "only prepares its specimen. A key that does not belong to the kind of its stage is an error."},
+     "only prepares its specimen. A key that does not belong to the kind of its stage is an error. Axes: y is "
+     "vertical, the axis of the triaxial kinds; simple shear moves planes normal to y along x, its strain is gamma_xy "
+     "and its stress tau = sigma_xy."},
     {"output", "What is written, and how often. Output never changes a trajectory."},
 };
 
 constexpr unsigned bit(StageKind kind) { return 1u << static_cast<unsigned>(kind); }
-constexpr unsigned cyclic = bit(StageKind::undrained_cyclic);
-constexpr unsigned undrained = bit(StageKind::undrained_monotonic) | cyclic;
-constexpr unsigned monotonic =
+constexpr unsigned axial_cyclic = bit(StageKind::undrained_cyclic);
+constexpr unsigned axial_monotonic =
     bit(StageKind::undrained_monotonic) | bit(StageKind::drained) | bit(StageKind::constant_p);
-constexpr unsigned shear = monotonic | cyclic;
-constexpr unsigned pressed = bit(StageKind::compress) | bit(StageKind::rebalance);
+constexpr unsigned simple_cyclic = bit(StageKind::undrained_cyclic_simple_shear);
+constexpr unsigned simple_monotonic = bit(StageKind::undrained_simple_shear);
+constexpr unsigned cyclic = axial_cyclic | simple_cyclic;
+constexpr unsigned undrained = bit(StageKind::undrained_monotonic) | simple_monotonic | cyclic;
+constexpr unsigned shear = axial_monotonic | simple_monotonic | cyclic;
+constexpr unsigned pressed = bit(StageKind::compress) | bit(StageKind::rebalance) | bit(StageKind::k0_compress);
 constexpr unsigned balanced = pressed | bit(StageKind::hold);
 constexpr unsigned stepped = shear | balanced;
 constexpr unsigned any_kind = stepped | bit(StageKind::friction);
@@ -55,8 +62,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 constexpr Range fraction{0, 1, true, true};      // (0, 1)
 constexpr Range to_one{0, 1, true, false};       // (0, 1]
+constexpr Range to_ten{0, 10, true, false};      // (0, 10]
 constexpr Range right_angle{0, 90, false, true}; // degrees
 constexpr const char *because_tan = "because tan() is used";
+constexpr const char *because_shear_strain = "because this is a shear strain, not percent: 1 is 100 percent";
 constexpr const char *because_damping = "because at 1 no grain would get moving";
 
 // clang-format off
@@ -127,10 +136,15 @@ constexpr Key keys[] = {
    .field = [](Scene &s, Stage &) -> Field { return &s.contact.twisting_stiffness; }},
 
   {.path = "specimen.domain", .kind = Kind::choice, .value = "rigid-box", .choices = domain_choices,
-   .text = "Who bounds the grains: six rigid frictionless walls; periodic-cell is not available yet.",
+   .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.domain; }},
+  {.path = "specimen.consolidation", .kind = Kind::choice, .value = "isotropic", .choices = consolidation_choices,
+   .text = "How it is compressed: with equal stresses on all axes, or along y without lateral strain (k0, in the "
+           "periodic-cell only; not together with `file`).",
+   .field = [](Scene &s, Stage &) -> Field { return &s.specimen.consolidation; }},
   {.path = "specimen.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "200 kPa", .range = positive, .text = "Isotropic effective stress p0' to which it is compressed.",
+   .value = "200 kPa", .range = positive,
+   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.pressure; }},
   {.path = "specimen.relative_density", .presence = Presence::experiment, .value = "0.64", .range = {0, 1},
    .reason = "because D_r is 0 at e_max and 1 at e_min", .group = Group::preparation,
@@ -158,7 +172,7 @@ constexpr Key keys[] = {
    .text = "Local damping coefficient during preparation.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.damping; }},
   {.path = "specimen.compaction_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "30 1/s", .range = positive, .text = "Ceiling of the strain rate at which the walls compact the cloud.",
+   .value = "30 1/s", .range = positive, .text = "Ceiling of the strain rate at which the cloud is compacted.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.compaction_rate; }},
   {.path = "specimen.cache", .kind = Kind::text, .value = "specimens",
    .text = "Folder of prepared specimens, counted from the parent of the output folder.",
@@ -172,12 +186,13 @@ constexpr Key keys[] = {
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.quasi_static_tolerance; }},
   {.path = "motion.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .group = Group::rate,
-   .text = "Fixed axial strain rate instead of the tolerance.",
+   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the tolerance.",
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.strain_rate; }},
   {.path = "motion.inertial_number", .presence = Presence::optional, .value = "1e-4", .range = fraction,
    .reason = "because at 1 inertia is as large as the stress", .group = Group::rate,
-   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate is I sqrt(p_r / density) / d50 "
-           "with p_r = max(p', 0.05 p0'), renewed every 50 steps, without floor or ceiling.",
+   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate (in simple shear that of "
+           "gamma_xy) is I sqrt(p_r / density) / d50 with p_r = max(p', 0.05 p0'), renewed every 50 steps, without "
+           "floor or ceiling.",
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.inertial_number; }},
   {.path = "motion.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .value = "0.2 1/s", .range = positive, .text = "Lowest rate the tolerance may lead to.",
@@ -194,26 +209,39 @@ constexpr Key keys[] = {
    .field = [](Scene &s, Stage &) -> Field { return &s.motion.time_step; }},
 
   {.path = "stage.kind", .kind = Kind::choice, .presence = Presence::required, .value = "undrained-monotonic",
-   .choices = kind_choices, .stages = any_kind, .text = "What the laboratory does.",
+   .choices = kind_choices, .stages = any_kind,
+   .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain periodic-cell.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.kind; }},
   {.path = "stage.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .presence = Presence::optional, .value = "200 kPa", .range = positive, .stages = pressed,
-   .text = "Isotropic pressure of the servo walls; left out: that of the specimen.",
+   .text = "Isotropic pressure of the servo; in k0-compress the vertical effective stress; left out: that of the "
+           "specimen.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.pressure; }},
   {.path = "stage.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
    .presence = Presence::required, .value = "18 deg", .range = right_angle, .reason = because_tan,
    .stages = bit(StageKind::friction), .text = "Angle of friction between grains from here on.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.friction; }},
   {.path = "stage.direction", .kind = Kind::choice, .value = "compression", .choices = direction_choices,
-   .stages = shear, .text = "First direction of axial loading.",
+   .stages = shear,
+   .text = "First direction of axial loading; in simple shear compression is towards positive gamma_xy, extension "
+           "towards negative.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.extension; }},
   {.path = "stage.strain", .presence = Presence::required, .value = "0.05", .range = to_one,
-   .reason = "because this is a strain, not percent; the sign comes from direction", .stages = monotonic,
+   .reason = "because this is a strain, not percent; the sign comes from direction", .stages = axial_monotonic,
    .text = "Axial strain (logarithmic, its amount) at which the stage ends.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
+  {.path = "stage.strain", .presence = Presence::required, .value = "0.2", .range = to_ten,
+   .reason = because_shear_strain, .stages = simple_monotonic,
+   .text = "Shear strain gamma_xy (its amount) at which the stage ends.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
   {.path = "stage.deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "60 kPa", .range = positive, .stages = cyclic, .text = "q_amp: loading turns when |q| reaches it.",
+   .value = "60 kPa", .range = positive, .stages = axial_cyclic, .text = "q_amp: loading turns when |q| reaches it.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.deviator_amplitude; }},
+  {.path = "stage.stress_ratio", .value = "0.15", .range = to_one,
+   .reason = "because this is a ratio of stresses that friction has to carry", .stages = simple_cyclic,
+   .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns when |tau| "
+           "reaches tau_amp.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.stress_ratio; }},
   {.path = "stage.liquefaction_ratio", .value = "0.01", .range = fraction, .stages = undrained,
    .text = "p'/p0' below which the specimen counts as liquefied.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.liquefaction_ratio; }},
@@ -228,14 +256,17 @@ constexpr Key keys[] = {
    .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.reversals_after_liquefaction; }},
   {.path = "stage.until.strain", .value = "0.15", .range = to_one, .reason = "because this is a strain, not percent",
-   .stages = cyclic, .text = "When the amount of the axial strain exceeds this.",
+   .stages = axial_cyclic, .text = "When the amount of the axial strain exceeds this.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
+  {.path = "stage.until.strain", .value = "0.15", .range = to_ten, .reason = because_shear_strain,
+   .stages = simple_cyclic, .text = "When the amount of the shear strain gamma_xy exceeds this.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
   {.path = "stage.balance", .value = "1e-4", .range = fraction, .stages = balanced,
    .text = "Unbalanced-force ratio at which the stage ends.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.balance; }},
   {.path = "stage.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .stages = shear,
-   .text = "Fixed axial strain rate of this stage instead of what `[motion]` says.",
+   .text = "Fixed axial strain rate of this stage, in simple shear that of gamma_xy, instead of what `[motion]` says.",
    .field = [](Scene &, Stage &stage) -> Field { return &stage.strain_rate; }},
   {.path = "stage.max_steps", .kind = Kind::integer, .value = "0", .stages = stepped,
    .text = "Ends the stage after so many time steps; 0: no limit.",
@@ -245,10 +276,11 @@ constexpr Key keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.folder; }},
   {.path = "output.record_stress", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "1 kPa", .range = positive, .text = "A row of the history is due whenever p' or q has moved by this much.",
+   .value = "1 kPa", .range = positive,
+   .text = "A row of the history is due whenever p' or q (in simple shear p' or tau) has moved by this much.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.record_stress; }},
   {.path = "output.record_strain", .value = "1e-4", .range = positive,
-   .text = "A row of the history is due whenever the axial strain has moved by this much.",
+   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.record_strain; }},
   {.path = "output.record_steps", .kind = Kind::integer, .value = "5000", .range = {1, 1e18},
    .text = "A row of the history is due after so many time steps at the latest.",
@@ -257,7 +289,7 @@ constexpr Key keys[] = {
    .text = "Whole packings are stored never, at reversals and ends of stages, or by strain.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.snapshots; }},
   {.path = "output.snapshot_strain", .value = "0.01", .range = positive,
-   .text = "Spacing in axial strain of the snapshots by strain.",
+   .text = "Spacing in axial strain (in simple shear in gamma_xy) of the snapshots by strain.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.snapshot_strain; }},
   {.path = "output.paraview", .kind = Kind::boolean, .value = "true", .text = "Write snapshots for ParaView too.",
    .field = [](Scene &s, Stage &) -> Field { return &s.output.paraview; }},

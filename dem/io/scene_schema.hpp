@@ -64,7 +64,7 @@ using Field = std::variant<std::monostate, double *, std::optional<double> *, st
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
 struct Key
 {
-  const char *path = ""; ///< "motion.damping"; of stages without the number: "stage.strain"
+  const char *path = ""; ///< "motion.damping"; of stages without the number: "stage.strain", once per meaning
   Kind kind = Kind::number;
   Dimension dimension = Dimension::length; ///< of a quantity or size_curve
   const char *unit = "";                   ///< of a quantity, the one it is shown in
@@ -95,7 +95,8 @@ std::span<const Key> scene_schema();
 std::span<const Section> scene_sections();
 std::span<const char *const> stage_kind_names(); ///< in the order of StageKind
 
-const Key *find_key(std::string_view path); ///< null if there is none
+const Key *find_key(std::string_view path); ///< the first with this path, null if there is none
+unsigned stages_of(std::string_view path);  ///< bits of the kinds of stage that take it, over all its entries
 /// The path of a key as in the schema: "stage.3.strain" -> "stage.strain".
 std::string schema_path(std::string_view path);
 /// The known path with the fewest typing errors from an unknown one; the section may be missing or wrong.
@@ -105,5 +106,5 @@ std::string file_text(const Key &key, std::string_view value); ///< with quotes 
 std::string example(const Key &key);                           ///< file_text of its default or example
 std::string range_text(const Key &key);                        ///< "in [0 deg, 90 deg)", "> 0 Pa", or "" if any will do
 std::string choices_text(const Key &key);                      ///< "a", "b" or "c" with the quotes
-std::string stages_text(const Key &key);                       ///< kinds of stages it belongs to
+std::string stages_text(unsigned stages);                      ///< names of the kinds of stages, from their bits
 } // namespace isostat

@@ -89,6 +89,15 @@ const Key *find_key(std::string_view path)
   return nullptr;
 }
 
+unsigned stages_of(std::string_view path)
+{
+  unsigned stages = 0;
+  for (const Key &key : scene_schema())
+    if (key.path == path)
+      stages |= key.stages;
+  return stages;
+}
+
 std::string schema_path(std::string_view path)
 {
   constexpr std::string_view prefix = "stage.";
@@ -156,12 +165,12 @@ std::string choices_text(const Key &key)
   return enumerate(words);
 }
 
-std::string stages_text(const Key &key)
+std::string stages_text(unsigned stages)
 {
   std::vector<std::string> words;
   const auto names = stage_kind_names();
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (key.belongs_to(static_cast<StageKind>(i)))
+    if ((stages >> i) & 1u)
       words.push_back(names[i]);
   return words.size() == names.size() ? "any" : enumerate(words);
 }

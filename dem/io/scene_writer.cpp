@@ -85,12 +85,18 @@ bool switched_off(const Key &key, Scene &scene, Stage &stage)
   return present && !**present;
 }
 
+/// A rigid box is always consolidated isotropically. Not writing it keeps the recipes of specimens that are in caches.
+bool goes_without_saying(const Key &key, const Scene &scene)
+{
+  return std::string_view(key.path) == "specimen.consolidation" && scene.specimen.domain == "rigid-box";
+}
+
 void write_keys(std::string &text, std::string_view section, Scene &scene, Stage &stage)
 {
   for (const Key &key : scene_schema())
     {
       if (key.section() != section || key.kind == Kind::table || (key.stages && !key.belongs_to(stage.kind)) ||
-          gave_way(key, scene, stage) || switched_off(key, scene, stage))
+          gave_way(key, scene, stage) || switched_off(key, scene, stage) || goes_without_saying(key, scene))
         continue;
       const std::string value = std::visit(WriteValue{key}, key.field(scene, stage));
       if (!value.empty())

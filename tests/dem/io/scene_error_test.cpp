@@ -16,6 +16,8 @@ using Overrides = std::vector<std::string>;
 
 const std::string smallest = "[specimen]\nrelative_density = 0.64\n";
 
+const std::string cell = smallest + "domain = \"periodic-cell\"\n";
+
 /// The message with which a scene is refused; "accepted" if it is not.
 std::string complaint(const std::string &text, const Overrides &overrides = {})
 {
@@ -111,6 +113,71 @@ TEST(SceneError, StageKeysBelongToTheirKind)
                    {"scene.toml:4: stage.0.kind = shear; must be \"compress\""});
 }
 
+TEST(SceneError, StrainMeansWhatItsKindDoes)
+{
+  const std::string axial = "[[stage]]\nkind = \"drained\"\nstrain = 1.5",
+                    shear = "[[stage]]\nkind = \"undrained-simple-shear\"\nstrain = ",
+                    cyclic = "[[stage]]\nkind = \"undrained-cyclic-simple-shear\"\n";
+  expect_complaint(cell + axial, {"scene.toml:6: stage.0.strain = 1.5; must be in (0, 1]", "not percent"});
+  EXPECT_EQ(complaint(cell + shear + "1.5"), "accepted");
+  for (const char *wrong : {"0", "-0.1", "10.1", "20"})
+    expect_complaint(cell + shear + wrong, {"scene.toml:6: stage.0.strain", "must be in (0, 10]", "1 is 100 percent",
+                                            "Give for example 0.2."});
+  expect_complaint(cell + cyclic + "until = { strain = 15 }",
+                   {"scene.toml:6: stage.0.until.strain = 15; must be in (0, 10]", "shear strain"});
+  for (const char *wrong : {"0", "-0.15", "1.01", "15", "nan"})
+    expect_complaint(cell + cyclic + "stress_ratio = " + wrong,
+                     {"scene.toml:6: stage.0.stress_ratio", "must be in (0, 1]", "Give for example 0.15."});
+  expect_complaint(cell + cyclic + "stress_ratio = \"30 kPa\"", {"scene.toml:6: stage.0.stress_ratio", "plain number"});
+  // the kinds of both entries are named
+  expect_complaint(cell + "[[stage]]\nkind = \"hold\"\nstrain = 0.1",
+                   {"only to undrained-monotonic, drained, constant-p or undrained-simple-shear."});
+}
+
+TEST(SceneError, KeysOfTheNewKinds)
+{
+  const auto stage = [](const std::string &kind, const std::string &line) {
+    return cell + "[[stage]]\nkind = \"" + kind + "\"\n" + line;
+  };
+  expect_complaint(stage("k0-compress", "strain = 0.1"), {"scene.toml:6: stage.0.strain", "does not belong"});
+  expect_complaint(stage("k0-compress", "strain_rate = \"1 1/s\""), {"stage.0.strain_rate", "does not belong"});
+  expect_complaint(stage("undrained-simple-shear", ""), {"scene.toml:4: stage.0.strain; is missing", "strain = 0.2"});
+  expect_complaint(stage("undrained-simple-shear", "strain = 1\nstress_ratio = 0.1"),
+                   {"scene.toml:7: stage.0.stress_ratio", "only to undrained-cyclic-simple-shear."});
+  expect_complaint(stage("undrained-simple-shear", "strain = 1\nuntil = { cycles = 1 }"), {"stage.0.until"});
+  expect_complaint(stage("undrained-simple-shear", "strain = 1\npressure = \"1 kPa\""), {"stage.0.pressure"});
+  expect_complaint(stage("undrained-cyclic-simple-shear", "strain = 1"), {"stage.0.strain", "does not belong"});
+  expect_complaint(stage("undrained-cyclic-simple-shear", "deviator_amplitude = \"60 kPa\""),
+                   {"stage.0.deviator_amplitude", "only to undrained-cyclic."});
+  expect_complaint(stage("undrained-cyclic", "stress_ratio = 0.1"), {"stage.0.stress_ratio", "does not belong"});
+}
+
+TEST(SceneError, WhatNeedsThePeriodicCell)
+{
+  for (const char *kind :
+       {"k0-compress\"", "undrained-simple-shear\"\nstrain = 0.2", "undrained-cyclic-simple-shear\""})
+    {
+      const std::string stages = std::string("[[stage]]\nkind = \"hold\"\n[[stage]]\nkind = \"") + kind + "\n";
+      EXPECT_EQ(complaint(cell + stages), "accepted");
+      expect_complaint(smallest + stages,
+                       {"scene.toml:6: stage.1.kind = ",
+                        "; needs the periodic cell, but specimen.domain is \"rigid-box\" (scene.toml:1). Give domain = "
+                        "\"periodic-cell\" in [specimen], or change the kind."});
+      expect_complaint(cell + stages, {"stage.1.kind", "(--set specimen.domain)"}, {"specimen.domain=rigid-box"});
+      EXPECT_EQ(complaint(smallest + stages, {"specimen.domain=periodic-cell"}), "accepted");
+    }
+  EXPECT_EQ(complaint(smallest + "consolidation = \"isotropic\""), "accepted");
+  EXPECT_EQ(complaint(cell + "consolidation = \"k0\""), "accepted");
+  expect_complaint(smallest + "consolidation = \"k0\"",
+                   {"scene.toml:3: specimen.consolidation = k0; needs the periodic cell", "leave consolidation out."});
+  expect_complaint(cell + "consolidation = \"K0\"", {"scene.toml:4:", "must be \"isotropic\" or \"k0\""});
+  expect_complaint(cell + "consolidation = \"k0\"",
+                   {"scene.toml:4: specimen.consolidation = k0; excludes specimen.file (--set specimen.file): the file "
+                    "says how it was consolidated. Leave consolidation out"},
+                   {"specimen.file=a.h5"});
+  EXPECT_EQ(complaint(cell, {"specimen.file=a.h5"}), "accepted");
+}
+
 TEST(SceneError, MissingKeys)
 {
   expect_complaint(smallest + "[[stage]]\nstrain = 0.05", {"scene.toml:3: stage.0.kind; is missing"});
@@ -147,8 +214,6 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "[motion]\ninertial_number = \"1e-4 1/s\"", {"scene.toml:4: motion.inertial_number"});
   expect_complaint(smallest + "[grading]\ncurve = \"karlsruhe-fine-sand\"\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]",
                    {"grading.table", "excludes grading.curve"});
-  expect_complaint(smallest + "domain = \"periodic-cell\"",
-                   {"scene.toml:3:", "is not available yet. Use \"rigid-box\"."});
   expect_complaint(smallest + "e_min = 0.9", {"scene.toml:3: specimen.e_min = 0.9; e_min must be below e_max"});
   expect_complaint(smallest + "[motion]\nrate_floor = \"5 1/s\"", {"motion.rate_floor = 5 1/s", "must not exceed"});
   expect_complaint(smallest + "[[stage]]\nkind = \"friction\"\nfriction = \"18 deg\"",
