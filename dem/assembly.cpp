@@ -15,6 +15,7 @@ namespace isostat
 namespace
 {
 constexpr double explosion_step = 0.01; // of the smallest radius, per step
+constexpr double greatest_strain_step = 0.01;
 
 double sign_of_wall(int wall) { return wall % 2 ? 1.0 : -1.0; } // outward direction
 
@@ -38,11 +39,19 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
 } // namespace
 
 Assembly::Assembly(const Snapshot &initial)
-    : packing_(initial.grains), box_(initial.box), law_(initial.law), contacts_(initial.law.active()),
-      action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0), solid_volume_(initial.grains.solid_volume()),
-      d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()), step_(initial.step), time_(initial.time)
+    : packing_(initial.grains), box_(initial.box), cell_(initial.cell), law_(initial.law),
+      contacts_(initial.law.active()), action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0),
+      solid_volume_(initial.grains.solid_volume()), d50_(initial.grains.d50()),
+      min_radius_(initial.grains.min_radius()), d_max_(2 * initial.grains.max_radius()), step_(initial.step),
+      time_(initial.time)
 {
-  verlet_.update(packing_, box_, 0.0, contacts_);
+  if (cell_)
+    {
+      verlet_.update(packing_, *cell_, 0.0, contacts_);
+      contacts_.set_cell(cell_->edges);
+    }
+  else
+    verlet_.update(packing_, box_, 0.0, contacts_);
   threads = default_threads > 0 ? default_threads : useful_threads(contacts_.partition().n_grains);
   const std::uint32_t idle = contacts_.partition().n_grains;
   std::size_t pair = 0;
@@ -68,19 +77,29 @@ void Assembly::compute_forces()
 {
   if (std::exchange(forces_known_, true))
     return;
-  verlet_.update(packing_, box_, greatest_step_, contacts_, n_threads());
+  if (cell_)
+    {
+      if (verlet_.update(packing_, *cell_, greatest_step_, contacts_, n_threads()))
+        contacts_.set_cell(cell_->edges);
+      virial_.start(contacts_.partition().n_chunks, law_.young * cell_->reference_volume);
+    }
+  else
+    verlet_.update(packing_, box_, greatest_step_, contacts_, n_threads());
   action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
   wall_sums_.resize(contacts_.partition().n_chunks);
   if (measure_energy)
     dissipation_.resize(contacts_.n_lanes());
   const bool at_once = n_threads() > 1;
-  for_chunks([&](std::size_t chunk) {
-    add_wall_forces(chunk);
-    if (at_once)
-      evaluate_chunk(chunk);
-  });
+  if (at_once || !cell_)
+    for_chunks([&](std::size_t chunk) {
+      if (!cell_)
+        add_wall_forces(chunk);
+      if (at_once)
+        evaluate_chunk(chunk);
+    });
   pending_ = at_once ? Pending::ghosts : Pending::contacts;
-  sum_wall_forces();
+  if (!cell_)
+    sum_wall_forces();
   if (gravity != Vec3::Zero())
     add_gravity();
   if (measure_energy)
@@ -115,8 +134,9 @@ void Assembly::for_chunks(const Work &work) const
 
 void Assembly::evaluate_chunk(std::size_t chunk) const
 {
+  const CellMotion motion{cell_ ? cell_->strain_step : Mat3::Zero(), &virial_};
   add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(),
-                     measure_energy ? &dissipation_ : nullptr);
+                     measure_energy ? &dissipation_ : nullptr, &motion);
 }
 
 void Assembly::evaluate() const
@@ -134,6 +154,8 @@ void Assembly::start_energy()
   tally = {};
   tally.kinetic = -stored.kinetic();
   tally.elastic = -stored.elastic();
+  if (cell_)
+    virial_sum_ = virial_.sum();
   energy_started_ = true;
 }
 
@@ -187,11 +209,22 @@ void Assembly::sum_dissipation()
       tally.released += dissipation_.released[p];
       tally.created += dissipation_.created[p];
     }
+  sum_boundary_work();
+}
+
+void Assembly::sum_boundary_work()
+{
+  if (cell_)
+    {
+      const Mat3 before = std::exchange(virial_sum_, virial_.sum());
+      tally.boundary_work -= (0.5 * (before + virial_sum_)).cwiseProduct(cell_->strain_step).sum();
+      return;
+    }
   for (int wall = 0; wall < 6; ++wall)
     tally.boundary_work -= 0.5 * (previous_wall_force_[wall] + wall_force_[wall]) * wall_displacement_[wall];
 }
 
-MotionReport Assembly::move_grains(double speed_limit)
+MotionReport Assembly::move_grains(double speed_limit, const AffineStep *affine)
 {
   if (pending_ == Pending::contacts && n_threads() > 1) // threads were added since compute_forces()
     evaluate();
@@ -206,7 +239,7 @@ MotionReport Assembly::move_grains(double speed_limit)
     if (pending != Pending::nothing)
       add_ghosts(contacts_, chunk, action_.data());
     motion_reports_[chunk] = integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), action_.data(),
-                                       time_step, damping, speed_limit, measure_energy);
+                                       time_step, damping, speed_limit, measure_energy, affine);
   });
   return sum_of(motion_reports_);
 }
@@ -231,6 +264,45 @@ void Assembly::move(const RigidBox &next_box)
   box_ = next_box;
   ++step_;
   time_ += time_step;
+}
+
+void Assembly::deform(const Mat3 &displacement_gradient)
+{
+  const double size = displacement_gradient.norm();
+  if (!(size < greatest_strain_step))
+    throw RunFailure(
+        fmt::format("step {}: a displacement gradient of {:.3g} in one time step; at most {:g} is allowed. "
+                    "Divide the increment or lower the strain rate.",
+                    step_, size, greatest_strain_step));
+  forces_known_ = false;
+  const AffineStep affine(cell_->deform(displacement_gradient));
+  const double speed_limit = explosion_step * min_radius_ / time_step;
+  const MotionReport report = move_grains(speed_limit, &affine);
+  if (report.exploded)
+    report_explosion(speed_limit);
+  tally.damping += report.damping_loss;
+  greatest_step_ = report.greatest_speed * time_step + size * d_max_;
+  turn_upright();
+  contacts_.set_cell(cell_->edges);
+  ++step_;
+  time_ += time_step;
+}
+
+void Assembly::turn_upright()
+{
+  const std::optional<Mat3> upright = cell_->upright_edges();
+  if (!upright)
+    return;
+  cell_->edges = *upright;
+  ++cell_->flips;
+  const Mat3 to_fraction = upright->inverse();
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      const Vec3 whole = (to_fraction * packing_.centre(i)).array().floor();
+      packing_.set_centre(i, packing_.centre(i) - *upright * whole);
+    }
+  verlet_.invalidate(); // shifts count other edges now
+  verlet_.update(packing_, *cell_, 0.0, contacts_, n_threads());
 }
 
 void Assembly::report_explosion(double speed_limit) const

@@ -2,6 +2,8 @@
 // What drivers, recorders and checkpoints see of an assembly.
 #include "dem/assembly.hpp"
 
+#include <algorithm>
+
 namespace isostat
 {
 namespace
@@ -14,7 +16,7 @@ void for_closed_pairs(const LawParams &law, const Packing &packing, const Contac
   for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
-      const Vec3 branch = packing.centre(j) - packing.centre(i);
+      const Vec3 branch = contacts.branch(packing, p);
       const double reach = packing.radius(i) + packing.radius(j), distance2 = branch.squaredNorm();
       if (distance2 >= reach * reach)
         continue;
@@ -29,13 +31,35 @@ void for_closed_pairs(const LawParams &law, const Packing &packing, const Contac
 
 /// visit(grain, wall, overlap, fn) for every grain that touches a wall.
 template <typename Visit>
-void for_closed_walls(const LawParams &law, const Packing &packing, const RigidBox &box, const VerletList &list,
+void for_closed_walls(const LawParams &law, const Packing &packing, const RigidBox *walls, const VerletList &list,
                       const Visit &visit)
 {
+  if (!walls)
+    return;
+  const RigidBox &box = *walls;
   for (int wall = 0; wall < 6; ++wall)
     for (std::uint32_t i : list.near_wall()[wall])
       if (const double overlap = -wall_gap(packing, box, i, wall); overlap > 0)
         visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
+}
+/// A periodic packing in another frame: x <- q x and all that follows.
+void turn(Snapshot &s, const Mat3 &q)
+{
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      s.grains.set_centre(i, q * s.grains.centre(i));
+      s.grains.set_linear_velocity(i, q * s.grains.linear_velocity(i));
+      s.grains.set_angular_velocity(i, q * s.grains.angular_velocity(i));
+    }
+  for (Contact &contact : s.contacts)
+    for (Vec3 *v : {&contact.history.normal, &contact.history.shear_force, &contact.history.bending_moment,
+                    &contact.history.twisting_moment})
+      *v = q * *v;
+  PeriodicCell &cell = *s.cell;
+  cell.edges = q * cell.edges;
+  cell.deformation = q * cell.deformation;
+  cell.strain_step = q * cell.strain_step * q.transpose();
+  cell.rotation = cell.rotation * q.transpose();
 }
 } // namespace
 
@@ -47,17 +71,39 @@ Vec3 Assembly::wall_stress() const
   return stress;
 }
 
+Mat3 Assembly::stress() const
+{
+  if (!cell_)
+    return wall_stress().asDiagonal();
+  evaluate();
+  return cell_->to_laboratory(virial_.sum() / -cell_->volume());
+}
+
 Vec3 Assembly::contact_stress() const
 {
+  if (cell_)
+    return stress().diagonal();
   evaluate();
   Vec3 sum = Vec3::Zero();
   for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
     sum -= force.cwiseProduct(branch); // push-apart is compression: negative
   });
-  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
+  for_closed_walls(law_, packing_, walls(), verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
     sum[wall / 2] -= fn * (packing_.radius(i) - overlap);
   });
   return sum / box_.volume();
+}
+
+Vec3 Assembly::affine_moduli() const
+{
+  Vec3 sum = Vec3::Zero();
+  for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
+    const ContactStiffness k = contact_stiffness(law_, packing_.radius(i), packing_.radius(j));
+    const Vec3 n2 = branch.cwiseAbs2() / branch.squaredNorm();
+    const Vec3 along = n2.cwiseProduct(k.normal * n2 + k.shear * (Vec3::Ones() - n2));
+    sum += branch.squaredNorm() * along;
+  });
+  return sum / volume();
 }
 
 double Assembly::unbalanced_force_ratio() const
@@ -71,7 +117,7 @@ double Assembly::unbalanced_force_ratio() const
     ++n_contacts;
     in_contact[i] = in_contact[j] = 1;
   });
-  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int, double, double fn) {
+  for_closed_walls(law_, packing_, walls(), verlet_, [&](std::uint32_t i, int, double, double fn) {
     force_sum += fn;
     ++n_contacts;
     in_contact[i] = 1;
@@ -87,20 +133,24 @@ double Assembly::unbalanced_force_ratio() const
   return force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
 }
 
-std::array<double, Assembly::wall_memory_size> Assembly::wall_memory() const
+std::array<double, Assembly::boundary_memory_size> Assembly::boundary_memory() const
 {
-  std::array<double, wall_memory_size> memory;
+  std::array<double, boundary_memory_size> memory{};
   std::copy(wall_force_.begin(), wall_force_.end(), memory.begin());
   std::copy(wall_displacement_.begin(), wall_displacement_.end(), memory.begin() + 6);
   memory[12] = energy_started_ ? 1 : 0;
+  const Mat3 &v = virial_sum_;
+  std::ranges::copy(std::array{v(0, 0), v(1, 1), v(2, 2), v(1, 2), v(0, 2), v(0, 1)}, memory.begin() + 13);
   return memory;
 }
 
-void Assembly::set_wall_memory(const std::array<double, wall_memory_size> &memory)
+void Assembly::set_boundary_memory(const std::array<double, boundary_memory_size> &memory)
 {
   std::copy_n(memory.begin(), 6, wall_force_.begin());
   std::copy_n(memory.begin() + 6, 6, wall_displacement_.begin());
   energy_started_ = memory[12] != 0;
+  const double *v = &memory[13];
+  virial_sum_ << v[0], v[5], v[4], v[5], v[1], v[3], v[4], v[3], v[2];
 }
 
 Snapshot Assembly::without_contacts() const
@@ -108,6 +158,7 @@ Snapshot Assembly::without_contacts() const
   Snapshot s;
   s.grains = packing_;
   s.box = box_;
+  s.cell = cell_;
   s.law = law_;
   s.time = time_;
   s.step = step_;
@@ -134,7 +185,7 @@ Snapshot Assembly::snapshot() const
   for (std::size_t p = 0; p < contacts_.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts_.first()[p], j = contacts_.second()[p];
-      const Vec3 branch = packing_.centre(j) - packing_.centre(i);
+      const Vec3 branch = contacts_.branch(packing_, p);
       const double distance = branch.norm(), overlap = packing_.radius(i) + packing_.radius(j) - distance;
       if (!(overlap > 0))
         continue;
@@ -143,10 +194,66 @@ Snapshot Assembly::snapshot() const
       contact.history.normal = branch / distance;
       s.contacts.push_back(contact);
     }
-  for_closed_walls(law_, packing_, box_, verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
+  for_closed_walls(law_, packing_, walls(), verlet_, [&](std::uint32_t i, int wall, double overlap, double fn) {
     s.wall_contacts.push_back({i, static_cast<std::uint8_t>(wall), overlap, fn});
   });
+  if (s.cell && s.cell->rotation != Mat3::Identity())
+    turn(s, s.cell->rotation);
   return s;
+}
+
+std::size_t AssemblyState::bytes() const
+{
+  return sizeof(*this) + 8 * grains.size() + sizeof(ContactList::Pair) * pairs.size() + 8 * history.size();
+}
+
+AssemblyState Assembly::save() const
+{
+  evaluate();
+  AssemblyState state;
+  state.cell = *cell_;
+  state.virial = virial_.sum();
+  state.time = time_;
+  state.time_step = time_step;
+  state.step = step_;
+  state.grains.reserve(15 * packing_.n_grains());
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    for (const double *three :
+         {&packing_.position[4 * i], &packing_.velocity[4 * i], &packing_.spin[4 * i],
+          const_cast<const double *>(&action_[8 * i]), const_cast<const double *>(&action_[8 * i + 4])})
+      state.grains.insert(state.grains.end(), three, three + 3);
+  contacts_.save_history(state.pairs, state.history);
+  return state;
+}
+
+void Assembly::restore(const AssemblyState &state)
+{
+  const bool same_cell = state.cell.flips == cell_->flips;
+  cell_ = state.cell;
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      const double *numbers = &state.grains[15 * i];
+      std::copy_n(numbers, 3, &packing_.position[4 * i]);
+      std::copy_n(numbers + 3, 3, &packing_.velocity[4 * i]);
+      std::copy_n(numbers + 6, 3, &packing_.spin[4 * i]);
+    }
+  same_cell ? verlet_.recheck() : verlet_.invalidate();
+  verlet_.update(packing_, *cell_, 0.0, contacts_, n_threads());
+  contacts_.set_cell(cell_->edges);
+  contacts_.restore_history(state.pairs, state.history);
+  action_.assign(8 * contacts_.n_slots(), 0.0);
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      std::copy_n(&state.grains[15 * i + 9], 3, &action_[8 * i]);
+      std::copy_n(&state.grains[15 * i + 12], 3, &action_[8 * i + 4]);
+    }
+  virial_.set(state.virial);
+  forces_known_ = true;
+  pending_ = Pending::nothing;
+  greatest_step_ = 0;
+  step_ = state.step;
+  time_ = state.time;
+  time_step = state.time_step;
 }
 
 MemoryUse Assembly::memory() const

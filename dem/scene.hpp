@@ -72,6 +72,24 @@ enum class StageKind
   undrained_cyclic_simple_shear ///< the same between +-stress_ratio times the initial vertical stress
 };
 
+/// Which family a kind of stage belongs to.
+inline bool is_simple_shear(StageKind kind)
+{
+  return kind == StageKind::undrained_simple_shear || kind == StageKind::undrained_cyclic_simple_shear;
+}
+inline bool is_cyclic(StageKind kind)
+{
+  return kind == StageKind::undrained_cyclic || kind == StageKind::undrained_cyclic_simple_shear;
+}
+inline bool is_undrained(StageKind kind)
+{
+  return is_cyclic(kind) || kind == StageKind::undrained_monotonic || kind == StageKind::undrained_simple_shear;
+}
+inline bool is_shear(StageKind kind)
+{
+  return is_undrained(kind) || kind == StageKind::drained || kind == StageKind::constant_p;
+}
+
 /// One stage of the programme; which keys a kind takes is in the schema (dem/io/scene_schema.cpp).
 struct Stage
 {

@@ -5,10 +5,22 @@
 #include "dem/measure/unbalanced.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace isostat
 {
-std::vector<RecordColumn> history_columns(bool energy)
+namespace
+{
+/// Angle of the major principal compression from the vertical y in the plane of shear, degrees, positive as gamma_xy
+/// drives it; 45 in pure shear.   @param stress  Pa, tension positive
+double major_angle(const Mat3 &stress)
+{
+  return 0.5 * std::atan2(2 * stress(0, 1), stress(0, 0) - stress(1, 1)) * 180 / std::numbers::pi;
+}
+} // namespace
+
+std::vector<RecordColumn> history_columns(const Scene &scene)
 {
   std::vector<RecordColumn> columns = {{"step", "-"},      {"time", "s"},      {"stage", "-"},
                                        {"eps_x", "-"},     {"eps_y", "-"},     {"eps_z", "-"},
@@ -16,18 +28,23 @@ std::vector<RecordColumn> history_columns(bool energy)
                                        {"time_step", "s"}, {"indicator", "-"}, {"inertial_number", "-"}};
   for (const auto &[name, unit] : Micromechanics::columns())
     columns.push_back({name, unit});
-  if (energy)
+  if (scene.specimen.domain == "periodic-cell")
+    columns.insert(columns.end(), {{"gamma_xy", "-"},
+                                   {"tau_xy", "Pa"},
+                                   {"sigma_x", "Pa"},
+                                   {"sigma_y", "Pa"},
+                                   {"sigma_z", "Pa"},
+                                   {"sigma1_angle", "deg"}});
+  if (scene.output.energy)
     for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "created", "residual"})
       columns.push_back({name, "J"});
   return columns;
 }
 
-std::vector<double> history_row(const Assembly &assembly, const DriveState &state, const Observation &seen,
-                                const Micromechanics &micromechanics, bool energy)
+std::vector<double> history_row(const Scene &scene, const Assembly &assembly, const DriveState &state,
+                                const Observation &seen, const Micromechanics &micromechanics)
 {
-  Vec3 strain = Vec3::Zero(); // compression positive
-  if (state.shear_started != 0)
-    strain = (state.origin.edges().array() / assembly.box().edges().array()).log();
+  const Vec3 strain = -strain_since_origin(assembly, state); // compression positive
   const double inertia =
       inertial_number(state.signed_rate, assembly.d50(), assembly.packing().density, std::max(seen.p, 1.0));
   std::vector<double> row = {static_cast<double>(assembly.step()),
@@ -44,7 +61,12 @@ std::vector<double> history_row(const Assembly &assembly, const DriveState &stat
                              inertia};
   const std::vector<double> measured = micromechanics.row();
   row.insert(row.end(), measured.begin(), measured.end());
-  if (energy)
+  if (scene.specimen.domain == "periodic-cell")
+    {
+      const Mat3 stress = assembly.stress();
+      row.insert(row.end(), {seen.gamma, seen.tau, -stress(0, 0), -stress(1, 1), -stress(2, 2), major_angle(stress)});
+    }
+  if (scene.output.energy)
     {
       const EnergyBalance e = assembly.energy();
       row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.created, e.residual()});

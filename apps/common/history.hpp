@@ -6,10 +6,11 @@
 
 namespace isostat
 {
-/// Columns of history.csv: where the run stands, the micromechanics, and the energy balance where it is measured.
-std::vector<RecordColumn> history_columns(bool energy);
+/// Columns of history.csv: where the run stands, the micromechanics, of a periodic cell its stress tensor and shear
+/// strain, and the energy balance where it is measured.
+std::vector<RecordColumn> history_columns(const Scene &scene);
 
 /// One row of them.
-std::vector<double> history_row(const Assembly &assembly, const DriveState &state, const Observation &seen,
-                                const Micromechanics &micromechanics, bool energy);
+std::vector<double> history_row(const Scene &scene, const Assembly &assembly, const DriveState &state,
+                                const Observation &seen, const Micromechanics &micromechanics);
 } // namespace isostat

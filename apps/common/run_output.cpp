@@ -72,9 +72,12 @@ void Progress::tick(const Assembly &assembly, const Observation &seen, double re
   if (fraction > first_fraction_ && first_fraction_ >= 0)
     line +=
         fmt::format("  ETA {}", duration_text(seconds(now - start_) * (1 - fraction) / (fraction - first_fraction_)));
-  const double e = void_ratio(assembly.box(), assembly.solid_volume());
-  line += fmt::format("  eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa  e {:.4f}", 100 * seen.axial, seen.p / 1e3,
-                      seen.q / 1e3, e);
+  const double e = void_ratio(assembly.volume(), assembly.solid_volume());
+  line += seen.gamma != 0 ? fmt::format("  gamma {:9.5f} %  p' {:8.2f} kPa  tau {:8.2f} kPa", 100 * seen.gamma,
+                                        seen.p / 1e3, seen.tau / 1e3)
+                          : fmt::format("  eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa", 100 * seen.axial,
+                                        seen.p / 1e3, seen.q / 1e3);
+  line += fmt::format("  e {:.4f}", e);
   if (redundancy > 0)
     line += fmt::format("  I_R {:.3f}", redundancy);
   say(line);
@@ -91,7 +94,7 @@ bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &,
 RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
                      const Checkpoint *resumed)
     : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
-      recorder_(folder_, history_columns(scene.output.energy), counter(resumed, "rows")),
+      recorder_(folder_, history_columns(scene), counter(resumed, "rows")),
       grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
       chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
       n_snapshots_(counter(resumed, "snapshots")), progress_(quiet)
@@ -109,11 +112,10 @@ void RunOutput::record(const Assembly &assembly, const DriveState &state, const 
   Snapshot now = assembly.snapshot();
   const Micromechanics m = micromechanics(now);
   redundancy_ = m.redundancy;
-  recorder_.append(history_row(assembly, state, seen, m, scene_.output.energy));
+  recorder_.append(history_row(scene_, assembly, state, seen, m));
   if (!snapshot)
     return;
-  if (state.shear_started != 0)
-    now.strain = (assembly.box().edges().array() / state.origin.edges().array()).log();
+  now.strain = strain_since_origin(assembly, state);
   store_snapshot(now);
 }
 
@@ -159,9 +161,9 @@ void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
   EnergyBalance tally = assembly.tally;
   for (int k = 0; k < n_tally; ++k)
     numbers[fmt::format("tally_{}", k)] = tally_field(tally, k);
-  const auto memory = assembly.wall_memory();
+  const auto memory = assembly.boundary_memory();
   for (std::size_t k = 0; k < memory.size(); ++k)
-    numbers[fmt::format("wall_{:02d}", k)] = memory[k];
+    numbers[fmt::format("boundary_{:02d}", k)] = memory[k];
   numbers["rows"] = static_cast<double>(recorder_.n_rows());
   numbers["snapshots"] = static_cast<double>(n_snapshots_);
   numbers["redundancy"] = redundancy_;
@@ -177,10 +179,10 @@ void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state
   state.for_each([&](const std::string &name, double &value) { value = numbers.at("drive_" + name); });
   for (int k = 0; k < n_tally; ++k)
     tally_field(assembly.tally, k) = numbers.at(fmt::format("tally_{}", k));
-  auto memory = assembly.wall_memory();
+  auto memory = assembly.boundary_memory();
   for (std::size_t k = 0; k < memory.size(); ++k)
-    memory[k] = numbers.at(fmt::format("wall_{:02d}", k));
-  assembly.set_wall_memory(memory);
+    memory[k] = numbers.at(fmt::format("boundary_{:02d}", k));
+  assembly.set_boundary_memory(memory);
 }
 
 std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint)
@@ -194,7 +196,7 @@ std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint)
 
 double stage_fraction(const Stage &stage, const DriveState &state)
 {
-  if (stage.kind == StageKind::undrained_cyclic)
+  if (is_cyclic(stage.kind))
     {
       if (state.liquefied != 0 && stage.reversals_after_liquefaction > 0)
         return (state.reversals - state.liquefaction_reversals) /

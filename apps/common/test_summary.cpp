@@ -124,8 +124,8 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.seconds = seconds;
   summary.reversals = state.reversals;
   summary.worst_overshoot = state.worst_overshoot;
-  summary.cyclic = std::any_of(scene.stages.begin(), scene.stages.end(),
-                               [](const Stage &s) { return s.kind == StageKind::undrained_cyclic; });
+  summary.cyclic =
+      std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &s) { return is_cyclic(s.kind); });
   summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
   summary.strain_before = state.greatest_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);

@@ -56,7 +56,7 @@ Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
   const auto begin = Clock::now();
   Dense dense;
   dense.state = compact(cloud, scene.contact, 0, scene.specimen, observer);
-  dense.void_ratio = void_ratio(dense.state.box, dense.state.grains.solid_volume());
+  dense.void_ratio = void_ratio(dense.state.volume(), dense.state.grains.solid_volume());
   const double margin = 2 * dense.state.grains.d50();
   RigidBox inside = dense.state.box;
   inside.lower.array() += margin;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/contact/history.hpp"
 
-#include "dem/packing.hpp"
+#include <algorithm>
 
 namespace isostat
 {
@@ -107,6 +107,33 @@ void ContactList::place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_g
     }
 }
 
+void ContactList::place_images(const std::vector<ImageCode> &images)
+{
+  image_.assign(images.empty() ? 0 : n_lanes(), 0);
+  shifts_.assign(1, image_code(Eigen::Vector3i::Zero()));
+  const std::uint32_t idle = partition_.n_grains;
+  auto code = images.begin();
+  for (std::size_t lane = 0; lane < image_.size(); ++lane)
+    if (first_[lane] != idle)
+      {
+        const auto row = std::find(shifts_.begin(), shifts_.end(), *code);
+        image_[lane] = static_cast<std::uint32_t>(row - shifts_.begin());
+        if (row == shifts_.end())
+          shifts_.push_back(*code);
+        ++code;
+      }
+}
+
+void ContactList::set_cell(const Mat3 &edges)
+{
+  offsets_.assign(4 * shifts_.size(), 0.0);
+  for (std::size_t row = 0; row < shifts_.size(); ++row)
+    {
+      const Vec3 offset = edges * image_shift(shifts_[row]).cast<double>();
+      std::copy_n(offset.data(), 3, &offsets_[4 * row]);
+    }
+}
+
 void ContactList::take_history(const ContactList &old, std::size_t chunk)
 {
   const std::size_t n_c = n_components(), end = lanes * first_block(chunk + 1);
@@ -135,12 +162,14 @@ void ContactList::take_history(const ContactList &old, std::size_t chunk)
     }
 }
 
-void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads)
+void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads,
+                                const std::vector<ImageCode> &images)
 {
   thread_local ContactList scratch; // its memory is used again
   ContactList &next = scratch;      // for all threads
   next.features_ = features_;
   next.place(sorted_pairs, n_grains);
+  next.place_images(images);
   next.history_.resize(next.n_lanes() * n_components());
   next.occupied_.resize(next.n_blocks());
   const int n_chunks = static_cast<int>(next.partition_.n_chunks);
@@ -148,6 +177,33 @@ void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint
   for (int chunk = 0; chunk < n_chunks; ++chunk)
     next.take_history(*this, chunk);
   std::swap(*this, next);
+}
+
+void ContactList::save_history(std::vector<Pair> &pairs, std::vector<double> &numbers) const
+{
+  for (std::size_t lane = 0; lane < n_lanes(); ++lane)
+    {
+      if (!features_.friction || !occupied_[lane / lanes] || history(lane).normal == Vec3::Zero())
+        continue;
+      pairs.emplace_back(first_[lane], second_[lane]);
+      for (std::size_t c = 0; c < n_components(); ++c)
+        numbers.push_back(*component(lane, c));
+    }
+}
+
+void ContactList::restore_history(const std::vector<Pair> &pairs, const std::vector<double> &numbers)
+{
+  std::fill(history_.begin(), history_.end(), 0.0);
+  std::fill(occupied_.begin(), occupied_.end(), std::uint8_t{0});
+  std::size_t lane = 0, from = 0;
+  for (const Pair &pair : pairs)
+    {
+      while (first_[lane] == partition_.n_grains || Pair(first_[lane], second_[lane]) < pair)
+        ++lane;
+      for (std::size_t c = 0; c < n_components(); ++c)
+        *component(lane, c) = numbers[from++];
+      occupied_[lane / lanes] = 1;
+    }
 }
 
 void ContactList::set_features(LawFeatures active)

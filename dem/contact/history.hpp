@@ -2,6 +2,8 @@
 #pragma once
 #include "dem/contact/law.hpp"
 #include "dem/contact/partition.hpp"
+#include "dem/domain/periodic_cell.hpp"
+#include "dem/packing.hpp"
 
 #include <span>
 
@@ -26,6 +28,9 @@ struct Ghost
 /// Forces go to slots: slot i < n_grains is grain i. A second grain of a later chunk gets a slot of its own, a ghost,
 /// which its owner adds after all chunks are done: chunks never write to the same place, and the sum of a grain is
 /// (its chunk's pairs in order) + (ghosts in order of chunks) for any number of threads.
+///
+/// In a periodic cell each pair also knows which image of the second grain it means: image[lane] is a row of offsets(),
+/// [x y z 0], the few shifts that occur; row 0 is no shift. A box has neither array.
 /// tested: tests/dem/contact/history_test.cpp
 class ContactList
 {
@@ -45,6 +50,17 @@ public:
   const std::uint32_t *second() const { return second_.data(); }
   /// Slot that the force on the second grain goes to.
   const std::uint32_t *target() const { return target_.data(); }
+  /// Row of offsets() of the second grain's image; null in a box.
+  const std::uint32_t *image() const { return image_.empty() ? nullptr : image_.data(); }
+  const double *offsets() const { return offsets_.data(); }
+  /// Offsets for the present cell.   @param edges  columns, m     cost: nine multiply-adds for each shift that occurs
+  void set_cell(const Mat3 &edges);
+  /// From the first grain to the (image of the) second, m.
+  Vec3 branch(const Packing &packing, std::size_t pair) const
+  {
+    const Vec3 between = packing.centre(second_[pair]) - packing.centre(first_[pair]);
+    return image_.empty() ? between : Vec3(between + Vec3(&offsets_[4 * image_[pair]]));
+  }
   double *history_data() { return history_.data(); }
   /// 1 where a block may hold history; lets the loop skip blocks that do not touch without clearing them again.
   std::uint8_t *occupied() { return occupied_.data(); }
@@ -62,10 +78,17 @@ public:
   ContactHistory history(std::size_t pair) const;
   void set_history(std::size_t pair, const ContactHistory &history);
 
+  /// Pairs that hold history and its n_components() numbers each, in order; and back: all other pairs forget.
+  /// @pre restore: features as when saved, every pair in the list
+  void save_history(std::vector<Pair> &pairs, std::vector<double> &numbers) const;
+  void restore_history(const std::vector<Pair> &pairs, const std::vector<double> &numbers);
+
   /// Replaces the pairs; history goes over to pairs that stay, the rest starts from zero.
   /// @param sorted_pairs  by (first, second)   @param n_grains  index of the first padding grain
   /// @param threads  that share the work
-  void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads = 1);
+  /// @param images   which image of the second grain, for each pair; empty in a box. A pair must not occur twice
+  void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads = 1,
+                     const std::vector<ImageCode> &images = {});
 
   /// Switches parts of the law on or off; history of parts that stay is kept.
   void set_features(LawFeatures active);
@@ -77,11 +100,13 @@ public:
   /// Memory that belongs to the state: pairs, slots and history.
   std::size_t bytes() const
   {
-    return 12 * first_.size() + 8 * history_.size() + occupied_.size() + sizeof(Ghost) * ghosts_.size();
+    return 12 * first_.size() + 4 * image_.size() + 8 * history_.size() + occupied_.size() +
+           sizeof(Ghost) * ghosts_.size();
   }
 
 private:
   void place(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains);
+  void place_images(const std::vector<ImageCode> &images);
   void take_history(const ContactList &old, std::size_t chunk);
   double *component(std::size_t pair, std::size_t c)
   {
@@ -98,7 +123,9 @@ private:
   Partition partition_;
   std::vector<std::size_t> chunk_block_{0, 0}, ghost_begin_{0, 0};
   std::vector<Ghost> ghosts_;
-  AlignedVector<std::uint32_t> first_, second_, target_;
+  AlignedVector<std::uint32_t> first_, second_, target_, image_;
+  std::vector<ImageCode> shifts_; ///< rows of offsets_
+  AlignedVector<double> offsets_;
   AlignedVector<double> history_;
   std::vector<std::uint8_t> occupied_;
 };

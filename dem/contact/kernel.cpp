@@ -24,6 +24,11 @@ struct KernelView
   double twice_young, half_dt, shear_dt, rolling_dt, twisting_dt; ///< products, so that the loop loads one number
   double stiffness_ratio, rolling_stiffness, twisting_stiffness;
   double *sliding = nullptr, *rolling = nullptr, *released = nullptr, *created = nullptr;
+  // periodic cell only
+  const std::uint32_t *image = nullptr;
+  const double *offsets = nullptr;
+  double rate[6] = {}; ///< D: xx yy zz yz xz xy, 1/s
+  double *virial = nullptr;
 };
 } // namespace isostat
 #endif
@@ -60,7 +65,7 @@ HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Tripl
   return hn::IfThenElseZero(yielded, hn::Div(dot(mid, minus(trial, after)), stiffness));
 }
 
-template <bool Friction, bool Rolling, bool Twisting, bool Energy>
+template <bool Friction, bool Rolling, bool Twisting, bool Energy, bool Periodic>
 struct Loop
 {
   static constexpr std::size_t n_components = Friction ? 6 + 3 * Rolling + 3 * Twisting : 0;
@@ -106,13 +111,39 @@ struct Loop
 
   static HWY_INLINE V closed(const Kinematics &p, V v) { return hn::IfThenElseZero(p.touching, v); }
 
-  static HWY_INLINE void sub_block(const KernelView &k, std::size_t pair, double *h, bool occupied,
+  /// dv + D b: what homogeneous strain adds to the relative velocity of the fluctuations.
+  static HWY_INLINE Triple with_strain(const KernelView &k, const Triple &dv, const Triple &b)
+  {
+    const D d;
+    auto rate = [&](int c) { return hn::Set(d, k.rate[c]); };
+    return {hn::MulAdd(rate(0), b.x, hn::MulAdd(rate(5), b.y, hn::MulAdd(rate(4), b.z, dv.x))),
+            hn::MulAdd(rate(5), b.x, hn::MulAdd(rate(1), b.y, hn::MulAdd(rate(3), b.z, dv.y))),
+            hn::MulAdd(rate(4), b.x, hn::MulAdd(rate(3), b.y, hn::MulAdd(rate(2), b.z, dv.z)))};
+  }
+
+  /// Sums of F b, upper triangle, lane by lane: see virial_start().
+  static HWY_INLINE void add_virial(double *sums, const Triple &force, const Triple &b)
+  {
+    const D d;
+    auto add = [&](int c, V f, V l) { hn::Store(hn::MulAdd(f, l, hn::Load(d, sums + 8 * c)), d, sums + 8 * c); };
+    add(0, force.x, b.x);
+    add(1, force.y, b.y);
+    add(2, force.z, b.z);
+    add(3, force.y, b.z);
+    add(4, force.x, b.z);
+    add(5, force.x, b.y);
+  }
+
+  static HWY_INLINE void sub_block(const KernelView &k, std::size_t pair, std::size_t lane, double *h, bool occupied,
                                    std::uint8_t &touched)
   {
     const D d;
     Kinematics p;
     const Records x1 = load_records(k.position, k.first + pair), x2 = load_records(k.position, k.second + pair);
-    const Quad between = transposed(differences_and_sum(x1, x2));
+    Records apart = differences_and_sum(x1, x2);
+    if constexpr (Periodic)
+      apart = sums(apart, load_records(k.offsets, k.image + pair));
+    const Quad between = transposed(apart);
     const Triple &branch = between.xyz;
     p.reach = between.w;
     const V distance2 = dot(branch, branch);
@@ -130,7 +161,10 @@ struct Loop
       {
         const V r1 = transposed(x1).w, rr = hn::Mul(r1, hn::Sub(p.reach, r1));
         const V kn = closed(p, hn::Mul(rr, stiffness));
-        add_forces(k.action, k.first + pair, k.target + pair, scaled(p.n, hn::Mul(kn, p.overlap)));
+        const Triple force = scaled(p.n, hn::Mul(kn, p.overlap));
+        if constexpr (Periodic)
+          add_virial(k.virial + lane, force, branch);
+        add_forces(k.action, k.first + pair, k.target + pair, force);
         return;
       }
     else
@@ -138,6 +172,8 @@ struct Loop
         const Quad moving = transposed(
             differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
         p.dv = moving.xyz;
+        if constexpr (Periodic)
+          p.dv = with_strain(k, p.dv, branch);
         p.r1 = moving.w;
         p.w1 = transposed(load_records(k.spin, k.first + pair)).xyz;
         p.w2 = transposed(load_records(k.spin, k.second + pair)).xyz;
@@ -154,6 +190,8 @@ struct Loop
         const Triple moment = moments(k, pair, h, p);
         const V half = hn::Set(d, 0.5);
         const Triple force = madd(p.n, p.fn, fs), couple = cross(p.n, fs);
+        if constexpr (Periodic)
+          add_virial(k.virial + lane, force, branch);
         add_actions(k.action, k.first + pair, k.target + pair, force,
                     nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), moment),
                     nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), moment));
@@ -264,24 +302,28 @@ struct Loop
       {
         std::uint8_t touched = 0;
         for (std::size_t l = 0; l < lanes; l += hn::Lanes(D()))
-          sub_block(k, b * lanes + l, k.history + b * n_components * lanes + l, k.occupied[b], touched);
+          sub_block(k, b * lanes + l, l, k.history + b * n_components * lanes + l, k.occupied[b], touched);
         k.occupied[b] = touched;
       }
   }
 };
 
 // Each variant is exported under its own name: run-time dispatch works on plain functions.
-#define ISOSTAT_VARIANT(NAME, F, R, T, E) \
-  void NAME(const KernelView &k) { Loop<F, R, T, E>::run(k); }
-ISOSTAT_VARIANT(Frictionless, false, false, false, false)
-ISOSTAT_VARIANT(Sliding, true, false, false, false)
-ISOSTAT_VARIANT(Rolling, true, true, false, false)
-ISOSTAT_VARIANT(Twisting, true, false, true, false)
-ISOSTAT_VARIANT(Full, true, true, true, false)
-ISOSTAT_VARIANT(SlidingEnergy, true, false, false, true)
-ISOSTAT_VARIANT(RollingEnergy, true, true, false, true)
-ISOSTAT_VARIANT(TwistingEnergy, true, false, true, true)
-ISOSTAT_VARIANT(FullEnergy, true, true, true, true)
+#define ISOSTAT_VARIANT(NAME, F, R, T, E, P) \
+  void NAME(const KernelView &k) { Loop<F, R, T, E, P>::run(k); }
+#define ISOSTAT_VARIANTS(SUFFIX, P) \
+  ISOSTAT_VARIANT(Frictionless##SUFFIX, false, false, false, false, P) \
+  ISOSTAT_VARIANT(Sliding##SUFFIX, true, false, false, false, P) \
+  ISOSTAT_VARIANT(Rolling##SUFFIX, true, true, false, false, P) \
+  ISOSTAT_VARIANT(Twisting##SUFFIX, true, false, true, false, P) \
+  ISOSTAT_VARIANT(Full##SUFFIX, true, true, true, false, P) \
+  ISOSTAT_VARIANT(SlidingEnergy##SUFFIX, true, false, false, true, P) \
+  ISOSTAT_VARIANT(RollingEnergy##SUFFIX, true, true, false, true, P) \
+  ISOSTAT_VARIANT(TwistingEnergy##SUFFIX, true, false, true, true, P) \
+  ISOSTAT_VARIANT(FullEnergy##SUFFIX, true, true, true, true, P)
+ISOSTAT_VARIANTS(InBox, false)
+ISOSTAT_VARIANTS(InCell, true)
+#undef ISOSTAT_VARIANTS
 #undef ISOSTAT_VARIANT
 
 /// Adds to each grain what its ghosts have, and clears them.
@@ -306,51 +348,49 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isostat
 {
-HWY_EXPORT(Frictionless);
-HWY_EXPORT(Sliding);
-HWY_EXPORT(Rolling);
-HWY_EXPORT(Twisting);
-HWY_EXPORT(Full);
-HWY_EXPORT(SlidingEnergy);
-HWY_EXPORT(RollingEnergy);
-HWY_EXPORT(TwistingEnergy);
-HWY_EXPORT(FullEnergy);
+#define ISOSTAT_EXPORT(SUFFIX) \
+  HWY_EXPORT(Frictionless##SUFFIX); \
+  HWY_EXPORT(Sliding##SUFFIX); \
+  HWY_EXPORT(Rolling##SUFFIX); \
+  HWY_EXPORT(Twisting##SUFFIX); \
+  HWY_EXPORT(Full##SUFFIX); \
+  HWY_EXPORT(SlidingEnergy##SUFFIX); \
+  HWY_EXPORT(RollingEnergy##SUFFIX); \
+  HWY_EXPORT(TwistingEnergy##SUFFIX); \
+  HWY_EXPORT(FullEnergy##SUFFIX)
+ISOSTAT_EXPORT(InBox);
+ISOSTAT_EXPORT(InCell);
 HWY_EXPORT(AddGhosts);
 HWY_EXPORT(InstructionSet);
 
 namespace
 {
-void run_with_energy(LawFeatures on, const KernelView &view)
-{
-  if (on.rolling && on.twisting)
-    HWY_DYNAMIC_DISPATCH(FullEnergy)(view);
-  else if (on.rolling)
-    HWY_DYNAMIC_DISPATCH(RollingEnergy)(view);
-  else if (on.twisting)
-    HWY_DYNAMIC_DISPATCH(TwistingEnergy)(view);
-  else if (on.friction)
-    HWY_DYNAMIC_DISPATCH(SlidingEnergy)(view);
-  else
-    HWY_DYNAMIC_DISPATCH(Frictionless)(view);
-}
+#define ISOSTAT_RUN(SUFFIX) \
+  void run##SUFFIX(LawFeatures on, bool energy, const KernelView &view) \
+  { \
+    if (on.rolling && on.twisting) \
+      energy ? HWY_DYNAMIC_DISPATCH(FullEnergy##SUFFIX)(view) : HWY_DYNAMIC_DISPATCH(Full##SUFFIX)(view); \
+    else if (on.rolling) \
+      energy ? HWY_DYNAMIC_DISPATCH(RollingEnergy##SUFFIX)(view) : HWY_DYNAMIC_DISPATCH(Rolling##SUFFIX)(view); \
+    else if (on.twisting) \
+      energy ? HWY_DYNAMIC_DISPATCH(TwistingEnergy##SUFFIX)(view) : HWY_DYNAMIC_DISPATCH(Twisting##SUFFIX)(view); \
+    else if (on.friction) \
+      energy ? HWY_DYNAMIC_DISPATCH(SlidingEnergy##SUFFIX)(view) : HWY_DYNAMIC_DISPATCH(Sliding##SUFFIX)(view); \
+    else \
+      HWY_DYNAMIC_DISPATCH(Frictionless##SUFFIX)(view); \
+  }
+ISOSTAT_RUN(InBox)
+ISOSTAT_RUN(InCell)
 
 void run(LawFeatures on, const KernelView &view)
 {
-  if (on.rolling && on.twisting)
-    HWY_DYNAMIC_DISPATCH(Full)(view);
-  else if (on.rolling)
-    HWY_DYNAMIC_DISPATCH(Rolling)(view);
-  else if (on.twisting)
-    HWY_DYNAMIC_DISPATCH(Twisting)(view);
-  else if (on.friction)
-    HWY_DYNAMIC_DISPATCH(Sliding)(view);
-  else
-    HWY_DYNAMIC_DISPATCH(Frictionless)(view);
+  const bool energy = view.sliding != nullptr;
+  view.image ? runInCell(on, energy, view) : runInBox(on, energy, view);
 }
 } // namespace
 
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
-                        double *action, DissipationPerPair *dissipation)
+                        double *action, DissipationPerPair *dissipation, const CellMotion *cell)
 {
   const double shear = law.stiffness_ratio * dt;
   KernelView view{.position = packing.position.data(),
@@ -375,6 +415,16 @@ void add_contact_forces(const LawParams &law, const Packing &packing, double dt,
                   .stiffness_ratio = law.stiffness_ratio,
                   .rolling_stiffness = law.rolling_stiffness,
                   .twisting_stiffness = law.twisting_stiffness};
+  if (list.image())
+    {
+      const Mat3 &e = cell->strain_step;
+      const double steps[] = {e(0, 0), e(1, 1), e(2, 2), e(1, 2), e(0, 2), e(0, 1)};
+      for (int c = 0; c < 6; ++c)
+        view.rate[c] = steps[c] / dt;
+      view.image = list.image();
+      view.offsets = list.offsets();
+      view.virial = cell->virial->data(chunk);
+    }
   if (!dissipation)
     return run(list.features(), view);
   dissipation->clear(view.begin * ContactList::lanes, view.end * ContactList::lanes);
@@ -382,7 +432,7 @@ void add_contact_forces(const LawParams &law, const Packing &packing, double dt,
   view.rolling = dissipation->rolling.data();
   view.released = dissipation->released.data();
   view.created = dissipation->created.data();
-  run_with_energy(list.features(), view);
+  run(list.features(), view);
 }
 
 void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
@@ -391,12 +441,12 @@ void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
 }
 
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
-                        DissipationPerPair *dissipation)
+                        DissipationPerPair *dissipation, const CellMotion *cell)
 {
   if (dissipation)
     dissipation->resize(list.n_lanes());
   for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
-    add_contact_forces(law, packing, dt, list, chunk, action, dissipation);
+    add_contact_forces(law, packing, dt, list, chunk, action, dissipation, cell);
   for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
     add_ghosts(list, chunk, action);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/history.hpp"
+#include "dem/contact/virial.hpp"
 #include "dem/packing.hpp"
 
 #include <algorithm>
@@ -26,6 +27,13 @@ struct DissipationPerPair
   }
 };
 
+/// What the loop needs of a periodic cell in motion.
+struct CellMotion
+{
+  Mat3 strain_step; ///< E = D dt, symmetric [-]: adds D b to the relative velocity of the fluctuations
+  Virial *virial;   ///< sums of F b, added to
+};
+
 /// Contact forces of the pairs of one chunk, added to the slots of their grains: the SIMD form of contact_force() in
 /// law.hpp.
 ///
@@ -36,18 +44,20 @@ struct DissipationPerPair
 /// @param dt          s
 /// @param action      list.n_slots() lines
 /// @param dissipation nullptr: the loop without energy sums; otherwise as large as the list, its part is overwritten
+/// @param cell        of a list with images: branch vectors end at the image, the velocities of `packing` are
+///                    fluctuations, and the virial is summed; 26 vector operations more. nullptr in a box
 /// cost: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with AVX-512 no divide
 /// and no root (estimates and series); 400 bytes of traffic per pair; see benchmarks/README.md
 /// tested: tests/dem/contact/kernel_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
-                        double *action, DissipationPerPair *dissipation);
+                        double *action, DissipationPerPair *dissipation, const CellMotion *cell = nullptr);
 
 /// Adds to the grains of a chunk what other chunks have left in their ghosts, and clears the ghosts.
 void add_ghosts(const ContactList &list, std::size_t chunk, double *action);
 
 /// Both for all chunks, one after the other; resizes `dissipation`.
 void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
-                        DissipationPerPair *dissipation = nullptr);
+                        DissipationPerPair *dissipation = nullptr, const CellMotion *cell = nullptr);
 
 /// Name of the instruction set that add_contact_forces uses on this machine, e.g. "AVX3".
 std::string instruction_set();

@@ -68,6 +68,12 @@ HWY_INLINE Records differences(const Records &one, const Records &two, const Rec
           f(one.r57, two.r57, fourth.r57)};
 }
 
+HWY_INLINE Records sums(const Records &a, const Records &b)
+{
+  return {_mm512_add_pd(a.r02, b.r02), _mm512_add_pd(a.r13, b.r13), _mm512_add_pd(a.r46, b.r46),
+          _mm512_add_pd(a.r57, b.r57)};
+}
+
 /// Back to records with a fourth number of 0.
 HWY_INLINE Records to_records(const Triple &a)
 {
@@ -148,6 +154,14 @@ HWY_INLINE Records differences(const Records &one, const Records &two, const Rec
   return d;
 }
 
+HWY_INLINE Records sums(const Records &a, const Records &b)
+{
+  Records s;
+  for (int l = 0; l < 4; ++l)
+    s.r[l] = _mm256_add_pd(a.r[l], b.r[l]);
+  return s;
+}
+
 HWY_INLINE Records to_records(const Triple &a)
 {
   const __m256d zero = _mm256_setzero_pd();
@@ -192,6 +206,7 @@ HWY_INLINE Records differences(const Records &one, const Records &two, const Rec
 {
   return {minus(two.xyz, one.xyz), fourth.w};
 }
+HWY_INLINE Records sums(const Records &a, const Records &b) { return {plus(a.xyz, b.xyz), hn::Add(a.w, b.w)}; }
 
 HWY_INLINE void add_actions(double *action, const std::uint32_t *first, const std::uint32_t *second,
                             const Triple &force, const Triple &torque1, const Triple &torque2)

@@ -19,7 +19,7 @@ struct RigidBox
 };
 
 /// Void ratio e = V / V_s - 1 [-].
-inline double void_ratio(const RigidBox &box, double solid_volume) { return box.volume() / solid_volume - 1.0; }
+inline double void_ratio(double volume, double solid_volume) { return volume / solid_volume - 1.0; }
 
 /// Distance of a grain's surface from wall 0..5 (x-, x+, y-, y+, z-, z+), m; negative: it overlaps the wall.
 inline double wall_gap(const Packing &packing, const RigidBox &box, std::size_t i, int wall)

@@ -17,9 +17,11 @@ struct DriveState
 
   // strain path of the present stage
   RigidBox reference, origin;         ///< box at the start of this stage; at the start of the first shear stage
-  double axial = 0;                   ///< axial logarithmic compression since `reference` [-]
+  double axial = 0;                   ///< driven strain of this stage: axial logarithmic compression, or gamma_xy [-]
+  Vec3 cell_strain = Vec3::Zero();    ///< of a cell: sum of L dt along x, y, z since the first shear stage, tension +
+  double gamma = 0;                   ///< of a cell: sum of L_xy dt since then [-]
   double p0 = 0;                      ///< mean effective stress at the start of the first shear stage, Pa
-  Vec3 lateral_target = Vec3::Zero(); ///< lateral stresses kept by a drained stage, Pa
+  Vec3 lateral_target = Vec3::Zero(); ///< stresses at the start of this shear stage: kept laterally if drained, Pa
 
   // rate
   double rate = 0;        ///< present axial rate bound chosen by the rate control, 1/s
@@ -32,8 +34,10 @@ struct DriveState
   double slope = 0, slope_q = 0, slope_axial = 0; ///< |dq/d eps| Pa; q and strain where the window began
 
   // servo
-  Vec3 servo_step = Vec3::Zero(); ///< wall displacement of the step before, m per wall, inward positive
-  double balanced_checks = 0;     ///< consecutive checks in which the stage's balance held
+  Vec3 servo_step = Vec3::Zero();    ///< of the step before: wall displacement, m per wall, inward positive; of a cell
+                                     ///< compression [-]
+  Vec3 servo_modulus = Vec3::Zero(); ///< of a cell: affine modulus along x, y, z, Pa
+  double balanced_checks = 0;        ///< consecutive checks in which the stage's balance held
 
   // what happened
   double reversals = 0, worst_overshoot = 0;
@@ -50,11 +54,13 @@ struct DriveState
     f("stage", stage), f("steps_in_stage", steps_in_stage), f("shear_started", shear_started);
     vector(f, "reference_lower", reference.lower), vector(f, "reference_upper", reference.upper);
     vector(f, "origin_lower", origin.lower), vector(f, "origin_upper", origin.upper);
-    f("axial", axial), f("p0", p0), vector(f, "lateral_target", lateral_target);
+    f("axial", axial), vector(f, "cell_strain", cell_strain), f("gamma", gamma), f("p0", p0),
+        vector(f, "lateral_target", lateral_target);
     f("rate", rate), f("time_step", time_step), f("signed_rate", signed_rate), f("direction", direction),
         f("indicator", indicator);
     f("slope", slope), f("slope_q", slope_q), f("slope_axial", slope_axial);
-    vector(f, "servo_step", servo_step), f("balanced_checks", balanced_checks);
+    vector(f, "servo_step", servo_step), vector(f, "servo_modulus", servo_modulus),
+        f("balanced_checks", balanced_checks);
     f("reversals", reversals), f("worst_overshoot", worst_overshoot), f("liquefied", liquefied);
     f("liquefaction_step", liquefaction_step), f("liquefaction_reversals", liquefaction_reversals);
     f("liquefaction_strain", liquefaction_strain), f("greatest_strain_before", greatest_strain_before);

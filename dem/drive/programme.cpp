@@ -43,7 +43,10 @@ public:
         const Verdict verdict = judge(seen);
         finished = verdict.finished;
         record_if_due(seen, verdict);
-        assembly_.move(finished ? assembly_.box() : next_box(seen));
+        if (assembly_.cell())
+          assembly_.deform(finished ? Mat3::Zero() : next_gradient(seen));
+        else
+          assembly_.move(finished ? assembly_.box() : next_box(seen));
         state_.steps_in_stage += 1;
         if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
           return RunOutcome::interrupted;
@@ -71,25 +74,28 @@ private:
 
   Observation look()
   {
-    const StressInvariants stress = invariants(assembly_.wall_stress());
+    const Mat3 boundary = assembly_.stress();
+    const StressInvariants stress = invariants(boundary);
     if (is_shear(stage_.kind) && state_.shear_started == 0)
       {
         state_.shear_started = 1;
         state_.origin = assembly_.box();
+        state_.cell_strain.setZero();
+        state_.gamma = 0;
         state_.p0 = stress.p;
       }
     if (is_shear(stage_.kind) && state_.steps_in_stage == 0)
       {
-        state_.lateral_target = -assembly_.wall_stress();
-        state_.slope_q = stress.q;
+        state_.lateral_target = -boundary.diagonal();
+        state_.slope_q = is_simple_shear(stage_.kind) ? boundary(0, 1) : stress.q;
       }
-    return {stress.p, stress.q, axial_strain(assembly_, state_), assembly_.step()};
+    return {stress.p, stress.q, axial_strain(assembly_, state_), assembly_.step(), boundary(0, 1), state_.gamma};
   }
 
   Verdict judge(const Observation &seen)
   {
     Verdict verdict;
-    if (stage_.kind == StageKind::undrained_monotonic || stage_.kind == StageKind::undrained_cyclic)
+    if (is_undrained(stage_.kind))
       verdict = observe_undrained(stage_, seen, state_);
     else if (is_shear(stage_.kind))
       verdict.finished = std::abs(state_.axial) >= stage_.strain;
@@ -107,7 +113,8 @@ private:
     if (steps < least_balance_steps || steps % balance_interval != 0)
       return false;
     const double stress_tolerance = stage_.kind == StageKind::compress ? 0.01 : 0.002;
-    const bool on_target = stage_.kind == StageKind::hold || stress_error(assembly_, target()) < stress_tolerance;
+    const bool on_target =
+        stage_.kind == StageKind::hold || stress_error(assembly_, target(), servo_axes()) < stress_tolerance;
     const bool balanced = on_target && assembly_.unbalanced_force_ratio() < stage_.balance;
     state_.balanced_checks = balanced ? state_.balanced_checks + 1 : 0;
     if (steps > 20'000'000)
@@ -119,36 +126,71 @@ private:
 
   Vec3 target() const { return Vec3::Constant(stage_.pressure > 0 ? stage_.pressure : specimen_.pressure); }
 
-  RigidBox next_box(const Observation &seen)
+  std::array<bool, 3> servo_axes() const
   {
-    if (is_shear(stage_.kind))
-      return sheared_box(seen);
-    if (stage_.kind == StageKind::hold)
-      return assembly_.box();
-    // the approach is fast, the last of the pressure slow
-    const double cap = specimen_.compaction_rate * (seen.p < 0.05 * target()[0] ? 1.0 : 0.25);
-    return about_centre(servo_edges(assembly_, target(), {true, true, true}, cap, state_));
+    const bool lateral = stage_.kind != StageKind::k0_compress, axial = !is_shear(stage_.kind);
+    return {lateral, axial, lateral};
   }
 
-  RigidBox sheared_box(const Observation &seen)
+  /// Bound on the strain rate of a servo stage: the approach is fast, the last of the pressure slow.
+  double servo_cap(const Observation &seen) const
+  {
+    return specimen_.compaction_rate * (seen.p < 0.05 * target()[0] ? 1.0 : 0.25);
+  }
+
+  /// Strain of this step in the driven direction of a shear stage.
+  double driven_step(const Observation &seen)
   {
     if (static_cast<std::uint64_t>(state_.steps_in_stage) % rate_interval == 0)
       rate_control_.update(assembly_, seen.p, state_);
-    update_slope(state_, seen.q);
-    const double limit = stage_.kind == StageKind::undrained_cyclic ? stage_.deviator_amplitude : 0.0;
-    const double dt = assembly_.time_step;
-    state_.signed_rate = next_rate(state_, seen.q, limit, ramp_steps(assembly_) * dt, dt);
+    const double load = driven_load(stage_.kind, seen), dt = assembly_.time_step;
+    update_slope(state_, load);
+    state_.signed_rate = next_rate(state_, load, load_limit(stage_, state_), ramp_steps(assembly_) * dt, dt);
     state_.axial += state_.signed_rate * dt;
-    const StrainPath path{state_.reference};
-    if (stage_.kind == StageKind::undrained_monotonic || stage_.kind == StageKind::undrained_cyclic)
-      return path.box(isochoric(state_.axial));
+    return state_.signed_rate * dt;
+  }
 
-    Vec3 target = state_.lateral_target; // drained: lateral stresses stay; constant p': they balance the axial one
-    if (stage_.kind == StageKind::constant_p)
-      target.setConstant(std::max(0.0, 0.5 * (3 * state_.lateral_target.mean() + assembly_.wall_stress()[1])));
-    Vec3 edges = servo_edges(assembly_, target, {true, false, true}, 4 * state_.rate, state_);
+  /// Lateral stresses of a drained stage stay; at constant p' they balance the axial one. Pa, compression positive.
+  Vec3 lateral_stresses() const
+  {
+    if (stage_.kind != StageKind::constant_p)
+      return state_.lateral_target;
+    return Vec3::Constant(std::max(0.0, 0.5 * (3 * state_.lateral_target.mean() + assembly_.stress()(1, 1))));
+  }
+
+  RigidBox next_box(const Observation &seen)
+  {
+    if (stage_.kind == StageKind::hold)
+      return assembly_.box();
+    if (!is_shear(stage_.kind))
+      return about_centre(servo_edges(assembly_, target(), servo_axes(), servo_cap(seen), state_));
+    driven_step(seen);
+    if (is_undrained(stage_.kind))
+      return StrainPath{state_.reference}.box(isochoric(state_.axial));
+    Vec3 edges = servo_edges(assembly_, lateral_stresses(), servo_axes(), 4 * state_.rate, state_);
     edges[1] = state_.reference.edges()[1] * std::exp(-state_.axial);
     return about_centre(edges);
+  }
+
+  /// Displacement gradient of this step of a cell.
+  Mat3 next_gradient(const Observation &seen)
+  {
+    Mat3 gradient = Mat3::Zero();
+    if (is_simple_shear(stage_.kind))
+      gradient(0, 1) = driven_step(seen);
+    else if (is_undrained(stage_.kind))
+      gradient.diagonal() = isochoric(driven_step(seen));
+    else if (is_shear(stage_.kind))
+      {
+        const double axial = driven_step(seen);
+        gradient.diagonal() = servo_strain(assembly_, lateral_stresses(), servo_axes(), 4 * state_.rate, state_);
+        gradient(1, 1) = -axial;
+      }
+    else if (stage_.kind != StageKind::hold)
+      gradient.diagonal() = servo_strain(assembly_, target(), servo_axes(), servo_cap(seen), state_);
+    state_.cell_strain += gradient.diagonal();
+    state_.gamma += gradient(0, 1);
+    return gradient;
   }
 
   RigidBox about_centre(const Vec3 &edges) const
@@ -163,21 +205,22 @@ private:
       observer_.event(verdict.event);
     const bool edge = state_.steps_in_stage == 0 || verdict.finished;
     const double since = static_cast<double>(seen.step) - state_.recorded_step;
+    const double load = driven_load(stage_.kind, seen), strain = driven_strain(stage_.kind, seen);
     const bool due = edge || verdict.notable || std::abs(seen.p - state_.recorded_p) >= output_.record_stress ||
-                     std::abs(seen.q - state_.recorded_q) >= output_.record_stress ||
-                     std::abs(seen.axial - state_.recorded_strain) >= output_.record_strain ||
+                     std::abs(load - state_.recorded_q) >= output_.record_stress ||
+                     std::abs(strain - state_.recorded_strain) >= output_.record_strain ||
                      since >= static_cast<double>(output_.record_steps);
     if (!due)
       return;
     const bool by_strain =
-        output_.snapshots == "strain" && std::abs(seen.axial - state_.snapshot_strain) >= output_.snapshot_strain;
+        output_.snapshots == "strain" && std::abs(strain - state_.snapshot_strain) >= output_.snapshot_strain;
     const bool snapshot =
         is_shear(stage_.kind) && output_.snapshots != "none" && (edge || verdict.notable || by_strain);
     if (snapshot)
-      state_.snapshot_strain = seen.axial;
+      state_.snapshot_strain = strain;
     state_.recorded_p = seen.p;
-    state_.recorded_q = seen.q;
-    state_.recorded_strain = seen.axial;
+    state_.recorded_q = load;
+    state_.recorded_strain = strain;
     state_.recorded_step = static_cast<double>(seen.step);
     observer_.record(assembly_, state_, seen, snapshot);
   }
@@ -211,13 +254,16 @@ RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen,
 
 double axial_strain(const Assembly &assembly, const DriveState &state)
 {
-  return state.shear_started != 0 ? std::log(state.origin.edges()[1] / assembly.box().edges()[1]) : 0.0;
+  return -strain_since_origin(assembly, state)[1];
 }
 
-bool is_shear(StageKind kind)
+Vec3 strain_since_origin(const Assembly &assembly, const DriveState &state)
 {
-  return kind == StageKind::undrained_monotonic || kind == StageKind::undrained_cyclic || kind == StageKind::drained ||
-         kind == StageKind::constant_p;
+  if (state.shear_started == 0)
+    return Vec3::Zero();
+  if (assembly.cell())
+    return state.cell_strain;
+  return (assembly.box().edges().array() / state.origin.edges().array()).log();
 }
 
 std::string to_string(StageKind kind)

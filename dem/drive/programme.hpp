@@ -32,6 +32,7 @@ enum class RunOutcome
 ///
 ///     time step -> contact forces -> stress -> driver (strain, servo, reversal) -> record -> motion, walls
 ///
+/// The specimen is bounded by walls or by a periodic cell, whose strain takes the place of wall motion.
 /// A stage ends with walls at rest for one step. The time step follows the critical step of the closed contacts
 /// (DESIGN 4) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
 /// @throws RunFailure  a stage that cannot reach its target; an unstable fixed time step; an exploding packing
@@ -43,6 +44,9 @@ RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen,
 /// Axial logarithmic strain since the start of shearing, compression positive [-].
 double axial_strain(const Assembly &assembly, const DriveState &state);
 
+/// Logarithmic strain along x, y, z since the start of shearing, tension positive [-]; of a cell sheared by gamma the
+/// sum of the normal components of L dt.
+Vec3 strain_since_origin(const Assembly &assembly, const DriveState &state);
+
 std::string to_string(StageKind kind);
-bool is_shear(StageKind kind);
 } // namespace isostat

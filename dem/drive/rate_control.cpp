@@ -23,9 +23,9 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
 {
   const double p_r = reference_stress(mean_stress, p0);
   const double inertia = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density, p_r);
-  const Vec3 difference = assembly.wall_stress() - assembly.contact_stress();
-  return std::max(
-      {inertia, difference.cwiseAbs().maxCoeff() / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
+  const double difference =
+      assembly.walls() ? (assembly.wall_stress() - assembly.contact_stress()).cwiseAbs().maxCoeff() : 0.0;
+  return std::max({inertia, difference / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
 void RateControl::update(const Assembly &assembly, double mean_stress, DriveState &state) const
@@ -46,28 +46,32 @@ void RateControl::update(const Assembly &assembly, double mean_stress, DriveStat
   state.rate = std::clamp(state.rate * factor, floor_, ceiling_);
 }
 
-double next_rate(const DriveState &state, double q, double q_limit, double ramp_time, double time_step)
+double next_rate(const DriveState &state, double load, double limit, double ramp_time, double time_step)
 {
   const double acceleration = state.rate / ramp_time;
   const double change = acceleration * time_step;
   const double next = state.signed_rate + std::clamp(state.direction * state.rate - state.signed_rate, -change, change);
-  if (q_limit <= 0 || state.slope <= 0 || next * state.direction <= 0)
+  if (limit <= 0 || state.slope <= 0 || next * state.direction <= 0)
     return next;
-  const double strain_left = std::max(0.0, (q_limit - state.direction * q) / state.slope);
+  const double strain_left = std::max(0.0, (limit - state.direction * load) / state.slope);
   const double slowest = 0.1 * state.rate;
   const double braked = std::sqrt(slowest * slowest + 2 * acceleration * strain_left);
   return state.direction * std::min(std::abs(next), braked);
 }
 
-double ramp_steps(const Assembly &assembly) { return 10 * assembly.box().edges().maxCoeff() / assembly.d50(); }
+double ramp_steps(const Assembly &assembly)
+{
+  const double edge = assembly.walls() ? assembly.box().edges().maxCoeff() : std::cbrt(assembly.volume());
+  return 10 * edge / assembly.d50();
+}
 
-void update_slope(DriveState &state, double q)
+void update_slope(DriveState &state, double load)
 {
   if (std::fmod(state.steps_in_stage, 20) != 0)
     return;
   const double strain = std::abs(state.axial - state.slope_axial);
-  state.slope = strain > 0 ? std::abs(q - state.slope_q) / strain : 0;
-  state.slope_q = q;
+  state.slope = strain > 0 ? std::abs(load - state.slope_q) / strain : 0;
+  state.slope_q = load;
   state.slope_axial = state.axial;
 }
 } // namespace isostat

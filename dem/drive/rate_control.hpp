@@ -13,7 +13,7 @@ namespace isostat
 /// U the unbalanced-force ratio and I = eps_dot d50 sqrt(rho/p_r) the inertial number; the factor 10 makes I = 1e-3 as
 /// bad as a 1 % imbalance. Below 5 % of p0 errors are thus judged against 5 % of p0: in the liquefied state stresses
 /// vanish, and with them what a relative error could mean. eta is continuous in p': a jump there would make p' linger
-/// at it. Every 50 steps
+/// at it. A periodic cell has no walls: its first term is 0. Every 50 steps
 ///     rate <- rate clamp(sqrt(tolerance/eta), 0.7, 1.2)   within [floor, ceiling],
 /// or, with a fixed inertial number, rate <- I sqrt(p_r/rho)/d50, without bounds. A fixed rate of a stage goes before
 /// both.
@@ -45,13 +45,13 @@ double rate_of(double inertial_number, double d50, double density, double p_r);
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);
 
 /// Axial rate for the next step, 1/s: goes towards direction * rate within `ramp_time`, and brakes with the same
-/// deceleration so that q arrives at +-q_limit at a tenth of the rate: a load reversal is no jump either.
-/// @param q  Pa   @param q_limit  Pa; 0: no braking   @param ramp_time  s   @param time_step  s
-double next_rate(const DriveState &state, double q, double q_limit, double ramp_time, double time_step);
+/// deceleration so that the load arrives at +-limit at a tenth of the rate: a load reversal is no jump either.
+/// @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time  s   @param time_step  s
+double next_rate(const DriveState &state, double load, double limit, double ramp_time, double time_step);
 
 /// Ten times the steps in which a wave crosses the packing, in steps: how long loads ramp.
 double ramp_steps(const Assembly &assembly);
 
-/// Keeps state.slope = |dq/d axial strain| over windows of 20 steps, for the braking.
-void update_slope(DriveState &state, double q);
+/// Keeps state.slope = |d load/d driven strain| over windows of 20 steps, for the braking.
+void update_slope(DriveState &state, double load);
 } // namespace isostat

@@ -2,6 +2,7 @@
 #include "dem/drive/servo.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isostat
 {
@@ -24,9 +25,33 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
   return edges;
 }
 
-double stress_error(const Assembly &assembly, const Vec3 &target)
+Vec3 servo_strain(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
+                  DriveState &state)
 {
-  const Vec3 stress = -assembly.wall_stress();
-  return (stress.cwiseQuotient(target) - Vec3::Ones()).cwiseAbs().maxCoeff();
+  if (std::fmod(state.steps_in_stage, 20) == 0)
+    state.servo_modulus = assembly.affine_moduli();
+  const Vec3 stress = -assembly.stress().diagonal();
+  const double cap = rate_cap * assembly.time_step;
+  Vec3 strain = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (controlled[axis])
+      {
+        const double modulus = state.servo_modulus[axis];
+        const double wanted = modulus > 0 ? (target[axis] - stress[axis]) / modulus : cap;
+        double &step = state.servo_step[axis];
+        step = 0.8 * step + 0.2 * std::clamp(wanted, -cap, cap);
+        strain[axis] = -step;
+      }
+  return strain;
+}
+
+double stress_error(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled)
+{
+  const Vec3 stress = -assembly.stress().diagonal();
+  double worst = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    if (controlled[axis])
+      worst = std::max(worst, std::abs(stress[axis] / target[axis] - 1));
+  return worst;
 }
 } // namespace isostat

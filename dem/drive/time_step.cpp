@@ -15,10 +15,10 @@ constexpr int power_iterations = 300;
 
 void check_fixed_step(double fixed, const Assembly &assembly)
 {
-  const double bound = critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
+  const double bound = critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
   if (fixed <= bound)
     return;
-  const double critical = critical_step_by_power_iteration(assembly.law(), assembly.packing(), assembly.box(),
+  const double critical = critical_step_by_power_iteration(assembly.law(), assembly.packing(), assembly.walls(),
                                                            assembly.contacts(), power_iterations);
   if (fixed > critical)
     throw RunFailure(fmt::format("step {}: unstable: motion.time_step = {:.4g} s exceeds the critical step {:.4g} s of "
@@ -37,7 +37,7 @@ void update_time_step(const MotionSpec &motion, bool shearing, Assembly &assembl
   state.time_step = motion.time_step
                         ? *motion.time_step
                         : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
-                                                                        assembly.box(), assembly.contacts());
+                                                                        assembly.walls(), assembly.contacts());
   assembly.time_step = state.time_step;
 }
 } // namespace isostat

@@ -160,6 +160,41 @@ std::vector<WallContact> read_wall_contacts(const Group &group, std::size_t n_gr
 }
 } // namespace
 
+namespace
+{
+void write_cell(Group group, const PeriodicCell &cell)
+{
+  const auto matrix = [&](const char *name, const Mat3 &m, const char *unit) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = m;
+    group.write(name, std::span(rows.data(), 9), unit, 3);
+  };
+  matrix("edges", cell.edges, "m");
+  matrix("deformation", cell.deformation, "-");
+  matrix("rotation", cell.rotation, "-");
+  matrix("strain_step", cell.strain_step, "-");
+  group.set_attribute("volume_strain", cell.volume_strain);
+  group.set_attribute("reference_volume", cell.reference_volume);
+  group.set_attribute("flips", cell.flips);
+}
+
+PeriodicCell read_cell(const Group &group)
+{
+  const auto matrix = [&](const char *name) {
+    const std::vector<double> rows = group.read<double>(name, {3, 3});
+    return Mat3(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data()));
+  };
+  PeriodicCell cell;
+  cell.edges = matrix("edges");
+  cell.deformation = matrix("deformation");
+  cell.rotation = matrix("rotation");
+  cell.strain_step = matrix("strain_step");
+  cell.volume_strain = group.attribute<double>("volume_strain");
+  cell.reference_volume = group.attribute<double>("reference_volume");
+  cell.flips = group.attribute<std::uint64_t>("flips");
+  return cell;
+}
+} // namespace
+
 void write_snapshot(Group group, const Snapshot &snapshot)
 {
   group.set_attribute("time", snapshot.time);
@@ -177,6 +212,8 @@ void write_snapshot(Group group, const Snapshot &snapshot)
   write_grains(group.create_group("grains"), snapshot.grains);
   write_contacts(group.create_group("contacts"), snapshot.contacts);
   write_wall_contacts(group.create_group("wall_contacts"), snapshot.wall_contacts);
+  if (snapshot.cell)
+    write_cell(group.create_group("cell"), *snapshot.cell);
 }
 
 Snapshot read_snapshot(const Group &group)
@@ -192,6 +229,8 @@ Snapshot read_snapshot(const Group &group)
   const std::size_t n = snapshot.grains.n_grains();
   snapshot.contacts = read_contacts(group.group("contacts"), n);
   snapshot.wall_contacts = read_wall_contacts(group.group("wall_contacts"), n);
+  if (group.has("cell"))
+    snapshot.cell = read_cell(group.group("cell"));
   return snapshot;
 }
 } // namespace isostat

@@ -14,6 +14,9 @@ namespace isostat
 ///     id (N) contacts/       first second overlap normal_force (C)   normal shear_force bending_moment twisting_moment
 ///     (C,3) wall_contacts/  grain wall overlap normal_force (W)
 ///
+///     cell/           of a periodic packing only: edges deformation rotation strain_step (3,3) @volume_strain
+///     @reference_volume @flips
+///
 /// Padding records of the packing are not stored.
 /// tested: tests/dem/io/snapshot_file_test.cpp (round trip to the bit)
 void write_snapshot(hdf5::Group group, const Snapshot &snapshot);

@@ -64,7 +64,15 @@ std::string fault(const Snapshot &state)
       return fmt::format("a law parameter or the time is {}; expected finite numbers", value);
   if (!(std::isfinite(state.grains.density) && state.grains.density > 0))
     return fmt::format("grain density = {} kg/m3; expected > 0", state.grains.density);
-  if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
+  if (state.cell)
+    {
+      const PeriodicCell &cell = *state.cell;
+      if (!(cell.edges.allFinite() && cell.deformation.allFinite() && cell.rotation.allFinite() && cell.volume() > 0 &&
+            cell.reference_volume > 0))
+        return fmt::format("the periodic cell has a volume of {} m3; expected finite edges and a volume > 0",
+                           cell.volume());
+    }
+  else if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
     return fmt::format("the box has edges {} x {} x {} m; expected all > 0", state.box.edges().x(),
                        state.box.edges().y(), state.box.edges().z());
   if (!state.strain.allFinite())

@@ -19,7 +19,7 @@ Mat3 contact_stress(const Snapshot &snapshot)
       const int axis = c.wall / 2; // n n^T is the same for the lower and the upper wall
       sum(axis, axis) += c.normal_force * (grains.radius(c.grain) - c.overlap);
     }
-  return -sum / snapshot.box.volume();
+  return -sum / snapshot.volume();
 }
 
 Vec3 wall_stress(const Snapshot &snapshot)
@@ -57,6 +57,6 @@ Mat3 kinetic_stress(const Snapshot &snapshot, const Mat3 &velocity_gradient)
       const Vec3 w = grains.linear_velocity(i) - velocity - velocity_gradient * (grains.centre(i) - centre);
       sum += grains.mass(i) * w * w.transpose();
     }
-  return -sum / snapshot.box.volume();
+  return -sum / snapshot.volume();
 }
 } // namespace isostat

@@ -53,8 +53,8 @@ constexpr Column table[] = {
 
 void add_stress(Micromechanics &m, const Snapshot &snapshot)
 {
-  const StressInvariants wall = invariants(wall_stress(snapshot));
   const StressInvariants contact = invariants(contact_stress(snapshot));
+  const StressInvariants wall = snapshot.cell ? contact : invariants(wall_stress(snapshot));
   m.p_wall = wall.p;
   m.q_wall = wall.q;
   m.p_contact = contact.p;
@@ -121,7 +121,7 @@ Micromechanics micromechanics(const Snapshot &snapshot)
   add_network(m, snapshot);
   add_fabric(m, snapshot);
   if (const double solid = snapshot.grains.solid_volume(); solid > 0)
-    m.void_ratio = void_ratio(snapshot.box, solid);
+    m.void_ratio = void_ratio(snapshot.volume(), solid);
   const StoredEnergy energy = stored_energy(snapshot);
   m.kinetic_energy = energy.kinetic();
   m.elastic_energy = energy.elastic();

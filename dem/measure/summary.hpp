@@ -12,7 +12,7 @@ namespace isostat
 /// Counts are kept as numbers like the rest, so that a row is a row.
 struct Micromechanics
 {
-  double p_wall = 0, q_wall = 0;       ///< p', q of wall_stress, Pa
+  double p_wall = 0, q_wall = 0;       ///< p', q of wall_stress, in a cell of contact_stress, Pa
   double p_contact = 0, q_contact = 0; ///< p', q of contact_stress (Love-Weber), Pa
   double void_ratio = 0;               ///< e [-], of the box
 

@@ -27,7 +27,7 @@ std::vector<Element> closed_contacts(const LawParams &law, const Packing &packin
   for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
-      const Vec3 branch = packing.centre(j) - packing.centre(i);
+      const Vec3 branch = contacts.branch(packing, p);
       const double r1 = packing.radius(i), r2 = packing.radius(j), distance = branch.norm();
       if (distance < r1 + r2)
         elements.push_back({i, j, branch / distance, r1, r2, contact_stiffness(law, r1, r2)});
@@ -56,8 +56,11 @@ Mat6 body_block(const Element &e, double radius, double sign)
 }
 
 template <typename Visit>
-void for_wall_contacts(const LawParams &law, const Packing &packing, const RigidBox &box, const Visit &visit)
+void for_wall_contacts(const LawParams &law, const Packing &packing, const RigidBox *walls, const Visit &visit)
 {
+  if (!walls)
+    return;
+  const RigidBox &box = *walls;
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       {
@@ -83,10 +86,10 @@ double eigenvalue_bound(const Mat6 &b)
 
 using Blocks = std::vector<Mat6, Eigen::aligned_allocator<Mat6>>;
 
-Blocks wall_blocks(const LawParams &law, const Packing &packing, const RigidBox &box)
+Blocks wall_blocks(const LawParams &law, const Packing &packing, const RigidBox *walls)
 {
   Blocks blocks(packing.n_grains(), Mat6::Zero());
-  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += k; });
+  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += k; });
   return blocks;
 }
 
@@ -154,12 +157,12 @@ struct ScaledStiffness
 };
 } // namespace
 
-double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
+double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox *walls,
                            const ContactList &contacts)
 {
   const std::vector<Element> elements = closed_contacts(law, packing, contacts);
-  const Blocks walls = wall_blocks(law, packing, box);
-  Blocks alone = walls;
+  const Blocks held = wall_blocks(law, packing, walls);
+  Blocks alone = held;
   for (const Element &e : elements)
     {
       alone[e.first] += body_block(e, e.radius1, -1);
@@ -179,7 +182,7 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
       neighbour[e.second] = std::max(neighbour[e.second], lambda[e.first]);
     }
   const auto matters = [&](std::size_t i) { return lambda[i] + neighbour[i] > greatest_alone; };
-  Blocks weighted = walls;
+  Blocks weighted = held;
   for (const Element &e : elements)
     {
       if (matters(e.first))
@@ -194,14 +197,14 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
   return 2 / std::sqrt(greatest);
 }
 
-double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,
+double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox *walls,
                                         const ContactList &contacts, int iterations)
 {
   const std::size_t n = packing.n_grains();
-  std::vector<Vec3> walls(n, Vec3::Zero());
-  for_wall_contacts(law, packing, box, [&](std::size_t i, int axis, double k) { walls[i][axis] += k; });
+  std::vector<Vec3> held(n, Vec3::Zero());
+  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i][axis] += k; });
   const std::vector<Element> elements = closed_contacts(law, packing, contacts);
-  const ScaledStiffness stiffness{packing, elements, walls};
+  const ScaledStiffness stiffness{packing, elements, held};
   std::vector<Vec6> x(n), y(n);
   for (std::size_t i = 0; i < n; ++i)
     for (int c = 0; c < 6; ++c)

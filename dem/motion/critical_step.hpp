@@ -16,14 +16,15 @@ namespace isostat
 /// not move freely and count once. lambda_max is bounded from above by |B^8|_F^(1/8), which exceeds it by at most 12 %.
 /// The step is never above that of two smallest grains which collide while each is held from behind, whether contacts
 /// are closed or not.
+/// @param walls  nullptr in a periodic cell
 /// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
 /// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
-double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox &box,
+double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox *walls,
                            const ContactList &contacts);
 
 /// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured
 /// with.
 /// @param iterations  each costs two passes over the contacts; converges from below to omega_max
-double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox &box,
+double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox *walls,
                                         const ContactList &contacts, int iterations);
 } // namespace isostat

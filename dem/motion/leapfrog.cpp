@@ -40,9 +40,9 @@ struct Advance
   }
 };
 
-template <bool Measure>
+template <bool Measure, bool Affine>
 MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t end, double *action,
-                             const Advance &advance, double speed_limit)
+                             const Advance &advance, double speed_limit, const AffineStep *affine)
 {
   const D4 d;
   constexpr std::size_t width = hn::MaxLanes(D4());
@@ -55,6 +55,7 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   for (std::size_t i = begin; i < end; ++i, x += 4, v += 4, w += 4, action += 8)
     {
       const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
+      const double at[3] = {x[0], x[1], x[2]};
       for (std::size_t half = 0; half < 4; half += width)
         {
           const V4 v_new =
@@ -68,7 +69,15 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
           // the record's fourth lane (1/mass) is no velocity
           const auto moving = hn::FirstN(d, 3 - half);
           const V4 speed = hn::IfThenElseZero(moving, v_new);
-          hn::Store(hn::MulAdd(step, speed, hn::Load(d, x + half)), d, x + half);
+          V4 x_new = hn::MulAdd(step, speed, hn::Load(d, x + half));
+          if constexpr (Affine)
+            {
+              V4 way = hn::Mul(step, speed); // the sum of small steps first
+              for (int k = 0; k < 3; ++k)
+                way = hn::MulAdd(hn::Load(d, affine->columns + 4 * k + half), hn::Set(d, at[k]), way);
+              x_new = hn::Add(way, hn::Load(d, x + half));
+            }
+          hn::Store(x_new, d, x + half);
           const V4 speed2 = hn::Mul(speed, speed);
           greatest = hn::Max(greatest, speed2);
           // false for not-a-number, too; a spin only has to be a number
@@ -83,16 +92,17 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   return report;
 }
 
-MotionReport Integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
-                       double speed_limit)
-{
-  return integrate_range<false>(packing, begin, end, action, {dt, damping}, speed_limit);
-}
-MotionReport IntegrateMeasured(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt,
-                               double damping, double speed_limit)
-{
-  return integrate_range<true>(packing, begin, end, action, {dt, damping}, speed_limit);
-}
+#define ISOSTAT_VARIANT(NAME, MEASURE, AFFINE) \
+  MotionReport NAME(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping, \
+                    double speed_limit, const AffineStep *affine) \
+  { \
+    return integrate_range<MEASURE, AFFINE>(packing, begin, end, action, {dt, damping}, speed_limit, affine); \
+  }
+ISOSTAT_VARIANT(Integrate, false, false)
+ISOSTAT_VARIANT(IntegrateMeasured, true, false)
+ISOSTAT_VARIANT(IntegrateAffine, false, true)
+ISOSTAT_VARIANT(IntegrateAffineMeasured, true, true)
+#undef ISOSTAT_VARIANT
 } // namespace HWY_NAMESPACE
 } // namespace isostat
 HWY_AFTER_NAMESPACE();
@@ -102,13 +112,16 @@ namespace isostat
 {
 HWY_EXPORT(Integrate);
 HWY_EXPORT(IntegrateMeasured);
+HWY_EXPORT(IntegrateAffine);
+HWY_EXPORT(IntegrateAffineMeasured);
 
 MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
-                       double speed_limit, bool measure_damping)
+                       double speed_limit, bool measure_damping, const AffineStep *affine)
 {
-  if (measure_damping)
-    return HWY_DYNAMIC_DISPATCH(IntegrateMeasured)(packing, begin, end, action, dt, damping, speed_limit);
-  return HWY_DYNAMIC_DISPATCH(Integrate)(packing, begin, end, action, dt, damping, speed_limit);
+  const auto run =
+      affine ? (measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateAffineMeasured) : HWY_DYNAMIC_DISPATCH(IntegrateAffine))
+             : (measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured) : HWY_DYNAMIC_DISPATCH(Integrate));
+  return run(packing, begin, end, action, dt, damping, speed_limit, affine);
 }
 
 MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,

@@ -2,8 +2,14 @@
 #include "dem/neighbours/verlet_list.hpp"
 
 #include "dem/neighbours/cell_grid.hpp"
+#include "dem/neighbours/periodic_grid.hpp"
 
+#include "dem/error.hpp"
+
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <fmt/format.h>
+#include <tuple>
 
 namespace isostat
 {
@@ -26,44 +32,64 @@ void VerletList::invalidate()
 void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
                         int threads)
 {
+  const Domain domain{box.edges().asDiagonal(), box.centre(), &box};
+  update(packing, domain, greatest_step, contacts, threads);
+}
+
+bool VerletList::update(const Packing &packing, const PeriodicCell &cell, double greatest_step, ContactList &contacts,
+                        int threads)
+{
+  const Domain domain{cell.deformation, Vec3::Zero(), nullptr, &cell};
+  const std::uint64_t before = n_rebuilds_;
+  update(packing, domain, greatest_step, contacts, threads);
+  return n_rebuilds_ != before;
+}
+
+void VerletList::update(const Packing &packing, const Domain &domain, double greatest_step, ContactList &contacts,
+                        int threads)
+{
   ++steps_since_rebuild_;
-  slack_ -= 4 * greatest_step; // both grains of a pair, and the box's homogeneous part
+  slack_ -= 4 * greatest_step; // both grains of a pair, and the homogeneous part
   if (slack_ > 0)
     return;
-  slack_ = tight_.slack(packing, box, skin_, greatest_reach_, threads);
+  slack_ = tight_.slack(packing, domain, skin_, greatest_reach_, threads);
   if (slack_ > 0)
     return;
   choose_skin(packing.min_radius());
   // a pair left out of the wide list is still apart by the slack that remains of it
-  if (wide_.slack(packing, box, wide_skin_, greatest_reach_, threads) <= skin_)
-    search(packing, box, threads);
-  select(packing, box, contacts, threads);
+  if (wide_.slack(packing, domain, wide_skin_, greatest_reach_, threads) <= skin_)
+    search(packing, domain, threads);
+  select(packing, domain, contacts, threads);
 }
 
-double VerletList::Reference::slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach,
+double VerletList::Reference::slack(const Packing &now, const Domain &domain, double skin, double greatest_reach,
                                     int threads) const
 {
   if (position.size() != now.position.size())
     return -1;
-  const Vec3 centre = box_now.centre(), built_centre = box.centre();
-  const Vec3 stretch = box_now.edges().cwiseQuotient(box.edges());
-  double moved2 = 0, moved_in_box2 = 0;
-#pragma omp parallel for schedule(static) reduction(max : moved2, moved_in_box2) num_threads(threads) if (threads > 1)
+  const Mat3 stretch = domain.shape * shape.inverse();
+  double moved2 = 0, fluctuation2 = 0;
+#pragma omp parallel for schedule(static) reduction(max : moved2, fluctuation2) num_threads(threads) if (threads > 1)
   for (std::size_t i = 0; i < now.n_grains(); ++i)
     {
       const Vec3 x = now.centre(i), x0(&position[4 * i]);
       moved2 = std::max(moved2, (x - x0).squaredNorm());
-      moved_in_box2 = std::max(moved_in_box2, (x - centre - stretch.cwiseProduct(x0 - built_centre)).squaredNorm());
+      fluctuation2 = std::max(fluctuation2, (x - domain.centre - stretch * (x0 - centre)).squaredNorm());
     }
+  // with the domain: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
+  const Mat3 squared = stretch.transpose() * stretch;
+  const double least = std::sqrt(
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Mat3>(squared, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()));
+  const double shrink = std::max(0.0, 1 - least);
+  const double with_domain = skin * (1 - shrink) - shrink * greatest_reach - 2 * std::sqrt(fluctuation2);
+  if (!domain.box)
+    return with_domain;
   // as they are: two grains approach by at most 2 moved; a wall comes nearer by its own way
+  const RigidBox &box_now = *domain.box;
   const double wall =
       std::max((box_now.lower - box.lower).cwiseAbs().maxCoeff(), (box_now.upper - box.upper).cwiseAbs().maxCoeff());
   const double moved = std::sqrt(moved2);
-  const double as_is = skin - std::max(2 * moved, moved + wall);
-  // with the box: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
-  const double shrink = std::max(0.0, 1 - stretch.minCoeff());
-  const double with_box = skin * (1 - shrink) - shrink * greatest_reach - 2 * std::sqrt(moved_in_box2);
-  return std::max(as_is, with_box);
+  return std::max(skin - std::max(2 * moved, moved + wall), with_domain);
 }
 
 void VerletList::choose_skin(double r_min)
@@ -76,36 +102,66 @@ void VerletList::choose_skin(double r_min)
     skin_ = std::max(0.8 * skin_, least_skin * r_min);
 }
 
-void VerletList::search(const Packing &packing, const RigidBox &box, int threads)
+void VerletList::search(const Packing &packing, const Domain &domain, int threads)
 {
   wide_skin_ = wide_over_tight * skin_;
+  greatest_reach_ = 2 * packing.max_radius();
+  wide_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};
+  ++n_searches_;
+  if (domain.cell)
+    {
+      // a narrow cell bounds the skin: no pair may be near through two faces at once
+      const double room = 0.5 * domain.cell->widths().minCoeff() - greatest_reach_;
+      wide_skin_ = std::min(wide_skin_, 0.99 * room);
+      skin_ = std::min(skin_, 0.5 * wide_skin_);
+      if (!(room > 0))
+        throw RunFailure(fmt::format("the periodic cell is {:.4g} m wide, less than twice the largest diameter {:.4g} "
+                                     "m: a grain would touch another one and its image at once. Take more grains.",
+                                     2 * (room + greatest_reach_), greatest_reach_));
+      std::tie(candidates_, candidate_images_) = find_pairs(packing, domain.cell->edges, wide_skin_);
+      return;
+    }
   candidates_ = find_pairs(packing, wide_skin_, threads);
   for (int wall = 0; wall < 6; ++wall)
     {
       wall_candidates_[wall].clear();
       for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
-        if (wall_gap(packing, box, i, wall) < wide_skin_)
+        if (wall_gap(packing, *domain.box, i, wall) < wide_skin_)
           wall_candidates_[wall].push_back(i);
     }
-  wide_ = {packing.position, box};
-  greatest_reach_ = 2 * packing.max_radius();
-  ++n_searches_;
 }
 
-void VerletList::select(const Packing &packing, const RigidBox &box, ContactList &contacts, int threads)
+void VerletList::select(const Packing &packing, const Domain &domain, ContactList &contacts, int threads)
 {
-  thread_local std::vector<ContactList::Pair> pairs; // its memory is used again
+  thread_local std::vector<ContactList::Pair> pairs; // their memory is used again
+  thread_local std::vector<ImageCode> images;
   pairs.clear();
-  for (const auto &pair : candidates_)
+  images.clear();
+  const bool in_cell = domain.cell != nullptr;
+  Vec3 offset = Vec3::Zero();
+  ImageCode code = image_code(Eigen::Vector3i::Zero());
+  for (std::size_t c = 0; c < candidates_.size(); ++c)
     {
-      const double *p = &packing.position[4 * pair.first], *q = &packing.position[4 * pair.second];
-      const double dx = q[0] - p[0], dy = q[1] - p[1], dz = q[2] - p[2], reach = p[3] + q[3] + skin_;
+      if (in_cell && candidate_images_[c] != code)
+        {
+          code = candidate_images_[c];
+          offset = domain.cell->edges * image_shift(code).cast<double>();
+        }
+      const auto [first, second] = candidates_[c];
+      const double *p = &packing.position[4 * first], *q = &packing.position[4 * second];
+      const double dx = q[0] - p[0] + offset[0], dy = q[1] - p[1] + offset[1], dz = q[2] - p[2] + offset[2],
+                   reach = p[3] + q[3] + skin_;
       if (dx * dx + dy * dy + dz * dz < reach * reach)
-        pairs.push_back(pair);
+        {
+          pairs.push_back(candidates_[c]);
+          if (in_cell)
+            images.push_back(code);
+        }
     }
-  contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()), threads);
-  select_near_walls(packing, box, contacts.partition());
-  tight_ = {packing.position, box};
+  contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()), threads, images);
+  if (domain.box)
+    select_near_walls(packing, *domain.box, contacts.partition());
+  tight_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};
   slack_ = skin_;
   steps_since_rebuild_ = 0;
   ++n_rebuilds_;

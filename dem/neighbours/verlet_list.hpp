@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/history.hpp"
+#include "dem/domain/periodic_cell.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/packing.hpp"
 
@@ -25,6 +26,11 @@ public:
   /// @param threads        that share the work; the list does not depend on it
   void update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
               int threads = 1);
+  /// The same in a periodic cell, where a list also knows images of grains; no grain is near a wall.
+  /// @return whether the list is a new one: it wants ContactList::set_cell() then
+  /// @throws RunFailure  the cell is too narrow for the grains in it: a pair could touch through two faces at once
+  bool update(const Packing &packing, const PeriodicCell &cell, double greatest_step, ContactList &contacts,
+              int threads = 1);
 
   /// Grains within the tight skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
   const std::array<std::vector<std::uint32_t>, 6> &near_wall() const { return near_wall_; }
@@ -36,6 +42,8 @@ public:
   }
 
   void invalidate();
+  /// Positions have been replaced: the next update looks whether the list still fits them.
+  void recheck() { slack_ = -1; }
   std::uint64_t n_rebuilds() const { return n_rebuilds_; } ///< of the tight list
   std::uint64_t n_searches() const { return n_searches_; } ///< of the wide one
   double skin() const { return skin_; }                    ///< tight, m
@@ -45,16 +53,27 @@ public:
   }
 
 private:
+  /// What bounds the grains: the walls of a box, or a cell; `shape` maps what stood there to what stands now.
+  struct Domain
+  {
+    Mat3 shape = Mat3::Identity();
+    Vec3 centre = Vec3::Zero();
+    const RigidBox *box = nullptr;
+    const PeriodicCell *cell = nullptr;
+  };
   /// Positions a list was made from.
   struct Reference
   {
     AlignedVector<double> position;
+    Mat3 shape = Mat3::Identity();
+    Vec3 centre = Vec3::Zero();
     RigidBox box;
-    double slack(const Packing &now, const RigidBox &box_now, double skin, double greatest_reach, int threads) const;
+    double slack(const Packing &now, const Domain &domain, double skin, double greatest_reach, int threads) const;
   };
+  void update(const Packing &packing, const Domain &domain, double greatest_step, ContactList &contacts, int threads);
   void choose_skin(double r_min);
-  void search(const Packing &packing, const RigidBox &box, int threads);
-  void select(const Packing &packing, const RigidBox &box, ContactList &contacts, int threads);
+  void search(const Packing &packing, const Domain &domain, int threads);
+  void select(const Packing &packing, const Domain &domain, ContactList &contacts, int threads);
   void select_near_walls(const Packing &packing, const RigidBox &box, const Partition &partition);
 
   double skin_ = 0, wide_skin_ = 0, slack_ = -1;
@@ -62,6 +81,7 @@ private:
   Reference tight_, wide_;
   double greatest_reach_ = 0; ///< largest R1 + R2, m
   std::vector<ContactList::Pair> candidates_;
+  std::vector<ImageCode> candidate_images_; ///< in a cell
   std::array<std::vector<std::uint32_t>, 6> wall_candidates_, near_wall_;
   std::array<std::vector<std::size_t>, 6> near_wall_begin_;
 };

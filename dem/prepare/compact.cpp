@@ -8,6 +8,7 @@ namespace isostat
 namespace
 {
 constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
+constexpr double k0_start = 0.4; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
 /// Runs servo stages on a state and returns what they end with.
 Snapshot run_stages(const Snapshot &initial, const std::vector<Stage> &stages, double damping,
@@ -45,17 +46,21 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
   Snapshot start;
   start.grains = cloud.packing;
   start.box = cloud.box;
+  if (specimen.domain == "periodic-cell")
+    start.cell = PeriodicCell::with_edges(cloud.box.edges());
   start.law = law;
-  return run_stages(start, {servo_stage(StageKind::compress, specimen.pressure, compressed_balance)}, specimen.damping,
-                    specimen, observer);
+  const double pressure = specimen.consolidation == "k0" ? k0_start * specimen.pressure : specimen.pressure;
+  return run_stages(start, {servo_stage(StageKind::compress, pressure, compressed_balance)}, specimen.damping, specimen,
+                    observer);
 }
 
 Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen, RunObserver &observer)
 {
   Snapshot start = compacted;
   start.law = law;
-  const Snapshot balanced = run_stages(start, {servo_stage(StageKind::rebalance, specimen.pressure, rebalanced)},
-                                       specimen.damping, specimen, observer);
+  const StageKind kind = specimen.consolidation == "k0" ? StageKind::k0_compress : StageKind::rebalance;
+  const Snapshot balanced =
+      run_stages(start, {servo_stage(kind, specimen.pressure, rebalanced)}, specimen.damping, specimen, observer);
   return run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
 }
 } // namespace isostat

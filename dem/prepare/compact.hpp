@@ -7,6 +7,7 @@ namespace isostat
 {
 /// Isotropic compression of a resting cloud to specimen.pressure with the given friction (DESIGN 5): walls close in
 /// under servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
+/// A specimen with K0 consolidation is compressed to 0.4 of its vertical stress here; the rest follows in rebalance().
 /// @param law       of the contacts; its friction is replaced
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force
@@ -14,8 +15,8 @@ namespace isostat
 Snapshot compact(const Cloud &cloud, LawParams law, double friction, const SpecimenSpec &specimen,
                  RunObserver &observer);
 
-/// Raises the friction to its shearing value, keeps the pressure until forces balance (2e-4), then holds the walls and
-/// damps until 5e-5.
+/// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
+/// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5.
 /// @param law  with the friction of shearing
 Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
                    RunObserver &observer);

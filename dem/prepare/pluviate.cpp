@@ -184,7 +184,7 @@ Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how
     {
       if (step % review == 0)
         assembly.time_step =
-            safety * critical_step_bound(falling, assembly.packing(), assembly.box(), assembly.contacts());
+            safety * critical_step_bound(falling, assembly.packing(), assembly.walls(), assembly.contacts());
       assembly.compute_forces();
       if (step % review == review - 1)
         {

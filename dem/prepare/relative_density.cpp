@@ -29,7 +29,7 @@ public:
   double operator()(double friction)
   {
     const Snapshot state = compact(cloud_, law_, friction, specimen_, observer_);
-    const double e = void_ratio(state.box, state.grains.solid_volume());
+    const double e = void_ratio(state.volume(), state.grains.solid_volume());
     ++best.compressions;
     observer_.event(fmt::format("compression {}: preparation friction {:.3f} deg gives e = {:.4f} (target {:.4f})",
                                 best.compressions, degrees(friction), e, target_));

@@ -93,18 +93,29 @@ Specimen prepare(const Scene &scene, RunObserver &observer)
   return specimen;
 }
 
+void check_domain(const Scene &scene, const Snapshot &state)
+{
+  const std::string is = state.cell ? "periodic-cell" : "rigid-box";
+  if (scene.specimen.domain != is)
+    throw InputError(fmt::format("{}: a specimen in a {}, but the scene has specimen.domain = \"{}\". Give the other "
+                                 "domain or another specimen.",
+                                 scene.specimen.file, is, scene.specimen.domain));
+}
+
 Specimen import(const Scene &scene)
 {
   const std::filesystem::path path = scene.specimen.file;
   if (path.extension() == ".h5")
     {
       Specimen specimen = read_specimen(path);
+      check_domain(scene, specimen.state);
       specimen.state.law = scene.contact;
       describe(scene, specimen);
       return specimen;
     }
   Specimen specimen;
   specimen.state = sorted_along_curve(import_tables(path, scene.contact, scene.grading.density));
+  check_domain(scene, specimen.state);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
   describe(scene, specimen);

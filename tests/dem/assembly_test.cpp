@@ -98,7 +98,7 @@ Assembly resumed(const Assembly &stopped)
   Assembly next = make_assembly(stopped.checkpoint(), stopped.measure_energy);
   next.damping = stopped.damping;
   next.tally = stopped.tally;
-  next.set_wall_memory(stopped.wall_memory());
+  next.set_boundary_memory(stopped.boundary_memory());
   return next;
 }
 

@@ -27,7 +27,7 @@ public:
       {
         if (k % 500 == 0)
           assembly.time_step =
-              0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.box(), assembly.contacts());
+              0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
         assembly.compute_forces();
         least_p = std::min(least_p, invariants(assembly.wall_stress()).p);
         axial_ += direction * rate * assembly.time_step;
@@ -101,7 +101,7 @@ TEST(HardCases, RattlersOnlyCarryNoStress)
 {
   const Snapshot s = loosened(test::specimen(500, 10), 0.5);
   Assembly a(s);
-  a.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), a.box(), a.contacts());
+  a.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts());
   EXPECT_TRUE(std::isfinite(a.time_step));
   for (int k = 0; k < 100; ++k)
     {
@@ -138,7 +138,7 @@ TEST(HardCases, TenTimesStifferGrains)
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
     s.grains.set_linear_velocity(i, Vec3::Zero());
   const double soft =
-      critical_step_bound(test::specimen(500, 10).law, s.grains, s.box, Assembly(test::specimen(500, 10)).contacts());
+      critical_step_bound(test::specimen(500, 10).law, s.grains, &s.box, Assembly(test::specimen(500, 10)).contacts());
   Shear shear(s); // the same overlaps now mean ten times the stress
   shear.to(1e-4, 1);
   EXPECT_NEAR(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1);

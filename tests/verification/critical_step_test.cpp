@@ -18,8 +18,8 @@ struct Steps
 
 Steps steps_of(const Assembly &a)
 {
-  return {critical_step_bound(a.law(), a.packing(), a.box(), a.contacts()),
-          critical_step_by_power_iteration(a.law(), a.packing(), a.box(), a.contacts(), 2000)};
+  return {critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts()),
+          critical_step_by_power_iteration(a.law(), a.packing(), a.walls(), a.contacts(), 2000)};
 }
 
 TEST(CriticalStep, ClosedFormOfTwoGrains)

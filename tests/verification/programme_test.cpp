@@ -150,7 +150,7 @@ TEST(RelativeDensity, IsFoundWithinTheTolerance)
   const double tolerance = 0.01 * 0.273;
   const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {}, nobody);
   EXPECT_NEAR(loose.void_ratio, 0.78, tolerance);
-  EXPECT_NEAR(void_ratio(loose.state.box, loose.state.grains.solid_volume()), loose.void_ratio, 1e-12);
+  EXPECT_NEAR(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12);
   std::printf("e = %.4f at %.2f deg after %d compressions\n", loose.void_ratio, std::atan(loose.friction) * 180 / M_PI,
               loose.compressions);
 }
