@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/measure/stiffness.hpp"
+
+#include "dem/error.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace isostat
+{
+namespace
+{
+constexpr double regularisation = 1e-10; ///< of the largest diagonal entry
+
+using Mat3x6 = Eigen::Matrix<double, 3, 6>;
+using Mat6x12 = Eigen::Matrix<double, 6, 12>;
+using Mat12x6 = Eigen::Matrix<double, 12, 6>;
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+double cell_volume(const Snapshot &snapshot) { return snapshot.box.volume(); }
+
+/// One closed contact as an elastic element; its deformation is (v, w2 - w1).
+struct Element
+{
+  std::uint32_t first, second;
+  Vec3 normal;
+  double radius1, radius2, branch; ///< m
+  ContactStiffness k;              ///< yielding and alpha accounted for
+
+  double arm_ratio() const { return branch / (radius1 + radius2); }
+};
+
+Element element(const Snapshot &snapshot, const Contact &c, Sliding sliding)
+{
+  const double r1 = snapshot.grains.radius(c.first), r2 = snapshot.grains.radius(c.second);
+  const LawParams &law = snapshot.law;
+  ContactStiffness k = contact_stiffness(law, r1, r2);
+  if (sliding == Sliding::released)
+    {
+      if (is_sliding(c.history.shear_force.norm(), c.normal_force, law))
+        k.shear = 0;
+      if (is_rolling(c.history.bending_moment.norm(), c.normal_force, rolling_length(law, r1, r2), law))
+        k.rolling = 0;
+    }
+  const double branch = r1 + r2 - c.overlap;
+  k.shear *= (r1 + r2) / branch;
+  return {c.first, c.second, c.history.normal, r1, r2, branch, k};
+}
+
+std::vector<Element> elements_of(const Snapshot &snapshot, Sliding sliding)
+{
+  if (!snapshot.wall_contacts.empty())
+    throw RunFailure("elastic stiffness: the packing touches walls; it is defined for a periodic cell only");
+  std::vector<Element> elements;
+  elements.reserve(snapshot.contacts.size());
+  for (const Contact &c : snapshot.contacts)
+    elements.push_back(element(snapshot, c, sliding));
+  return elements;
+}
+
+Mat3 cross_matrix(const Vec3 &n)
+{
+  Mat3 m;
+  m << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+  return m;
+}
+
+/// eps n as a function of (xx, yy, zz, yz, xz, xy), engineering shear.
+Mat3x6 strain_along(const Vec3 &n)
+{
+  Mat3x6 m;
+  m << n[0], 0, 0, 0, 0.5 * n[2], 0.5 * n[1], //
+      0, n[1], 0, 0.5 * n[2], 0, 0.5 * n[0],  //
+      0, 0, n[2], 0.5 * n[1], 0.5 * n[0], 0;
+  return m;
+}
+
+/// Force and moment per deformation.
+Mat6 rigidity(const Element &e)
+{
+  const Mat3 nn = e.normal * e.normal.transpose(), tangential = Mat3::Identity() - nn;
+  Mat6 d = Mat6::Zero();
+  d.topLeftCorner<3, 3>() = e.k.normal * nn + e.k.shear * tangential;
+  d.bottomRightCorner<3, 3>() = e.k.rolling * tangential + e.k.twisting * nn;
+  return d;
+}
+
+/// Deformation per mean strain.
+Mat6 imposed(const Element &e)
+{
+  Mat6 a = Mat6::Zero();
+  a.topRows<3>() = e.branch * strain_along(e.normal);
+  return a;
+}
+
+/// Deformation per (u1, R1 w1, u2, R2 w2).
+Mat6x12 compatibility(const Element &e)
+{
+  const Mat3 one = Mat3::Identity(), slip = e.arm_ratio() * cross_matrix(e.normal);
+  Mat6x12 b;
+  b << -one, slip, one, slip, Mat3::Zero(), -one / e.radius1, Mat3::Zero(), one / e.radius2;
+  return b;
+}
+
+void drop_unloaded(std::vector<Element> &elements, std::size_t n_grains)
+{
+  std::vector<std::uint32_t> degree(n_grains);
+  do
+    {
+      std::fill(degree.begin(), degree.end(), 0);
+      for (const Element &e : elements)
+        {
+          ++degree[e.first];
+          ++degree[e.second];
+        }
+    }
+  while (std::erase_if(elements, [&](const Element &e) { return std::min(degree[e.first], degree[e.second]) < 2; }));
+}
+
+/// For every grain the grain of its connected cluster that comes first in storage.
+std::vector<std::uint32_t> clusters(const std::vector<Element> &elements, std::size_t n_grains)
+{
+  std::vector<std::uint32_t> parent(n_grains);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i)
+      i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const Element &e : elements)
+    {
+      const std::uint32_t a = root(e.first), b = root(e.second);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::uint32_t i = 0; i < n_grains; ++i)
+    parent[i] = root(i);
+  return parent;
+}
+
+/// Numbers of the unknowns (u, R w) of the grains; -1: held or not there.
+class Unknowns
+{
+public:
+  Unknowns(const std::vector<Element> &elements, std::size_t n_grains, bool rotations)
+      : translation_(n_grains, -1), rotation_(n_grains, -1)
+  {
+    const std::vector<std::uint32_t> cluster = clusters(elements, n_grains);
+    std::vector<char> bears(n_grains, 0);
+    for (const Element &e : elements)
+      bears[e.first] = bears[e.second] = 1;
+    for (std::uint32_t i = 0; i < n_grains; ++i)
+      if (bears[i])
+        {
+          if (cluster[i] != i)
+            translation_[i] = take_three();
+          if (rotations)
+            rotation_[i] = take_three();
+        }
+  }
+
+  int count() const { return count_; }
+  std::array<int, 12> of(const Element &e) const
+  {
+    std::array<int, 12> numbers;
+    const int starts[] = {translation_[e.first], rotation_[e.first], translation_[e.second], rotation_[e.second]};
+    for (int k = 0; k < 12; ++k)
+      numbers[k] = starts[k / 3] < 0 ? -1 : starts[k / 3] + k % 3;
+    return numbers;
+  }
+
+private:
+  int take_three() { return (count_ += 3) - 3; }
+
+  std::vector<int> translation_, rotation_;
+  int count_ = 0;
+};
+
+/// K_uu, lower triangle, regularised.
+SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unknowns &unknowns)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(78 * elements.size() + unknowns.count());
+  for (const Element &e : elements)
+    {
+      const Mat6x12 b = compatibility(e);
+      const Mat12 k = b.transpose() * rigidity(e) * b;
+      const std::array<int, 12> at = unknowns.of(e);
+      for (int i = 0; i < 12; ++i)
+        for (int j = 0; j < 12; ++j)
+          if (at[j] >= 0 && at[i] >= at[j])
+            entries.emplace_back(at[i], at[j], k(i, j));
+    }
+  SparseMatrix matrix(unknowns.count(), unknowns.count());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const double greatest = matrix.diagonal().maxCoeff();
+  matrix.diagonal().array() += regularisation * greatest;
+  return matrix;
+}
+
+/// The displacements and rotations per unit of each mean strain, -K_uu^-1 K_ue.
+Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknowns &unknowns)
+{
+  Eigen::MatrixXd load = Eigen::MatrixXd::Zero(unknowns.count(), 6);
+  if (unknowns.count() == 0)
+    return load;
+  for (const Element &e : elements)
+    {
+      const Mat12x6 share = compatibility(e).transpose() * rigidity(e) * imposed(e);
+      const std::array<int, 12> at = unknowns.of(e);
+      for (int i = 0; i < 12; ++i)
+        if (at[i] >= 0)
+          load.row(at[i]) -= share.row(i);
+    }
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> factors(network_stiffness(elements, unknowns));
+  if (factors.info() != Eigen::Success)
+    throw RunFailure("elastic stiffness: the stiffness matrix of the contact network cannot be factorised");
+  return factors.solve(load);
+}
+
+Mat6 energy(const Element &e, const Mat6 &deformation) { return deformation.transpose() * rigidity(e) * deformation; }
+
+Mat6 checked(const Mat6 &sum, double volume)
+{
+  const Mat6 stiffness = sum / volume;
+  if (!stiffness.allFinite())
+    throw RunFailure("elastic stiffness: not a number; look for such values in normals, overlaps and the cell");
+  return 0.5 * (stiffness + stiffness.transpose());
+}
+} // namespace
+
+Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding)
+{
+  const std::size_t n_grains = snapshot.grains.n_grains();
+  std::vector<Element> elements = elements_of(snapshot, sliding);
+  drop_unloaded(elements, n_grains);
+  if (elements.empty())
+    return Mat6::Zero();
+  const Unknowns unknowns(elements, n_grains, snapshot.law.active().friction);
+  const Eigen::MatrixXd motion = fluctuations(elements, unknowns);
+  Mat6 sum = Mat6::Zero();
+  for (const Element &e : elements)
+    {
+      const std::array<int, 12> at = unknowns.of(e);
+      Mat12x6 own = Mat12x6::Zero();
+      for (int i = 0; i < 12; ++i)
+        if (at[i] >= 0)
+          own.row(i) = motion.row(at[i]);
+      sum += energy(e, imposed(e) + compatibility(e) * own);
+    }
+  return checked(sum, cell_volume(snapshot));
+}
+
+Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
+{
+  const std::vector<Element> elements = elements_of(snapshot, sliding);
+  if (elements.empty())
+    return Mat6::Zero();
+  Mat6 sum = Mat6::Zero();
+  for (const Element &e : elements)
+    sum += energy(e, imposed(e));
+  return checked(sum, cell_volume(snapshot));
+}
+
+Mat3 column_stiffness(const Mat6 &stiffness, int axis)
+{
+  constexpr std::array<std::array<int, 3>, 3> rows{{{0, 5, 4}, {1, 5, 3}, {2, 4, 3}}};
+  return stiffness(rows[axis], rows[axis]);
+}
+
+WaveSpeeds wave_speeds(const Mat6 &stiffness, double density, int axis)
+{
+  const Eigen::SelfAdjointEigenSolver<Mat3> waves(column_stiffness(stiffness, axis), Eigen::EigenvaluesOnly);
+  const Vec3 speed = (waves.eigenvalues().cwiseMax(0) / density).cwiseSqrt();
+  return {speed[2], speed[1], speed[0]};
+}
+} // namespace isostat
