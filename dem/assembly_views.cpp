@@ -42,25 +42,6 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
       if (const double overlap = -wall_gap(packing, box, i, wall); overlap > 0)
         visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
 }
-/// A periodic packing in another frame: x <- q x and all that follows.
-void turn(Snapshot &s, const Mat3 &q)
-{
-  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
-    {
-      s.grains.set_centre(i, q * s.grains.centre(i));
-      s.grains.set_linear_velocity(i, q * s.grains.linear_velocity(i));
-      s.grains.set_angular_velocity(i, q * s.grains.angular_velocity(i));
-    }
-  for (Contact &contact : s.contacts)
-    for (Vec3 *v : {&contact.history.normal, &contact.history.shear_force, &contact.history.bending_moment,
-                    &contact.history.twisting_moment})
-      *v = q * *v;
-  PeriodicCell &cell = *s.cell;
-  cell.edges = q * cell.edges;
-  cell.deformation = q * cell.deformation;
-  cell.strain_step = q * cell.strain_step * q.transpose();
-  cell.rotation = cell.rotation * q.transpose();
-}
 } // namespace
 
 Vec3 Assembly::wall_stress() const
@@ -198,7 +179,7 @@ Snapshot Assembly::snapshot() const
     s.wall_contacts.push_back({i, static_cast<std::uint8_t>(wall), overlap, fn});
   });
   if (s.cell && s.cell->rotation != Mat3::Identity())
-    turn(s, s.cell->rotation);
+    return turned(s, s.cell->rotation);
   return s;
 }
 

@@ -35,7 +35,8 @@ struct DriveState
 
   // servo
   Vec3 servo_step = Vec3::Zero();    ///< of the step before: wall displacement, m per wall, inward positive; of a cell
-                                     ///< compression [-]
+                                     ///< strain [-], tension positive
+  Vec3 servo_shear = Vec3::Zero();   ///< of a cell: strain yz, xz, xy of the step before [-]
   Vec3 servo_modulus = Vec3::Zero(); ///< of a cell: affine modulus along x, y, z, Pa
   double balanced_checks = 0;        ///< consecutive checks in which the stage's balance held
 
@@ -59,8 +60,8 @@ struct DriveState
     f("rate", rate), f("time_step", time_step), f("signed_rate", signed_rate), f("direction", direction),
         f("indicator", indicator);
     f("slope", slope), f("slope_q", slope_q), f("slope_axial", slope_axial);
-    vector(f, "servo_step", servo_step), vector(f, "servo_modulus", servo_modulus),
-        f("balanced_checks", balanced_checks);
+    vector(f, "servo_step", servo_step), vector(f, "servo_shear", servo_shear),
+        vector(f, "servo_modulus", servo_modulus), f("balanced_checks", balanced_checks);
     f("reversals", reversals), f("worst_overshoot", worst_overshoot), f("liquefied", liquefied);
     f("liquefaction_step", liquefaction_step), f("liquefaction_reversals", liquefaction_reversals);
     f("liquefaction_strain", liquefaction_strain), f("greatest_strain_before", greatest_strain_before);

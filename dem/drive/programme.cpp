@@ -172,6 +172,15 @@ private:
     return about_centre(edges);
   }
 
+  /// Strain of this step of a cell that brings the servo's axes to `target` (Pa, compression positive).
+  Mat3 servo_strain(const Vec3 &target, double rate_cap)
+  {
+    Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
+    for (int axis = 0; axis < 3; ++axis)
+      controlled(axis, axis) = servo_axes()[axis];
+    return stress_servo(assembly_, Mat3((-target).asDiagonal()), controlled, rate_cap, state_);
+  }
+
   /// Displacement gradient of this step of a cell.
   Mat3 next_gradient(const Observation &seen)
   {
@@ -183,11 +192,11 @@ private:
     else if (is_shear(stage_.kind))
       {
         const double axial = driven_step(seen);
-        gradient.diagonal() = servo_strain(assembly_, lateral_stresses(), servo_axes(), 4 * state_.rate, state_);
+        gradient = servo_strain(lateral_stresses(), 4 * state_.rate);
         gradient(1, 1) = -axial;
       }
     else if (stage_.kind != StageKind::hold)
-      gradient.diagonal() = servo_strain(assembly_, target(), servo_axes(), servo_cap(seen), state_);
+      gradient = servo_strain(target(), servo_cap(seen));
     state_.cell_strain += gradient.diagonal();
     state_.gamma += gradient(0, 1);
     return gradient;

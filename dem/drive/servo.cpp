@@ -25,23 +25,26 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
   return edges;
 }
 
-Vec3 servo_strain(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
-                  DriveState &state)
+Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
+                  double rate_cap, DriveState &state)
 {
   if (std::fmod(state.steps_in_stage, 20) == 0)
     state.servo_modulus = assembly.affine_moduli();
-  const Vec3 stress = -assembly.stress().diagonal();
+  const Mat3 missing = wanted - assembly.stress();
   const double cap = rate_cap * assembly.time_step;
-  Vec3 strain = Vec3::Zero();
+  Mat3 strain = Mat3::Zero();
+  const auto follow = [&](int i, int j, double modulus, double &step) {
+    if (!controlled(i, j))
+      return;
+    const double towards = modulus > 0 ? missing(i, j) / modulus : std::copysign(cap, missing(i, j));
+    step = 0.8 * step + 0.2 * std::clamp(towards, -cap, cap);
+    strain(i, j) = strain(j, i) = step;
+  };
   for (int axis = 0; axis < 3; ++axis)
-    if (controlled[axis])
-      {
-        const double modulus = state.servo_modulus[axis];
-        const double wanted = modulus > 0 ? (target[axis] - stress[axis]) / modulus : cap;
-        double &step = state.servo_step[axis];
-        step = 0.8 * step + 0.2 * std::clamp(wanted, -cap, cap);
-        strain[axis] = -step;
-      }
+    {
+      follow(axis, axis, state.servo_modulus[axis], state.servo_step[axis]);
+      follow((axis + 1) % 3, (axis + 2) % 3, 2 * 0.4 * state.servo_modulus.mean(), state.servo_shear[axis]);
+    }
   return strain;
 }
 

@@ -17,12 +17,16 @@ namespace isostat
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
                  DriveState &state);
 
-/// The same in a periodic cell: strain of this step along x, y, z, tension positive [-]. Per axis the cell is
-/// compressed by D = 0.8 D' + 0.2 clamp((target - sigma)/M, +-cap) with M the affine modulus along the axis (all grains
-/// following the strain), which is above the true one: the servo is slow rather than unstable. Looked at every 20
-/// steps. tested: tests/verification/cell_programme_test.cpp
-Vec3 servo_strain(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
-                  DriveState &state);
+/// The same in a periodic cell, for any components of stress: strain of this step, tension positive [-]. Along an axis
+/// the cell is strained by
+///     D = 0.8 D' + 0.2 clamp((wanted - sigma)/M, +-cap)
+/// with M the affine modulus (all grains following the strain), which is above the true one: the servo is slow rather
+/// than unstable. It is looked at every 20 steps; shear counts 0.4 of the mean of the three, that of an isotropic net.
+/// @param wanted      stress, Pa, tension positive      @param controlled  symmetric; the other components get 0
+/// @param rate_cap    bound on the strain rate, 1/s
+/// tested: tests/verification/cell_programme_test.cpp, tests/dem/rve_test.cpp
+Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
+                  double rate_cap, DriveState &state);
 
 /// Largest |sigma_k / target_k - 1| over the controlled axes.
 double stress_error(const Assembly &assembly, const Vec3 &target,

@@ -43,4 +43,9 @@ struct Snapshot
 
   double volume() const { return cell ? cell->volume() : box.volume(); }
 };
+
+/// A periodic packing in another frame, which is then both its own and the laboratory: x <- q x and all that follows.
+/// @param q  a rotation
+/// tested: tests/dem/rve_test.cpp
+Snapshot turned(Snapshot snapshot, const Mat3 &q);
 } // namespace isostat

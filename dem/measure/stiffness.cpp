@@ -23,7 +23,7 @@ using Mat12x6 = Eigen::Matrix<double, 12, 6>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-double cell_volume(const Snapshot &snapshot) { return snapshot.box.volume(); }
+double cell_volume(const Snapshot &snapshot) { return snapshot.volume(); }
 
 /// One closed contact as an elastic element; its deformation is (v, w2 - w1).
 struct Element

@@ -52,6 +52,11 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   double *x = packing.position.data() + 4 * begin, *v = packing.velocity.data() + 4 * begin,
          *w = packing.spin.data() + 4 * begin;
   action += 8 * begin;
+  V4 columns[3][4 / width]; // of A - I
+  if constexpr (Affine)
+    for (int k = 0; k < 3; ++k)
+      for (std::size_t half = 0; half < 4; half += width)
+        columns[k][half / width] = hn::Load(d, affine->columns + 4 * k + half);
   for (std::size_t i = begin; i < end; ++i, x += 4, v += 4, w += 4, action += 8)
     {
       const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
@@ -74,7 +79,7 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
             {
               V4 way = hn::Mul(step, speed); // the sum of small steps first
               for (int k = 0; k < 3; ++k)
-                way = hn::MulAdd(hn::Load(d, affine->columns + 4 * k + half), hn::Set(d, at[k]), way);
+                way = hn::MulAdd(columns[k][half / width], hn::Set(d, at[k]), way);
               x_new = hn::Add(way, hn::Load(d, x + half));
             }
           hn::Store(x_new, d, x + half);

@@ -11,15 +11,16 @@ namespace
 {
 using Index3 = std::array<int, 3>;
 
-/// Grains sorted into cells of the wrapped coordinates: grains of cell c are order[begin[c] .. begin[c+1]).
+/// Grains sorted into grid cells by their wrapped places: grains of cell c are order[begin[c] .. begin[c+1]).
 struct WrappedCells
 {
-  Mat3 edges, to_fraction;
+  Mat3 edges;
   Index3 n;
   std::vector<Eigen::Vector3i> turns; ///< whole edges that were taken off each grain's place
-  std::vector<Vec3> place;            ///< in the cell, m
   std::vector<Index3> cell;
   std::vector<std::uint32_t> begin, order;
+  AlignedVector<double> sorted;    ///< [x y z r] in order of `order`, places in the cell
+  std::vector<std::uint32_t> rank; ///< of each grain in `order`
 
   int index(int i, int j, int k) const { return (i * n[1] + j) * n[2] + k; }
 };
@@ -42,18 +43,19 @@ Index3 cells_along(const Mat3 &to_fraction, double least, std::size_t n_grains)
 WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double least)
 {
   const std::size_t n_grains = packing.n_grains();
+  const Mat3 to_fraction = edges.inverse();
   WrappedCells cells;
   cells.edges = edges;
-  cells.to_fraction = edges.inverse();
-  cells.n = cells_along(cells.to_fraction, least, n_grains);
+  cells.n = cells_along(to_fraction, least, n_grains);
   cells.begin.assign(cells.n[0] * cells.n[1] * cells.n[2] + 1, 0);
   std::vector<int> cell_of(n_grains);
+  std::vector<Vec3> place(n_grains);
   for (std::size_t i = 0; i < n_grains; ++i)
     {
-      const Vec3 fraction = cells.to_fraction * packing.centre(i);
+      const Vec3 fraction = to_fraction * packing.centre(i);
       const Vec3 whole = fraction.array().floor();
       cells.turns.push_back(whole.cast<int>());
-      cells.place.push_back(packing.centre(i) - edges * whole);
+      place[i] = packing.centre(i) - edges * whole;
       Index3 c;
       for (int k = 0; k < 3; ++k)
         c[k] = std::clamp(static_cast<int>((fraction[k] - whole[k]) * cells.n[k]), 0, cells.n[k] - 1);
@@ -64,9 +66,17 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double l
   for (std::size_t c = 1; c < cells.begin.size(); ++c)
     cells.begin[c] += cells.begin[c - 1];
   cells.order.resize(n_grains);
+  cells.rank.resize(n_grains);
+  cells.sorted.resize(4 * n_grains);
   std::vector<std::uint32_t> next(cells.begin.begin(), cells.begin.end() - 1);
   for (std::size_t i = 0; i < n_grains; ++i)
-    cells.order[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
+    {
+      const std::uint32_t at = next[cell_of[i]]++;
+      cells.order[at] = static_cast<std::uint32_t>(i);
+      cells.rank[i] = at;
+      std::copy_n(place[i].data(), 3, &cells.sorted[4 * at]);
+      cells.sorted[4 * at + 3] = packing.radius(i);
+    }
   return cells;
 }
 
@@ -76,34 +86,47 @@ struct Partner
   ImageCode image;
 };
 
-/// Appends grains after `i` in one cell whose nearest image is within reach of it.
-void collect_in_cell(const Packing &packing, const WrappedCells &cells, std::uint32_t i, int cell, double skin,
+/// A grid row beside another one, through the face of the cell or not.
+struct Neighbour
+{
+  int at, shift;
+};
+
+Neighbour beside(int cell, int step, int n)
+{
+  if (n == 1)
+    return {0, step};
+  const int at = cell + step;
+  return at < 0 ? Neighbour{n - 1, -1} : at == n ? Neighbour{0, 1} : Neighbour{at, 0};
+}
+
+/// Appends grains after `i` of one grid cell, seen through `shift` faces, that are within reach of it.
+void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const Eigen::Vector3i &shift, double skin,
                      std::vector<Partner> &out)
 {
+  const Vec3 offset = cells.edges * shift.cast<double>();
+  const double *p = &cells.sorted[4 * cells.rank[i]];
+  const double x = p[0] - offset[0], y = p[1] - offset[1], z = p[2] - offset[2], reach_i = p[3] + skin;
   for (std::uint32_t at = cells.begin[cell]; at < cells.begin[cell + 1]; ++at)
     {
+      const double *q = &cells.sorted[4 * at];
+      const double dx = q[0] - x, dy = q[1] - y, dz = q[2] - z, reach = reach_i + q[3];
       const std::uint32_t j = cells.order[at];
-      if (j <= i)
-        continue;
-      const Vec3 between = cells.place[j] - cells.place[i];
-      const Vec3 whole = (cells.to_fraction * between).array().round();
-      const double reach = packing.radius(i) + packing.radius(j) + skin;
-      if ((between - cells.edges * whole).squaredNorm() < reach * reach)
-        out.push_back({j, image_code(cells.turns[i] - cells.turns[j] - whole.cast<int>())});
+      if (j > i && dx * dx + dy * dy + dz * dz < reach * reach)
+        out.push_back({j, image_code(cells.turns[i] - cells.turns[j] + shift)});
     }
 }
 
-void collect_partners(const Packing &packing, const WrappedCells &cells, std::uint32_t i, double skin,
-                      std::vector<Partner> &out)
+void collect_partners(const WrappedCells &cells, std::uint32_t i, double skin, std::vector<Partner> &out)
 {
-  const Index3 &c = cells.cell[i], &n = cells.n;
-  const auto around = [&](int k) { return n[k] == 1 ? 0 : 1; };
-  for (int a = -around(0); a <= around(0); ++a)
-    for (int b = -around(1); b <= around(1); ++b)
-      for (int d = -around(2); d <= around(2); ++d)
+  const Index3 &c = cells.cell[i];
+  for (int a = -1; a <= 1; ++a)
+    for (int b = -1; b <= 1; ++b)
+      for (int d = -1; d <= 1; ++d)
         {
-          const int cell = cells.index((c[0] + a + n[0]) % n[0], (c[1] + b + n[1]) % n[1], (c[2] + d + n[2]) % n[2]);
-          collect_in_cell(packing, cells, i, cell, skin, out);
+          const Neighbour x = beside(c[0], a, cells.n[0]), y = beside(c[1], b, cells.n[1]),
+                          z = beside(c[2], d, cells.n[2]);
+          collect_in_cell(cells, i, cells.index(x.at, y.at, z.at), {x.shift, y.shift, z.shift}, skin, out);
         }
 }
 } // namespace
@@ -119,7 +142,7 @@ std::pair<std::vector<ContactList::Pair>, std::vector<ImageCode>> find_pairs(con
   for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
     {
       partners.clear();
-      collect_partners(packing, cells, i, skin, partners);
+      collect_partners(cells, i, skin, partners);
       std::sort(partners.begin(), partners.end(), [](const Partner &a, const Partner &b) { return a.grain < b.grain; });
       for (const Partner &partner : partners)
         {
