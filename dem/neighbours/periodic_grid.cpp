@@ -107,12 +107,14 @@ void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const
   const Vec3 offset = cells.edges * shift.cast<double>();
   const double *p = &cells.sorted[4 * cells.rank[i]];
   const double x = p[0] - offset[0], y = p[1] - offset[1], z = p[2] - offset[2], reach_i = p[3] + skin;
-  for (std::uint32_t at = cells.begin[cell]; at < cells.begin[cell + 1]; ++at)
+  const auto end = cells.order.begin() + cells.begin[cell + 1];
+  for (auto later = std::upper_bound(cells.order.begin() + cells.begin[cell], end, i); later != end; ++later)
     {
+      const auto at = static_cast<std::size_t>(later - cells.order.begin());
       const double *q = &cells.sorted[4 * at];
       const double dx = q[0] - x, dy = q[1] - y, dz = q[2] - z, reach = reach_i + q[3];
-      const std::uint32_t j = cells.order[at];
-      if (j > i && dx * dx + dy * dy + dz * dz < reach * reach)
+      const std::uint32_t j = *later;
+      if (dx * dx + dy * dy + dz * dz < reach * reach)
         out.push_back({j, image_code(cells.turns[i] - cells.turns[j] + shift)});
     }
 }
