@@ -4,6 +4,7 @@
 #include "dem/error.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
@@ -21,6 +22,7 @@ using Mat3x6 = Eigen::Matrix<double, 3, 6>;
 using Mat6x12 = Eigen::Matrix<double, 6, 12>;
 using Mat12x6 = Eigen::Matrix<double, 12, 6>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
+constexpr int most_factorised = 9000; // unknowns; fill-in grows fast in three periodic directions
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 double cell_volume(const Snapshot &snapshot) { return snapshot.volume(); }
@@ -217,7 +219,17 @@ Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknown
         if (at[i] >= 0)
           load.row(at[i]) -= share.row(i);
     }
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> factors(network_stiffness(elements, unknowns));
+  const SparseMatrix network = network_stiffness(elements, unknowns);
+  if (unknowns.count() > most_factorised)
+    {
+      // stiffness is evaluated as energy: what is left of the residual enters squared
+      Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> iteration(network);
+      iteration.setTolerance(1e-8);
+      Eigen::MatrixXd motion = iteration.solve(load);
+      if (iteration.info() == Eigen::Success)
+        return motion;
+    }
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> factors(network);
   if (factors.info() != Eigen::Success)
     throw RunFailure("elastic stiffness: the stiffness matrix of the contact network cannot be factorised");
   return factors.solve(load);

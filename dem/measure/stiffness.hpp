@@ -40,8 +40,9 @@ enum class Sliding
 ///       looked at. history.normal is the normal, whatever the law
 /// @return symmetric, no negative eigenvalue beyond rounding, C <= affine_stiffness; zero without contacts
 /// @throws RunFailure  the snapshot has walls' contacts; the factorisation fails or something is not a number
-/// cost a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6 and 0.9 s at 6.8;
-///      9 s (130 MB) and 46 s (270 MB) for 4,000: fill-in makes it a measure for RVEs
+/// cost up to 1,500 grains a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6
+///      and 0.9 s at 6.8; above, where fill-in takes over (4,000 grains: 9 to 46 s), conjugate gradients: 0.8 s for
+///      4,000 at Z = 4.5; LDL^T again should they not converge
 /// tested: tests/dem/measure/stiffness_test.cpp (lattices, column in series, dense pseudo-inverse, bounds, rotation,
 /// rattlers, yielding)
 Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
