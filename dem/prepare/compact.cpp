@@ -8,7 +8,7 @@ namespace isostat
 namespace
 {
 constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
-constexpr double k0_start = 0.4; // of the vertical stress: isotropic pressure from which K0 consolidation begins
+constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
 /// Runs servo stages on a state and returns what they end with.
 Snapshot run_stages(const Snapshot &initial, const std::vector<Stage> &stages, double damping,

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The stages of a test in a periodic cell: strains and stresses that are to be kept are kept, loads turn where they
+// should, a stopped run goes on to the same bits.
+#include "tests/support/periodic.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+/// Keeps what a test looks at.
+struct Watcher : RunObserver
+{
+  struct Row
+  {
+    Observation seen;
+    Mat3 stress; ///< compression positive
+    double volume;
+  };
+  void record(const Assembly &a, const DriveState &, const Observation &seen, bool) override
+  {
+    rows.push_back({seen, -a.stress(), a.volume()});
+  }
+  bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
+  double greatest_change_of_volume() const
+  {
+    double worst = 0;
+    for (const Row &row : rows)
+      worst = std::max(worst, std::abs(row.volume / rows.front().volume - 1));
+    return worst;
+  }
+  std::vector<Row> rows;
+  std::uint64_t stop_at = 0;
+};
+
+Stage stage_of(StageKind kind, double strain)
+{
+  Stage stage;
+  stage.kind = kind;
+  stage.strain = strain;
+  stage.reversals_after_liquefaction = 1;
+  return stage;
+}
+
+struct Result
+{
+  Watcher watcher;
+  DriveState state;
+  Snapshot end;
+};
+
+OutputSpec recorded_every(std::uint64_t steps)
+{
+  OutputSpec output;
+  output.record_steps = steps;
+  return output;
+}
+
+Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 200)
+{
+  Result result;
+  Assembly assembly(initial);
+  run_programme({}, {}, recorded_every(records), {stage}, assembly, result.state, result.watcher);
+  result.end = assembly.checkpoint();
+  return result;
+}
+
+const Snapshot &medium() { return test::cell_specimen(500, 8); }
+} // namespace
+
+TEST(CellSpecimen, IsAtItsPressureAndInBalance)
+{
+  Assembly assembly(medium());
+  assembly.time_step = 1e-9;
+  assembly.compute_forces();
+  const Mat3 stress = -assembly.stress();
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(stress(k, k) / 200e3, 1, 3e-3);
+  EXPECT_LT(assembly.unbalanced_force_ratio(), 2e-4);
+}
+
+TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
+{
+  test::CellRecipe recipe;
+  recipe.consolidation = "k0";
+  const Snapshot specimen = test::prepare_in_cell(recipe);
+  Assembly assembly(specimen);
+  assembly.time_step = 1e-9;
+  assembly.compute_forces();
+  const Mat3 stress = -assembly.stress();
+  const double k0 = 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1);
+  std::printf("K0 = %.3f\n", k0);
+  EXPECT_NEAR(stress(1, 1) / 200e3, 1, 3e-3);
+  EXPECT_GT(k0, 0.3);
+  EXPECT_LT(k0, 0.8);
+}
+
+TEST(CellK0, OnlyTheVerticalEdgeMoves)
+{
+  Stage stage = stage_of(StageKind::k0_compress, 0);
+  stage.pressure = 300e3;
+  stage.balance = 2e-3;
+  const Result result = run(stage, medium());
+  const Mat3 before = medium().cell->edges, after = result.end.cell->edges;
+  EXPECT_NEAR(after(0, 0) / before(0, 0), 1, 1e-12);
+  EXPECT_NEAR(after(2, 2) / before(2, 2), 1, 1e-12);
+  EXPECT_LT(after(1, 1), before(1, 1));
+  EXPECT_NEAR(result.watcher.rows.back().stress(1, 1) / 300e3, 1, 0.01);
+}
+
+TEST(CellUndrained, TriaxialCompressionKeepsVolume)
+{
+  const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), medium());
+  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
+  EXPECT_NEAR(result.watcher.rows.back().seen.axial, 5e-3, 1e-6);
+  EXPECT_GT(result.watcher.rows.back().seen.q, 20e3);
+  EXPECT_EQ(result.end.cell->rotation, Mat3::Identity());
+}
+
+TEST(CellDrained, LateralStressesStay)
+{
+  const Result result = run(stage_of(StageKind::drained, 3e-3), medium());
+  double worst = 0;
+  for (const auto &row : result.watcher.rows)
+    worst = std::max({worst, std::abs(row.stress(0, 0) / 200e3 - 1), std::abs(row.stress(2, 2) / 200e3 - 1)});
+  std::printf("drained: largest deviation of a lateral stress %.2e, q at the end %.1f kPa\n", worst,
+              result.watcher.rows.back().seen.q / 1e3);
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(result.watcher.rows.back().seen.q, 60e3);
+}
+
+TEST(CellConstantP, MeanStressStays)
+{
+  const Result result = run(stage_of(StageKind::constant_p, 3e-3), medium());
+  double worst = 0;
+  for (const auto &row : result.watcher.rows)
+    worst = std::max(worst, std::abs(row.seen.p / 200e3 - 1));
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(result.watcher.rows.back().seen.q, 50e3);
+}
+
+TEST(CellSimpleShear, OnlyGammaMoves)
+{
+  const Result result = run(stage_of(StageKind::undrained_simple_shear, 5e-3), medium());
+  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
+  const PeriodicCell &cell = *result.end.cell;
+  Mat3 sheared = Mat3::Identity();
+  sheared(0, 1) = result.state.gamma;
+  EXPECT_LT((cell.rotation * cell.edges - sheared * medium().cell->edges).norm(), 1e-9 * cell.edges.norm());
+  EXPECT_NEAR(result.state.gamma, 5e-3, 1e-6);
+  EXPECT_GT(result.watcher.rows.back().seen.tau, 10e3);
+  for (const auto &row : result.watcher.rows)
+    EXPECT_EQ(row.seen.axial, 0);
+}
+
+TEST(CellSimpleShear, TurnsAtItsStressRatio)
+{
+  Stage stage = stage_of(StageKind::undrained_cyclic_simple_shear, 0);
+  stage.stress_ratio = 0.12;
+  stage.max_cycles = 3;
+  const Result result = run(stage, medium(), 20);
+  std::printf("cyclic simple shear: %g reversals, overshoot %.1f Pa, volume within %.1e\n", result.state.reversals,
+              result.state.worst_overshoot, result.watcher.greatest_change_of_volume());
+  EXPECT_EQ(result.state.reversals, 6);
+  EXPECT_GE(result.state.worst_overshoot, 0);
+  EXPECT_LT(result.state.worst_overshoot, 500);
+  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
+  double greatest = 0;
+  for (const auto &row : result.watcher.rows)
+    greatest = std::max(greatest, std::abs(row.seen.tau));
+  EXPECT_NEAR(greatest, 0.12 * 200e3, 600);
+}
+
+TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)
+{
+  const Stage stage = stage_of(StageKind::undrained_simple_shear, 2e-3);
+  const Result whole = run(stage, medium());
+  Assembly first(medium());
+  DriveState state;
+  Watcher watcher;
+  watcher.stop_at = whole.end.step / 2;
+  ASSERT_EQ(run_programme({}, {}, recorded_every(200), {stage}, first, state, watcher), RunOutcome::interrupted);
+  Assembly second(first.checkpoint());
+  watcher.stop_at = 0;
+  ASSERT_EQ(run_programme({}, {}, recorded_every(200), {stage}, second, state, watcher), RunOutcome::finished);
+  const Snapshot end = second.checkpoint();
+  EXPECT_EQ(end.grains.position, whole.end.grains.position);
+  EXPECT_EQ(end.grains.spin, whole.end.grains.spin);
+  EXPECT_EQ(end.cell->edges, whole.end.cell->edges);
+  EXPECT_EQ(end.cell->rotation, whole.end.cell->rotation);
+}
+} // namespace isostat
