@@ -14,7 +14,7 @@ using Index3 = std::array<int, 3>;
 /// Grains sorted into grid cells by their wrapped places: grains of cell c are order[begin[c] .. begin[c+1]).
 struct WrappedCells
 {
-  Mat3 edges;
+  std::array<Vec3, 27> offset; ///< of images through -1, 0, 1 faces along each edge, m
   Index3 n;
   std::vector<Eigen::Vector3i> turns; ///< whole edges that were taken off each grain's place
   std::vector<Index3> cell;
@@ -45,7 +45,8 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double l
   const std::size_t n_grains = packing.n_grains();
   const Mat3 to_fraction = edges.inverse();
   WrappedCells cells;
-  cells.edges = edges;
+  for (int image = 0; image < 27; ++image)
+    cells.offset[image] = edges * Vec3(image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1);
   cells.n = cells_along(to_fraction, least, n_grains);
   cells.begin.assign(cells.n[0] * cells.n[1] * cells.n[2] + 1, 0);
   std::vector<int> cell_of(n_grains);
@@ -104,7 +105,7 @@ Neighbour beside(int cell, int step, int n)
 void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const Eigen::Vector3i &shift, double skin,
                      std::vector<Partner> &out)
 {
-  const Vec3 offset = cells.edges * shift.cast<double>();
+  const Vec3 &offset = cells.offset[9 * shift[0] + 3 * shift[1] + shift[2] + 13];
   const double *p = &cells.sorted[4 * cells.rank[i]];
   const double x = p[0] - offset[0], y = p[1] - offset[1], z = p[2] - offset[2], reach_i = p[3] + skin;
   const auto end = cells.order.begin() + cells.begin[cell + 1];

@@ -18,7 +18,7 @@ namespace
 // Tight skin, of the smallest radius. Gaps between grains that have just parted are as small as overlaps: a skin much
 // smaller than this one saves few pairs and is used up at once.
 constexpr double initial_skin = 0.005, least_skin = 0.001, greatest_skin = 0.3;
-constexpr double wide_over_tight = 8;
+constexpr double wide_over_tight = 16;
 constexpr std::uint64_t frequent = 60, rare = 240; // steps between selections
 } // namespace
 
