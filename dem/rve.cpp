@@ -18,7 +18,8 @@ namespace
 {
 constexpr double rate_interval = 50;
 constexpr std::uint64_t servo_interval = 20;
-constexpr int settled = 3; ///< looks in a row with stresses on target
+constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
+constexpr int settled = 3;                          ///< looks in a row with stresses on target
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
 Mat3 logarithm(const Mat3 &h) { return h - 0.5 * h * h + h * h * h / 3; }
@@ -60,6 +61,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   update_time_step(settings_.motion, true, assembly_, drive_);
   assembly_.compute_forces();
   drive_.p0 = mean_stress();
+  keep_safe();
 }
 
 double Rve::mean_stress() const { return -assembly_.stress().trace() / 3; }
@@ -145,26 +147,41 @@ void Rve::run_mixed(const MixedIncrement &own)
     }
 }
 
+void Rve::roll_back()
+{
+  const RveState safe = safe_;
+  const std::vector<Mat3> done = std::move(since_safe_);
+  restore(safe);
+  for (const Mat3 &own_gradient : done)
+    run_strain(own_gradient); // as before, to the bit
+  since_safe_ = done;
+}
+
 template <typename Run>
 RveResponse Rve::guarded(double size, const Run &run)
 {
   RveResponse response;
   const double before = assembly_.stress().trace() / 3;
-  const RveState safe = save();
   const std::uint64_t steps = cost_.steps;
   const auto begin = std::chrono::steady_clock::now();
   try
     {
       if (!(size <= settings_.greatest_increment))
-        throw RunFailure(fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.",
-                                     size, settings_.greatest_increment));
-      run();
+        response.reason =
+            fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
+                        settings_.greatest_increment);
+      else
+        run();
     }
   catch (const RunFailure &failure)
     {
-      restore(safe);
-      response.outcome = RveOutcome::rejected;
+      roll_back();
       response.reason = failure.what();
+    }
+  if (!response.reason.empty())
+    {
+      response.outcome = RveOutcome::rejected;
+      cost_.steps = steps;
     }
   cost_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ++cost_.advances;
@@ -182,6 +199,9 @@ RveResponse Rve::strain(const Mat3 &displacement_gradient, bool constant_volume)
     if (constant_volume)
       own -= own.trace() / 3 * Mat3::Identity();
     run_strain(own);
+    since_safe_.push_back(own);
+    if (assembly_.step() - safe_.grains.step > steps_between_copies)
+      keep_safe();
   });
 }
 
@@ -198,14 +218,23 @@ RveResponse Rve::advance(const MixedIncrement &increment)
       throw RunFailure(
           "mixed control works along the axes of the specimen: it wants an element whose frame is identity");
     run_mixed(increment);
+    keep_safe();
   });
 }
 
 RveState Rve::save() const { return {assembly_.save(), drive_}; }
 
+void Rve::keep_safe()
+{
+  safe_ = save();
+  since_safe_.clear();
+}
+
 void Rve::restore(const RveState &state)
 {
   assembly_.restore(state.grains);
   drive_ = state.drive;
+  safe_ = state;
+  since_safe_.clear();
 }
 } // namespace isostat

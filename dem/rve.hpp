@@ -117,6 +117,8 @@ public:
   const Assembly &assembly() const { return assembly_; }
 
 private:
+  void keep_safe();
+  void roll_back();
   template <typename Run>
   RveResponse guarded(double size, const Run &run);
   RveResponse strain(const Mat3 &displacement_gradient, bool constant_volume);
@@ -131,5 +133,8 @@ private:
   Assembly assembly_;
   DriveState drive_;
   RveCost cost_;
+  /// What a failed increment goes back to: a copy made every 500 steps, and the strains taken since, to be run again.
+  RveState safe_;
+  std::vector<Mat3> since_safe_;
 };
 } // namespace isostat

@@ -278,6 +278,27 @@ TEST(Rve, AnIncrementTooLargeIsRejectedAndNothingChanges)
   EXPECT_EQ(rve.undrained(increment(2)).outcome, RveOutcome::accepted);
 }
 
+TEST(Rve, AFailureOnTheWayGoesBackToTheStateBefore)
+{
+  RveSettings few;
+  few.greatest_steps = 2000;
+  Rve rve(specimen(), few), other(specimen(), few);
+  for (int k = 0; k < 12; ++k)
+    {
+      run(rve, k, k + 1);
+      run(other, k, k + 1);
+      MixedIncrement far; // not there within 2,000 steps: fails half-way
+      far.controlled(1, 1) = true;
+      far.stress(1, 1) = -500e6;
+      const RveState before = rve.save();
+      const RveResponse response = rve.advance(far);
+      ASSERT_EQ(response.outcome, RveOutcome::rejected);
+      EXPECT_NE(response.reason.find("2000 steps"), std::string::npos) << response.reason;
+      expect_same_bits(rve.save(), before);
+      EXPECT_EQ(rve.cost().steps, other.cost().steps);
+    }
+}
+
 TEST(Rve, MixedControlKeepsStressesOfADrainedTest)
 {
   Rve rve(specimen(), {});
