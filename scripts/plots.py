@@ -96,7 +96,8 @@ def fabric(run):
     if not any(run.has(name) for name in ("Fxx", "Fyy", "Fzz", "F_yx", "F_yz")):
         return None
     figure, (top, bottom) = two_rows(run)
-    curves(run, top, [("Fyy", r"$F_{yy}$ (vertical)" if run.shear else r"$F_{yy}$ (axial)", {"color": BLUE, "zorder": 3}),
+    along_y = "vertical" if run.shear else "axial"
+    curves(run, top, [("Fyy", rf"$F_{{yy}}$ ({along_y})", {"color": BLUE, "zorder": 3}),
                       ("Fxx", r"$F_{xx}$", {"color": ORANGE}),
                       ("Fzz", r"$F_{zz}$", {"color": GREEN, "linewidth": 0.7})], steady=True)
     curves(run, bottom, [("F_yx", r"$F_{[y-x]}$", {"color": ORANGE}),
