@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <regex>
 
 namespace isostat
 {
@@ -61,6 +62,12 @@ double consolidation_pressure(const Scene &scene, std::size_t stage)
   return pressure;
 }
 
+/// A title without the CSR of the scene, which is not that of the runs: "..., CSR = 0.15".
+std::string without_ratio(const std::string &title)
+{
+  return std::regex_replace(title, std::regex(",? *CSR *=? *[0-9.]+"), "");
+}
+
 /// First line in which two texts differ, as it stands in the second.
 std::string difference(const std::string &one, const std::string &other)
 {
@@ -103,6 +110,7 @@ Campaign::Campaign(Scene scene, const CampaignPlan &plan, fs::path folder)
     throw InputError(fmt::format("{}: specimen.file is one specimen, which no seed changes. Give --realisations 1, or "
                                  "let the scene prepare its specimens.",
                                  shared_.title));
+  shared_.title = without_ratio(shared_.title);
   Stage &cyclic = shared_.stages[stage_];
   cyclic.stress_ratio = Stage{}.stress_ratio; // what differs between the runs is not part of what they share
   cyclic.deviator_amplitude = Stage{}.deviator_amplitude;
