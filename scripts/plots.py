@@ -4,303 +4,47 @@
 
     plots.py RESULTS_FOLDER [--out DIR]          default DIR: RESULTS_FOLDER/figures
 
-fig_stress_path.png        (a) q against p', (b) q against axial strain
+fig_stress_path.png        (a) q against p', (b) q against axial strain;
+                           in simple shear tau against (a) sigma'_v, (b) p', (c) gamma
 fig_redundancy.png         (a) redundancy index I_R, (b) p'/p0'
 fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
 fig_fabric.png             (a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]
+fig_principal_stress.png   simple shear only: direction of the major principal stress against (a) cycles or gamma,
+                           (b) tau / sigma'_v
 
 Stresses and strains are positive in compression. Cyclic tests are drawn against the number of cycles: reversals count
 half a cycle each, and inside a half cycle the strain, which runs one way there, says how far it has come. Monotonic
-tests are drawn against axial strain. If a cyclic test has fewer cycles after the onset of liquefaction than before,
+tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles after the onset of liquefaction than before,
 they get half of the x axis, and its label says so. A column that is missing costs its curve or panel, with a note.
 """
 import argparse
-import csv
-import json
 import pathlib
-import re
 import sys
-import warnings
 
 import numpy as np
-import matplotlib
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.ticker import MaxNLocator  # noqa: E402
-
-LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
-FLOOR = 1e-4  # lowest p'/p0' that is drawn
-MEDIAN_ROWS = 21
-UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "%": 1e-2}
-
-# Colours that colour-blind readers can tell apart (Okabe and Ito).
-BLACK, ORANGE, BLUE, GREEN, RED, GREY = "#1a1a1a", "#e69f00", "#0072b2", "#009e73", "#d55e00", "#7f7f7f"
-
-STYLE = {
-    "figure.dpi": 100,
-    "savefig.dpi": 220,
-    "font.size": 9,
-    "axes.labelsize": 9.5,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.5,
-    "axes.axisbelow": True,
-    "xtick.direction": "out",
-    "ytick.direction": "out",
-    "xtick.major.width": 0.7,
-    "ytick.major.width": 0.7,
-    "legend.frameon": False,
-    "legend.fontsize": 8.5,
-    "lines.linewidth": 1.0,
-    "lines.solid_joinstyle": "round",
-    "mathtext.fontset": "dejavusans",
-    "agg.path.chunksize": 20000,
-}
-
-
-class BadInput(Exception):
-    """The folder holds no history that can be drawn."""
-
-
-def note(text):
-    print(f"plots: {text}", file=sys.stderr)
-
-
-# --- reading ---------------------------------------------------------------------------------------------------------
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return float("nan")
-
-
-def read_history(path):
-    """Columns of history.csv by name, in SI; the header's cells are `name (unit)`."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from error
-    if len(rows) < 2:
-        raise BadInput(f"{path}: no data rows")
-    width = len(rows[0])
-    body = [row for row in rows[1:] if len(row) == width]
-    if len(body) < len(rows) - 1:
-        note(f"{path.name}: {len(rows) - 1 - len(body)} incomplete rows left out")
-    columns = {}
-    for index, cell in enumerate(rows[0]):
-        name, unit = re.fullmatch(r"\s*(.*?)\s*(?:\(([^()]*)\))?\s*", cell).groups()
-        columns[name] = np.array([number(row[index]) for row in body]) * UNITS.get(unit, 1.0)
-    return columns
-
-
-def read_summary(path):
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        note(f"{path.name} cannot be read ({error}); p0 and the onset of liquefaction are taken from the history")
-        return {}
-
-
-class Run:
-    """The shear stages of a run: columns, p0 (Pa), onset of liquefaction (row among the shear rows, or None)."""
-
-    def __init__(self, folder):
-        summary = read_summary(folder / "summary.json")
-        columns = read_history(folder / "history.csv")
-        total = len(next(iter(columns.values())))
-        first = int(summary.get("shear_stage_first_row") or 0)
-        if not 0 <= first < total:
-            raise BadInput(f"summary.json: shear_stage_first_row = {first}, but history.csv has {total} rows")
-        self.columns = {name: values[first:] for name, values in columns.items()}
-        self.n_rows = total - first
-        for name in ("p", "q", "eps_y"):
-            if not self.has(name):
-                raise BadInput(f"history.csv: column `{name}` is missing or empty")
-        self.title = summary.get("title") or folder.resolve().name
-        self.p0 = float(summary.get("p0") or self["p"][0])
-        self.p_ratio = self["p"] / self.p0
-        self.onset, self.onset_cycle = self._find_onset(summary, first)
-        self.cyclic = self.has("reversals") and np.nanmax(self["reversals"]) >= 1
-        self.progress = self._cycles() if self.cyclic else 100 * self["eps_y"]
-        self.progress_label = "Number of cycles" if self.cyclic else r"Axial strain $\varepsilon_1$ (%)"
-
-    def has(self, name):
-        return name in self.columns and np.isfinite(self.columns[name]).any()
-
-    def __getitem__(self, name):
-        return self.columns[name]
-
-    def _find_onset(self, summary, first):
-        if "liquefaction" in summary:
-            event = summary["liquefaction"]
-            if not event or event.get("row") is None:
-                return None, None
-            return min(max(int(event["row"]) - first, 0), self.n_rows - 1), event.get("cycle")
-        below = np.flatnonzero(self.p_ratio < LIQUEFIED)
-        return (int(below[0]), None) if below.size else (None, None)
-
-    def _cycles(self):
-        """Cycles as a running number: first reversal 0.25, then half a cycle from each reversal to the next."""
-        strain = self["eps_y"]
-        reversals = np.nan_to_num(self["reversals"]).astype(int)
-        reversals -= reversals[0]
-        starts = np.flatnonzero(np.diff(reversals, prepend=-1))
-        cycles = np.zeros(self.n_rows)
-        spans = {}
-        for start, end in zip(starts, [*starts[1:], self.n_rows]):
-            count = reversals[start]
-            length = 0.25 if count == 0 else 0.5
-            begin = 0.0 if count == 0 else 0.25 + 0.5 * (count - 1)
-            moved = np.maximum.accumulate(np.abs(strain[start:end] - strain[start]))
-            span = abs(strain[end] - strain[start]) if end < self.n_rows else 0.0
-            if end == self.n_rows:  # unfinished: as long as the longest of the last two half cycles, at least
-                span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), moved[-1])
-            spans[count] = span
-            cycles[start:end] = begin + length * np.clip(moved / span if span > 0 else 0 * moved, 0, 1)
-        return cycles
-
-
-# --- drawing ---------------------------------------------------------------------------------------------------------
-
-
-def panel_letter(axes, letter):
-    axes.set_title(f"({letter})", loc="left", fontsize=9.5, fontweight="bold", pad=5)
-
-
-def mark_level(axes, level, text, colour=GREY):
-    """A dashed horizontal line with its meaning at the right margin."""
-    axes.axhline(level, color=colour, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-    axes.annotate(text, (1.005, level), xycoords=("axes fraction", "data"), xytext=(2, 0),
-                  textcoords="offset points", ha="left", va="center", fontsize=8, color=colour, annotation_clip=False)
-
-
-def mark_onset(run, panels):
-    """A vertical line where the specimen liquefies; it joins the legend of the first panel."""
-    if run.onset is not None:
-        for axes in panels:
-            axes.axvline(run.progress[run.onset], color=RED, linewidth=0.9, linestyle=(0, (1, 1.2)), zorder=1.6,
-                         label="onset of liquefaction" if axes is panels[0] else None)
-
-
-def legend_above(axes):
-    handles, labels = axes.get_legend_handles_labels()
-    if handles:
-        axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 0.985), ncols=len(labels), borderaxespad=0,
-                    handlelength=1.4, columnspacing=1.2)
-
-
-def stretch_after(axes, low, kink, high):
-    """Half of the axis for what follows the kink: few cycles, but most of what there is to see."""
-    before, after = 0.5 / (kink - low), 0.5 / (high - kink)
-
-    def forward(x):
-        x = np.asarray(x, dtype=float)
-        return np.where(x < kink, (x - low) * before, 0.5 + (x - kink) * after)
-
-    def inverse(y):
-        y = np.asarray(y, dtype=float)
-        return np.where(y < 0.5, low + y / before, kink + (y - 0.5) / after)
-
-    axes.set_xscale("function", functions=(forward, inverse))
-    ticks = [t for t in MaxNLocator(5, integer=True).tick_values(low, kink) if t <= kink - 0.1 * (kink - low)]
-    ticks += [t for t in MaxNLocator(5).tick_values(kink, high) if kink + 0.02 * (high - kink) < t <= high]
-    axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
-
-
-def progress_axes(run, panels):
-    """Limits, ticks and label of the common x axis."""
-    x = run.progress[np.isfinite(run.progress)]
-    low, high = float(x.min()), float(x.max())
-    label = run.progress_label
-    if run.cyclic and run.onset is not None:
-        kink = float(run.progress[run.onset])
-        if high - kink >= 0.5 and high - kink < 0.8 * (kink - low):
-            for axes in panels:
-                stretch_after(axes, low, kink, high)
-            label += " (scale stretched after the onset)"
-    if high > low:
-        for axes in panels:
-            axes.set_xlim(low, high)
-    panels[-1].set_xlabel(label)
-
-
-def running_median(values):
-    half = MEDIAN_ROWS // 2
-    padded = np.pad(values, half, mode="edge")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # no contact at all in a whole window: nothing is drawn
-        return np.nanmedian(np.lib.stride_tricks.sliding_window_view(padded, MEDIAN_ROWS), axis=1)
-
-
-def curves(run, axes, specs, steady=False):
-    """Draws the columns that exist; a spec is (column, label, line properties).
-
-    `steady` is for averages over contacts, of which a liquefied specimen has a handful: after the onset every row is
-    drawn pale and the running median on top.
-    """
-    for name, label, style in specs:
-        if not run.has(name):
-            note(f"no column `{name}`; its curve is left out")
-            continue
-        x, y = run.progress, run[name]
-        if steady and run.onset is not None and run.n_rows - run.onset > 5 * MEDIAN_ROWS:
-            after = slice(run.onset, None)
-            axes.plot(x[after], y[after], **{**style, "linewidth": 0.4, "alpha": 0.3, "zorder": 1.8})
-            x, y = x.copy(), np.concatenate([y[: run.onset], running_median(y[after])])
-        axes.plot(x, y, label=label, **style)
-
-
-def explain_median(run, axes):
-    if run.onset is not None and run.n_rows - run.onset > 5 * MEDIAN_ROWS:
-        text = f"After the onset: pale, every row; full, running median of {MEDIAN_ROWS} rows."
-        caption = axes.figure.text(0.99, 0.006, text, ha="right", va="bottom", fontsize=7, color=GREY)
-        caption.set_in_layout(False)
-        axes.figure.get_layout_engine().set(rect=(0, 0.025, 1, 0.975))
-
-
-def two_rows(run, heights=(1, 1)):
-    figure, panels = plt.subplots(2, 1, figsize=(6.6, 4.9), sharex=True, height_ratios=heights,
-                                  layout="constrained")
-    progress_axes(run, panels)
-    for axes, letter in zip(panels, "ab"):
-        panel_letter(axes, letter)
-    return figure, panels
+from plots_common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, STYLE, BadInput, Run, curves, draw_path,
+                          explain_median, legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt,
+                          two_rows)
+from plots_simple_shear import rotation, shear_path
 
 
 def stress_path(run):
+    if run.shear:
+        return shear_path(run)
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.3), layout="constrained")
-    p, q, strain = run["p"] / 1e3, run["q"] / 1e3, 100 * run["eps_y"]
-    cut = run.n_rows if run.onset is None else run.onset + 1
-    parts = [(slice(0, cut), BLUE, "before liquefaction")]
-    if cut < run.n_rows:
-        parts.append((slice(cut - 1, None), ORANGE, "after liquefaction"))
-    for axes, x in ((left, p), (right, strain)):
-        for rows, colour, label in parts:
-            axes.plot(x[rows], q[rows], color=colour, label=label, linewidth=0.8)
-        axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
-        axes.plot(x[0], q[0], "o", color=BLACK, markersize=3.5, zorder=5, label="start")
-        if run.onset is not None:
-            axes.plot(x[run.onset], q[run.onset], "D", color=RED, markersize=4, zorder=6,
-                      label=rf"$p^\prime/p_0^\prime < {LIQUEFIED}$")
+    p, q = run["p"] / 1e3, run["q"] / 1e3
+    for axes, x in ((left, p), (right, 100 * run.strain)):
+        draw_path(run, axes, x, q)
         axes.set_ylabel(r"Deviatoric stress $q$ (kPa)")
     left.set_xlim(left=min(0.0, float(np.nanmin(p))))
     left.set_xlabel(r"Mean effective stress $p^\prime$ (kPa)")
-    right.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    right.set_xlabel(run.strain_label)
     if run.cyclic:
         right.axvline(0, color=BLACK, linewidth=0.6, zorder=1.4)
     panel_letter(left, "a")
     panel_letter(right, "b")
-    if run.onset is not None:
-        handles, labels = left.get_legend_handles_labels()
-        figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
-        figure.legend(handles, labels, loc="lower center", ncols=len(labels))
+    legend_below(run, figure, left)
     return figure
 
 
@@ -352,7 +96,8 @@ def fabric(run):
     if not any(run.has(name) for name in ("Fxx", "Fyy", "Fzz", "F_yx", "F_yz")):
         return None
     figure, (top, bottom) = two_rows(run)
-    curves(run, top, [("Fyy", r"$F_{yy}$ (axial)", {"color": BLUE, "zorder": 3}),
+    along_y = "vertical" if run.shear else "axial"
+    curves(run, top, [("Fyy", rf"$F_{{yy}}$ ({along_y})", {"color": BLUE, "zorder": 3}),
                       ("Fxx", r"$F_{xx}$", {"color": ORANGE}),
                       ("Fzz", r"$F_{zz}$", {"color": GREEN, "linewidth": 0.7})], steady=True)
     curves(run, bottom, [("F_yx", r"$F_{[y-x]}$", {"color": ORANGE}),
@@ -373,6 +118,7 @@ FIGURES = {
     "fig_redundancy": redundancy,
     "fig_contact_fractions": contact_fractions,
     "fig_fabric": fabric,
+    "fig_principal_stress": rotation,
 }
 
 
@@ -392,6 +138,8 @@ def main():
     for name, draw in FIGURES.items():
         figure = draw(run)
         if figure is None:
+            if name == "fig_principal_stress" and not run.shear:
+                continue  # only simple shear turns the stresses
             note(f"{name}: none of its columns is there; not drawn")
             continue
         figure.suptitle(run.title, fontsize=9.5, x=0.01, ha="left")

@@ -24,7 +24,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from plots import BLUE, BLACK, GREEN, GREY, ORANGE, RED, STYLE, panel_letter  # noqa: E402
+from plots_common import BLUE, BLACK, GREEN, GREY, ORANGE, RED, STYLE, panel_letter  # noqa: E402
 
 COLOURS = {"first": BLUE, "onset": RED, "least p'": RED, "last": ORANGE}
 

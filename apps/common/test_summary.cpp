@@ -95,6 +95,40 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
     }
 }
 
+bool any_stage(const Scene &scene, bool (*is)(StageKind))
+{
+  return std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage &s) { return is(s.kind); });
+}
+
+std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
+{
+  if (!any_stage(scene, is_simple_shear))
+    return std::nullopt;
+  enum
+  {
+    at_stage,
+    gamma,
+    tau,
+    sigma_y
+  };
+  const CsvTable history(folder / "history.csv", {"stage (-)", "gamma_xy (-)", "tau_xy (Pa)", "sigma_y (Pa)"});
+  ShearExtremes shear;
+  for (const Stage &s : scene.stages)
+    if (is_simple_shear(s.kind) && is_cyclic(s.kind))
+      shear.asked_ratio = std::max(shear.asked_ratio, s.stress_ratio);
+  for (std::size_t row = 0; row < history.n_rows(); ++row)
+    {
+      if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))].kind))
+        continue;
+      if (shear.sigma_v0 == 0)
+        shear.sigma_v0 = history(row, sigma_y);
+      shear.gamma = std::max(shear.gamma, std::abs(history(row, gamma)));
+      shear.tau = std::max(shear.tau, std::abs(history(row, tau)));
+    }
+  shear.greatest_ratio = shear.sigma_v0 > 0 ? shear.tau / shear.sigma_v0 : 0;
+  return shear;
+}
+
 double energy_residual(const CsvTable &history)
 {
   double done = 0, worst = 0;
@@ -104,6 +138,37 @@ double energy_residual(const CsvTable &history)
       worst = std::max(worst, std::abs(history(row, residual)));
     }
   return done > 0 ? worst / done : 0;
+}
+std::string axial_text(const TestSummary &s)
+{
+  return fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, least p'    {:.2f} kPa, {:.3f} kPa",
+                     100 * s.greatest_strain, s.greatest_q / 1e3, s.least_p / 1e3);
+}
+
+std::string shear_text(const TestSummary &s)
+{
+  const ShearExtremes &shear = *s.shear;
+  std::string text;
+  if (s.axial) // triaxial stages as well
+    text = fmt::format("\n  largest |axial strain|   {:.4f} %\n  largest |q|              {:.2f} kPa",
+                       100 * s.greatest_strain, s.greatest_q / 1e3);
+  text += fmt::format("\n  largest |gamma|          {:.4f} %\n  largest |tau|, least p'  {:.2f} kPa, {:.3f} kPa",
+                      100 * shear.gamma, shear.tau / 1e3, s.least_p / 1e3);
+  const std::string ratio =
+      fmt::format("|tau| reached {:.4f} sigma'_v0, sigma'_v0 {:.2f} kPa", shear.greatest_ratio, shear.sigma_v0 / 1e3);
+  return text + (shear.asked_ratio > 0 ? fmt::format("\n  CSR                      {:g} ({})", shear.asked_ratio, ratio)
+                                       : fmt::format("\n  stress ratio             {}", ratio));
+}
+
+/// Members of summary.json that only simple shear has.
+std::string shear_json(const TestSummary &s)
+{
+  if (!s.shear)
+    return "";
+  return fmt::format("  \"gamma_greatest\": {:.10g},\n  \"tau_greatest\": {:.10g},\n  \"sigma_v0\": {:.10g},\n  "
+                     "\"stress_ratio_greatest\": {:.10g},\n  \"CSR\": {},\n",
+                     s.shear->gamma, s.shear->tau, s.shear->sigma_v0, s.shear->greatest_ratio,
+                     s.shear->asked_ratio > 0 ? fmt::format("{:.10g}", s.shear->asked_ratio) : "null");
 }
 } // namespace
 
@@ -124,8 +189,9 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.seconds = seconds;
   summary.reversals = state.reversals;
   summary.worst_overshoot = state.worst_overshoot;
-  summary.cyclic =
-      std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &s) { return is_cyclic(s.kind); });
+  summary.cyclic = any_stage(scene, is_cyclic);
+  summary.axial = any_stage(scene, [](StageKind kind) { return is_shear(kind) && !is_simple_shear(kind); });
+  summary.shear = shear_extremes(folder, scene);
   summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
   summary.strain_before = state.greatest_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
@@ -158,17 +224,16 @@ std::string to_text(const TestSummary &s, const Scene &scene)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
                         2 * s.cycles_to_liquefaction);
   if (s.liquefied)
-    text += fmt::format(
-        "\n  strain before it         {:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
-        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
-        100 * s.strain_before, s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered, s.n_recoveries);
+    text += fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
+                        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
+                        s.shear ? "|gamma| before it" : "strain before it", 100 * s.strain_before,
+                        s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered, s.n_recoveries);
   else
     text += "\n  liquefaction             none";
   if (s.cyclic)
     text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals,
                         s.worst_overshoot / 1e3);
-  text += fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, least p'    {:.2f} kPa, {:.3f} kPa",
-                      100 * s.greatest_strain, s.greatest_q / 1e3, s.least_p / 1e3);
+  text += s.shear ? shear_text(s) : axial_text(s);
   if (s.energy_residual >= 0)
     text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
   return text + "\n";
@@ -188,10 +253,10 @@ std::string to_json(const TestSummary &s)
   return fmt::format(
       "{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
       "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
-      "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n  "
+      "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n{}  "
       "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
       title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds, s.first_row,
-      s.reversals, s.worst_overshoot, s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null",
-      liquefaction);
+      s.reversals, s.worst_overshoot, shear_json(s),
+      s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null", liquefaction);
 }
 } // namespace isostat

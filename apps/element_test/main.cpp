@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, from a scene file to
-// figures.
+// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, or that and simple shear in
+// a periodic cell, from a scene file to figures.
 //
 //        | sigma_y              prepare   cloud -> isotropic compression -> friction -> balance   (or a file)
 //     ___v___                   programme stages of the scene: compress, friction, rebalance, undrained-monotonic,
-//    |o O o O|<- sigma_x                  undrained-cyclic, drained, constant-p, hold
+//    |o O o O|<- sigma_x                  undrained-cyclic, drained, constant-p, hold, simple shear
 //    |O o O o|                  leaves    history.csv/.h5, snapshots, ParaView files, figures, a printed summary
 //    |_______|  y axial
 //
@@ -126,7 +126,8 @@ void run_test(const Options &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"True-triaxial element tests on spheres: drained, undrained monotonic, undrained cyclic"};
+  CLI::App app{
+      "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic"};
   Options options;
   app.add_option("scene", options.scene, "scene file (TOML); see docs/scene_reference.md");
   app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/liquefaction_resistance/campaign.hpp"
+
+#include "apps/common/result_folder.hpp"
+#include "dem/error.hpp"
+#include "dem/io/csv_table.hpp"
+#include "dem/io/replace_file.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <regex>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+/// Index of the one shear stage, which must be cyclic and the last.
+std::size_t cyclic_stage(const Scene &scene)
+{
+  std::size_t n_shear = 0, found = scene.stages.size();
+  for (std::size_t k = 0; k < scene.stages.size(); ++k)
+    {
+      n_shear += is_shear(scene.stages[k].kind);
+      if (is_cyclic(scene.stages[k].kind))
+        found = k;
+    }
+  if (found == scene.stages.size())
+    throw InputError(
+        fmt::format("{}: no cyclic stage, so there is no CSR to vary. Give a scene with kind = "
+                    "\"undrained-cyclic-simple-shear\" or \"undrained-cyclic\", e.g. quick_cyclic_simple_shear.toml.",
+                    scene.title));
+  if (n_shear > 1 || found + 1 != scene.stages.size())
+    throw InputError(
+        fmt::format("{}: {} shear stages of {} stages; liquefaction_resistance needs the cyclic stage to be "
+                    "the last and the only one that shears. Leave the others out.",
+                    scene.title, n_shear, scene.stages.size()));
+  return found;
+}
+
+/// p0' before the stage, as the scene asks for it, Pa.
+double consolidation_pressure(const Scene &scene, std::size_t stage)
+{
+  double pressure = scene.specimen.pressure;
+  bool isotropic = scene.specimen.consolidation == "isotropic";
+  for (std::size_t k = 0; k < stage; ++k)
+    {
+      const Stage &s = scene.stages[k];
+      if (s.kind == StageKind::k0_compress)
+        isotropic = false;
+      else if (s.kind == StageKind::compress || s.kind == StageKind::rebalance)
+        {
+          isotropic = true;
+          pressure = s.pressure > 0 ? s.pressure : scene.specimen.pressure;
+        }
+    }
+  if (!isotropic && !is_simple_shear(scene.stages[stage].kind))
+    throw InputError(fmt::format("{}: consolidated without lateral strain; CSR = q_amp / (2 p0') of a triaxial test "
+                                 "needs isotropic consolidation. Take it, or cyclic simple shear.",
+                                 scene.title));
+  return pressure;
+}
+
+/// A title without the CSR of the scene, which is not that of the runs: "..., CSR = 0.15".
+std::string without_ratio(const std::string &title)
+{
+  return std::regex_replace(title, std::regex(",? *CSR *=? *[0-9.]+"), "");
+}
+
+/// First line in which two texts differ, as it stands in the second.
+std::string difference(const std::string &one, const std::string &other)
+{
+  const auto a = split_lines(one), b = split_lines(other);
+  for (std::size_t k = 0; k < b.size(); ++k)
+    if (k >= a.size() || a[k] != b[k])
+      return std::string(b[k]);
+  return "lines at the end";
+}
+
+bool is_text(const fs::path &path, const std::string &text) { return fs::exists(path) && read_text(path) == text; }
+} // namespace
+
+std::vector<double> parse_ratios(const std::string &text)
+{
+  std::vector<double> ratios;
+  for (const std::string_view word : split_words(text))
+    {
+      double ratio = 0;
+      if (!parse(word, ratio) || !(ratio > 0 && ratio <= 1))
+        throw InputError(fmt::format("--ratios {}: \"{}\" is not a number in (0, 1]. Give cyclic stress ratios between "
+                                     "commas, e.g. --ratios 0.10,0.15,0.20.",
+                                     text, word));
+      if (std::find(ratios.begin(), ratios.end(), ratio) != ratios.end())
+        throw InputError(
+            fmt::format("--ratios {}: {} stands twice. For more tests at a ratio raise --realisations.", text, word));
+      ratios.push_back(ratio);
+    }
+  if (ratios.empty())
+    throw InputError(
+        "--ratios holds no number. Give cyclic stress ratios between commas, e.g. --ratios 0.10,0.15,0.20.");
+  return ratios;
+}
+
+Campaign::Campaign(Scene scene, const CampaignPlan &plan, fs::path folder)
+    : shared_(std::move(scene)), plan_(plan), folder_(std::move(folder)), stage_(cyclic_stage(shared_)),
+      p0_(consolidation_pressure(shared_, stage_))
+{
+  if (!shared_.specimen.file.empty() && plan.realisations > 1)
+    throw InputError(fmt::format("{}: specimen.file is one specimen, which no seed changes. Give --realisations 1, or "
+                                 "let the scene prepare its specimens.",
+                                 shared_.title));
+  shared_.title = without_ratio(shared_.title);
+  Stage &cyclic = shared_.stages[stage_];
+  cyclic.stress_ratio = Stage{}.stress_ratio; // what differs between the runs is not part of what they share
+  cyclic.deviator_amplitude = Stage{}.deviator_amplitude;
+  cyclic.max_cycles = plan.cycles;
+  cyclic.reversals_after_liquefaction = plan.reversals_after;
+  cyclic.max_strain = std::min(cyclic.max_strain, enough_strain / strain_factor(cyclic.kind));
+  shared_.grading.seed = 1;
+  shared_.output.folder = "runs";
+  shared_.output.snapshots = "none";
+  shared_.output.paraview = false;
+  const fs::path cache = shared_.specimen.cache;
+  if (cache.is_relative()) // beside the folder of the campaign, as that of any run
+    shared_.specimen.cache = (fs::path("../..") / cache).string();
+  std::vector<double> ratios = plan.ratios;
+  std::sort(ratios.rbegin(), ratios.rend());
+  for (std::uint64_t seed = 1; seed <= plan.realisations; ++seed)
+    for (double ratio : ratios)
+      runs.push_back(make_run(fmt::format("csr{:g}_seed{}", ratio, seed), ratio, seed));
+}
+
+Campaign::Run Campaign::make_run(std::string name, double ratio, std::uint64_t seed) const
+{
+  Run run{std::move(name), ratio, seed, shared_, {}};
+  run.result.ratio = ratio;
+  run.result.seed = seed;
+  run.scene.title = fmt::format("{}; CSR {:g}, seed {}", shared_.title, ratio, seed);
+  run.scene.grading.seed = seed;
+  run.scene.stages[stage_].stress_ratio = ratio;
+  run.scene.stages[stage_].deviator_amplitude = 2 * ratio * p0_;
+  // through text once: what element_test reads and writes is the same to the bit
+  run.scene = parse_scene(to_toml(run.scene), run.name);
+  return run;
+}
+
+void Campaign::check_folder() const
+{
+  if (!fs::exists(folder_))
+    return;
+  if (!fs::is_directory(folder_))
+    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder_.string()));
+  const fs::path scene = folder_ / "scene.toml";
+  const bool empty = std::all_of(fs::directory_iterator(folder_), fs::directory_iterator(),
+                                 [](const fs::directory_entry &entry) { return entry.path().filename() == "lock"; });
+  if (empty)
+    return;
+  if (!fs::exists(scene) || !fs::exists(folder_ / "runs"))
+    throw InputError(
+        fmt::format("{}: holds something else than runs of liquefaction_resistance (no scene.toml and runs "
+                    "in it). Choose another --output.",
+                    folder_.string()));
+  const std::string text = to_toml(shared_), there = read_text(scene);
+  if (text != there)
+    throw InputError(fmt::format("{}: in use by another scene: it has `{}` where this one has `{}`. Choose another "
+                                 "--output, or --overwrite to start anew.",
+                                 folder_.string(), difference(text, there), difference(there, text)));
+}
+
+void Campaign::open()
+{
+  for (const char *part : {"scenes", "runs", "logs"})
+    fs::create_directories(folder_ / part);
+  for (Run &run : runs)
+    {
+      write_scene(run);
+      if (!is_finished(run))
+        continue;
+      run.result = read_run(run_folder(run.name), run.scene, stage_);
+      run.result.ratio = run.ratio;
+      run.result.seed = run.seed;
+    }
+  for (const Run &preparation : preparations())
+    write_scene(preparation);
+}
+
+void Campaign::write_scene(const Run &run) const
+{
+  write_replacing(folder_ / "scenes" / (run.name + ".toml"), to_toml(run.scene));
+}
+
+bool Campaign::is_finished(const Run &run) const
+{
+  const fs::path folder = run_folder(run.name);
+  return fs::exists(folder / "summary.json") && is_text(folder / "scene.toml", to_toml(run.scene));
+}
+
+std::vector<Campaign::Run> Campaign::preparations() const
+{
+  std::vector<Run> needed;
+  if (!shared_.specimen.file.empty())
+    return needed;
+  for (std::uint64_t seed = 1; seed <= plan_.realisations; ++seed)
+    {
+      Run run = make_run(fmt::format("specimen_seed{}", seed), plan_.ratios[0], seed);
+      run.scene.title = fmt::format("{}; specimen, seed {}", shared_.title, seed);
+      run.scene.stages.clear();
+      const auto left =
+          std::count_if(runs.begin(), runs.end(), [&](const Run &r) { return r.seed == seed && !is_finished(r); });
+      if (left > 0 && !is_finished(run))
+        needed.push_back(run);
+    }
+  return needed;
+}
+
+std::vector<RunResult> Campaign::results() const
+{
+  std::vector<RunResult> all;
+  for (const Run &run : runs)
+    all.push_back(run.result);
+  return all;
+}
+} // namespace isostat

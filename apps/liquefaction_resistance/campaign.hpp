@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/liquefaction_resistance/resistance.hpp"
+
+namespace isostat
+{
+/// What the command line asks of a campaign.
+struct CampaignPlan
+{
+  std::vector<double> ratios; ///< CSR [-]
+  std::uint64_t realisations = 3, cycles = 100, reversals_after = 1;
+};
+
+/// "0.10,0.13, 0.2" as numbers, in the order given.
+/// @throws InputError  no number, a number that is not positive, one twice
+std::vector<double> parse_ratios(const std::string &text);
+
+/// A cyclic scene, run at several amplitudes on several specimens. Below `folder`:
+///
+///     scene.toml            what all runs share: tells this campaign from another one
+///     scenes/NAME.toml      scene of a run             runs/NAME/     its results: kept, and resumed, by the next call
+///     logs/NAME.log         what it printed            resistance.*   what came out
+class Campaign
+{
+public:
+  struct Run
+  {
+    std::string name;
+    double ratio;
+    std::uint64_t seed;
+    Scene scene;
+    RunResult result;
+  };
+
+  /// @throws InputError  no cyclic stage, or not just one; ratios it cannot have; realisations of a specimen file
+  Campaign(Scene scene, const CampaignPlan &plan, std::filesystem::path folder);
+
+  /// What all runs share, as a scene.
+  const Scene &shared() const { return shared_; }
+  const std::filesystem::path &folder() const { return folder_; }
+  std::size_t stage() const { return stage_; }
+  bool simple_shear() const { return is_simple_shear(shared_.stages[stage_].kind); }
+
+  /// Throws InputError if the folder holds the runs of another scene, or other things than a campaign.
+  void check_folder() const;
+  /// Writes the scenes of the runs, and reads what earlier calls have finished.
+  void open();
+  bool is_finished(const Run &run) const;
+  std::filesystem::path run_folder(const std::string &name) const { return folder_ / "runs" / name; }
+
+  /// Scenes that only prepare specimens which several unfinished runs need; written by open().
+  std::vector<Run> preparations() const;
+
+  std::vector<Run> runs; ///< seed by seed, highest ratio first
+  std::vector<RunResult> results() const;
+
+private:
+  Run make_run(std::string name, double ratio, std::uint64_t seed) const;
+  void write_scene(const Run &run) const;
+
+  Scene shared_;
+  CampaignPlan plan_;
+  std::filesystem::path folder_;
+  std::size_t stage_ = 0;
+  double p0_ = 0; ///< p0' that the scene asks for, Pa: CSR of a triaxial test is q_amp / (2 p0')
+};
+} // namespace isostat

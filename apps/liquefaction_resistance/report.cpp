@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/liquefaction_resistance/report.hpp"
+
+#include "dem/io/replace_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double reference_cycles = 15; // a magnitude 7.5 earthquake
+
+std::string cycles_text(const RunResult &r)
+{
+  switch (r.status)
+    {
+    case RunStatus::liquefied:
+      return fmt::format("{:g}", *r.to_liquefaction);
+    case RunStatus::censored:
+      return fmt::format(">{:g}", r.cycles);
+    case RunStatus::strain:
+      return "strain";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::missing:
+      break;
+    }
+  return "-";
+}
+
+/// Geometric mean over the runs of a ratio; empty unless each of them has a value.
+std::string mean_text(const std::vector<RunResult> &runs, std::optional<double> RunResult::*value)
+{
+  double sum = 0;
+  for (const RunResult &r : runs)
+    {
+      if (!(r.*value))
+        return "-";
+      sum += std::log(*(r.*value));
+    }
+  return fmt::format("{:.1f}", std::exp(sum / static_cast<double>(runs.size())));
+}
+
+std::string table(const std::vector<RunResult> &results, std::vector<double> ratios)
+{
+  std::sort(ratios.begin(), ratios.end());
+  std::string text = fmt::format("\n  {:>6}  {:>8}  {:>9}  {:>12}  {}", "CSR", "mean N", "N 3 % DA", "N 3.75 % SA",
+                                 "N to liquefaction, seed by seed");
+  for (double ratio : ratios)
+    {
+      std::vector<RunResult> runs;
+      std::string each;
+      for (const RunResult &r : results)
+        if (r.ratio == ratio)
+          {
+            runs.push_back(r);
+            each += (each.empty() ? "" : ", ") + cycles_text(r);
+          }
+      text += fmt::format("\n  {:>6g}  {:>8}  {:>9}  {:>12}  {}", ratio, mean_text(runs, &RunResult::to_liquefaction),
+                          mean_text(runs, &RunResult::to_double_amplitude),
+                          mean_text(runs, &RunResult::to_single_amplitude), each);
+    }
+  return text;
+}
+
+std::string fit_text(const std::optional<PowerLaw> &law)
+{
+  if (!law)
+    return "\n  fit                      none: fewer than two ratios have a run that liquefied";
+  const bool inside = law->least_cycles <= reference_cycles && law->most_cycles >= reference_cycles;
+  return fmt::format(
+      "\n  fit                      CSR = {:.4f} N^-{:.3f}, b +- {:.3f}, R^2 = {:.3f}, {} runs{}\n  CSR at "
+      "15 cycles         {:.4f}{}",
+      law->a, law->b, law->b_error, law->r_squared, law->n_runs,
+      law->n_left_out > 0 ? fmt::format(" ({} did not liquefy and are left out)", law->n_left_out) : "",
+      law->at(reference_cycles), inside ? "" : " (extrapolated)");
+}
+
+std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
+{
+  const Scene &scene = campaign.shared();
+  const std::vector<RunResult> results = campaign.results();
+  std::string text = fmt::format(
+      "\n{}\n  CSR                      {}\n  liquefied                p'/p0' < {:g}; at most {} cycles\n  cycles      "
+      "  "
+      "           half the reversals; means over seeds are geometric, - if a run has none\n",
+      scene.title, campaign.simple_shear() ? "tau_amp / sigma'_v0, simple shear" : "q_amp / (2 p0'), triaxial",
+      scene.stages[campaign.stage()].liquefaction_ratio, plan.cycles);
+  text += table(results, plan.ratios) + "\n" + fit_text(law);
+  double seconds = 0;
+  std::vector<double> e;
+  for (const RunResult &r : results)
+    {
+      seconds += r.wall_seconds.value_or(0);
+      if (r.void_ratio)
+        e.push_back(*r.void_ratio);
+    }
+  if (!e.empty())
+    text += fmt::format("\n  void ratios              {:.4f} to {:.4f}\n  wall time of the runs    {:.1f} min",
+                        *std::min_element(e.begin(), e.end()), *std::max_element(e.begin(), e.end()), seconds / 60);
+  for (const RunResult &r : results)
+    if (r.status == RunStatus::failed)
+      text += fmt::format("\n  failed: CSR {:g}, seed {}: {}", r.ratio, r.seed, r.note);
+  return text + "\n";
+}
+
+std::string to_json(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
+{
+  std::string title;
+  for (char c : campaign.shared().title)
+    title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  const std::string fit =
+      law ? fmt::format(
+                "{{\"a\": {:.10g}, \"b\": {:.10g}, \"b_error\": {:.6g}, \"R2\": {:.6g}, \"runs\": {}, \"left_out\": "
+                "{}, \"CSR_15\": {:.10g}}}",
+                law->a, law->b, law->b_error, law->r_squared, law->n_runs, law->n_left_out, law->at(reference_cycles))
+          : "null";
+  return fmt::format(
+      "{{\n  \"title\": \"{}\",\n  \"test\": \"{}\",\n  \"liquefaction_ratio\": {:g},\n  \"cycles\": {},\n  "
+      "\"fit\": {}\n}}\n",
+      title, campaign.simple_shear() ? "simple shear" : "triaxial",
+      campaign.shared().stages[campaign.stage()].liquefaction_ratio, plan.cycles, fit);
+}
+} // namespace
+
+std::string write_report(const Campaign &campaign, const CampaignPlan &plan)
+{
+  const std::vector<RunResult> results = campaign.results();
+  const std::optional<PowerLaw> law = fit_power_law(results);
+  write_replacing(campaign.folder() / "resistance.csv", to_csv(results));
+  write_replacing(campaign.folder() / "resistance.json", to_json(campaign, plan, law));
+  std::string text = to_text(campaign, plan, law);
+  write_replacing(campaign.folder() / "summary.txt", text);
+  return text;
+}
+} // namespace isostat
