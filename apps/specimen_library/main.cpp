@@ -212,12 +212,12 @@ void report_failures(const std::vector<Task> &tasks)
 void make_library(const Options &options)
 {
   const Scene scene = checked_scene(options);
+  std::vector<Task> tasks = combinations(scene, options);
   const fs::path path = options.output.empty() ? scene.output.folder + ".h5" : options.output;
   check_output(path, options);
   std::error_code ignored;
   const bool extend = options.append && fs::exists(path, ignored);
-  std::vector<Task> tasks =
-      missing_ones(combinations(scene, options), extend ? list_library(path) : std::vector<LibraryEntry>{});
+  tasks = missing_ones(std::move(tasks), extend ? list_library(path) : std::vector<LibraryEntry>{});
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   Assembly::default_threads = 1;
   catch_signals();
