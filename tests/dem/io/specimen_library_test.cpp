@@ -87,14 +87,6 @@ TEST_F(SpecimenLibrary, RoundTripToTheBit)
   expect_same(read_library_entry(path, "s0002"), realisation(2));
 }
 
-TEST_F(SpecimenLibrary, SameEntriesSameBytes)
-{
-  write_two();
-  const std::string first = get(path);
-  write_two();
-  EXPECT_EQ(get(path), first);
-}
-
 TEST_F(SpecimenLibrary, ListTellsEntriesApart)
 {
   write_two();
