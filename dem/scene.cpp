@@ -39,6 +39,13 @@ Scene checked_scene(const SceneDocument &document)
 }
 } // namespace
 
+SpecimenPlace specimen_place(const std::string &file)
+{
+  const std::size_t ending = file.rfind(".h5#");
+  return ending == std::string::npos ? SpecimenPlace{file, ""}
+                                     : SpecimenPlace{file.substr(0, ending + 3), file.substr(ending + 4)};
+}
+
 bool Scene::operator==(const Scene &other) const
 {
   return title == other.title && grading == other.grading && equal(contact, other.contact) &&
@@ -55,7 +62,8 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
   const SceneDocument document(read_text(path), path, overrides);
   Scene scene = checked_scene(document);
   std::error_code ignored;
-  if (!scene.specimen.file.empty() && !std::filesystem::exists(scene.specimen.file, ignored))
+  const std::string file = specimen_place(scene.specimen.file).path;
+  if (!file.empty() && !std::filesystem::exists(file, ignored))
     document.refuse("specimen.file", "is not there. Paths count from the working directory; prepare the specimen first "
                                      "or correct the path.");
   if (scene.output.folder.empty())

@@ -34,7 +34,7 @@ struct SpecimenSpec
   double pressure = 200e3;                 ///< p0'; with "k0" the vertical effective stress, Pa
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
-  std::string file;                           ///< a prepared specimen (.h5) or a folder of text tables
+  std::string file;                           ///< a specimen (.h5), "library.h5#entry", or a folder of text tables
   double e_min = 0.568, e_max = 0.841;        ///< limits that define the relative density
   double density_tolerance = 0.01;            ///< on D_r
   double damping = 0.3;                       ///< local damping during preparation
@@ -43,6 +43,13 @@ struct SpecimenSpec
 
   bool operator==(const SpecimenSpec &) const = default;
 };
+
+/// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file or folder.
+struct SpecimenPlace
+{
+  std::string path, entry; ///< no entry: empty
+};
+SpecimenPlace specimen_place(const std::string &file);
 
 struct MotionSpec
 {

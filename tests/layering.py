@@ -48,6 +48,7 @@ DEM = {
     "io": GRAINS | {"io/units", "measure", "scene"},
     "drive": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io"},
     "prepare": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+    "rve_bytes": GRAINS | {"rve"},
     "rve": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
 }
 

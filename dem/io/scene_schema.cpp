@@ -159,7 +159,7 @@ constexpr Key keys[] = {
    .group = Group::preparation, .text = "Angle of friction while it is compressed; the density is what comes out.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.preparation_friction; }},
   {.path = "specimen.file", .kind = Kind::text, .presence = Presence::optional, .value = "specimens/dr64.h5",
-   .group = Group::preparation, .text = "A prepared specimen (.h5) or a folder of text tables.",
+   .group = Group::preparation, .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.file; }},
   {.path = "specimen.e_min", .value = "0.568", .range = positive, .text = "Void ratio at D_r = 1.",
    .field = [](Scene &s, Stage &) -> Field { return &s.specimen.e_min; }},

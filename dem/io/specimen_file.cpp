@@ -91,8 +91,9 @@ void check_header(const hdf5::Group &root)
                     file, format_name));
   const std::string format = root.attribute<std::string>("format");
   if (format != format_name)
-    throw InputError(fmt::format("{}: format = \"{}\", expected \"{}\"; give a specimen made by Isostat", file, format,
-                                 format_name));
+    throw InputError(fmt::format("{}: format = \"{}\", expected \"{}\"; give a specimen made by Isostat, of a library "
+                                 "one of its entries ({}#s0001)",
+                                 file, format, format_name, file));
   const auto version = root.attribute<std::uint64_t>("schema_version");
   if (version != specimen_schema_version)
     throw InputError(fmt::format("{}: schema_version = {}, this program reads {}; prepare the specimen again with this "
@@ -101,37 +102,52 @@ void check_header(const hdf5::Group &root)
 }
 } // namespace
 
-void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
+void write_specimen(hdf5::Group group, const Specimen &specimen)
 {
   if (const std::string found = fault(specimen.state); !found.empty())
-    throw RunFailure(fmt::format("{}: the specimen is not written: {}", path.string(), found));
-  hdf5::File file = hdf5::File::create(path);
-  hdf5::Group root = file.root();
-  root.set_attribute("format", format_name);
-  root.set_attribute("schema_version", specimen_schema_version);
-  hdf5::Group provenance = root.create_group("provenance"), numbers = root.create_group("numbers");
+    throw RunFailure(fmt::format("{}: the specimen is not written: {}", group.where(), found));
+  hdf5::Group provenance = group.create_group("provenance"), numbers = group.create_group("numbers");
   for (const auto &[key, text] : specimen.provenance)
     provenance.set_attribute(key, text);
   for (const auto &[key, value] : specimen.numbers)
     numbers.set_attribute(key, value);
-  write_snapshot(root.create_group("snapshot"), specimen.state);
+  write_snapshot(group.create_group("snapshot"), specimen.state);
+}
+
+void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
+{
+  hdf5::File file = hdf5::File::create(path);
+  hdf5::Group root = file.root();
+  root.set_attribute("format", format_name);
+  root.set_attribute("schema_version", specimen_schema_version);
+  write_specimen(root, specimen);
   file.commit();
+}
+
+Specimen read_specimen_description(const hdf5::Group &group)
+{
+  Specimen specimen;
+  const hdf5::Group provenance = group.group("provenance"), numbers = group.group("numbers");
+  for (const std::string &key : provenance.attribute_names())
+    specimen.provenance[key] = provenance.attribute<std::string>(key);
+  for (const std::string &key : numbers.attribute_names())
+    specimen.numbers[key] = numbers.attribute<double>(key);
+  return specimen;
+}
+
+Specimen read_specimen(const hdf5::Group &group)
+{
+  Specimen specimen = read_specimen_description(group);
+  specimen.state = read_snapshot(group.group("snapshot"));
+  if (const std::string found = fault(specimen.state); !found.empty())
+    throw InputError(fmt::format("{}: {}. Prepare the specimen again", group.where(), found));
+  return specimen;
 }
 
 Specimen read_specimen(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
-  const hdf5::Group root = file.root();
-  check_header(root);
-  Specimen specimen;
-  const hdf5::Group provenance = root.group("provenance"), numbers = root.group("numbers");
-  for (const std::string &key : provenance.attribute_names())
-    specimen.provenance[key] = provenance.attribute<std::string>(key);
-  for (const std::string &key : numbers.attribute_names())
-    specimen.numbers[key] = numbers.attribute<double>(key);
-  specimen.state = read_snapshot(root.group("snapshot"));
-  if (const std::string found = fault(specimen.state); !found.empty())
-    throw InputError(fmt::format("{}: {}. Prepare the specimen again", path.string(), found));
-  return specimen;
+  check_header(file.root());
+  return read_specimen(file.root());
 }
 } // namespace isostat

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/io/hdf5.hpp"
 #include "dem/measure/snapshot.hpp"
 
 #include <filesystem>
@@ -29,4 +30,12 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 /// volume, finite numbers in the state, positive radii, masses and inertias. Every failure is an InputError that names
 /// the file, what was found, what was expected, and the remedy.
 Specimen read_specimen(const std::filesystem::path &path);
+
+/// The same in a group of an open file, without format and schema version, which are the file's: what a specimen
+/// library is made of (specimen_library.hpp). Writing: the group is empty.
+void write_specimen(hdf5::Group group, const Specimen &specimen);
+Specimen read_specimen(const hdf5::Group &group);
+
+/// Only what stands in attributes: `state` is left empty and not looked at.
+Specimen read_specimen_description(const hdf5::Group &group);
 } // namespace isostat

@@ -10,6 +10,8 @@ namespace isostat
 {
 /// The specimen that a scene asks for: read from a file or folder of tables, taken from the cache, or prepared
 /// (cloud -> compression at a preparation friction -> friction of shearing -> rebalance) and put into the cache.
+/// A library entry, "library.h5#s0007", is a file, too. May be called from several threads, each with an observer of
+/// its own, for different recipes.
 /// @param cache  folder of prepared specimens, named by a hash of their recipe; the recipe itself is compared as well
 /// @throws InputError  a density that cannot be reached, a file that is not a specimen
 /// @throws Interrupted

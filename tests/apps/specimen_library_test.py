@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program specimen_library on a few grains: what it makes, goes on with, and refuses; a test from an entry."""
+import signal
+import subprocess
+import time
+
+import h5py
+
+from support import AppTest, main, tiny_scene
+
+# a narrow grading, so that so few grains fill a cell wider than two of the largest
+CELL = 'domain = "periodic-cell"\npressure = "50 kPa"\n'
+SCENE = tiny_scene(specimen=CELL + 'preparation_friction = "10 deg"', stages="# none")
+NARROW = ("--set", "grading.truncate=[20, 80]", "--set", "grading.grains=150", "--set", "grading.cloud_edge=2.45 mm")
+STAGE = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.02\nmax_steps = 200\n'
+
+
+class Library(AppTest):
+    def make(self, *arguments):
+        scene = self.folder / "rve.toml"
+        if not scene.exists():
+            scene.write_text(SCENE, encoding="utf-8")
+        return self.run_app("specimen_library", scene, *NARROW, *arguments)
+
+    def entries(self, name="library.h5"):
+        """Numbers and provenance of every entry, and the bytes of its positions."""
+        with h5py.File(self.folder / name) as file:
+            self.assertEqual(file.attrs["format"], "isostat-specimen-library")
+            return {entry: (dict(group["numbers"].attrs), dict(group["provenance"].attrs),
+                            group["snapshot/grains/position"][()].tobytes()) for entry, group in file.items()}
+
+    def test_make_append_list(self):
+        two = ("-n", "2", "-o", "library.h5", "--jobs", "2")
+        result = self.make(*two)
+        self.assert_done(result)
+        self.assertIn("[2/2]", result.stderr)
+        first = self.entries()
+        self.assertEqual(sorted(first), ["s0001", "s0002"])
+        for seed, entry in enumerate(sorted(first), 1):
+            numbers, provenance, _ = first[entry]
+            self.assertEqual((numbers["seed"], numbers["grains"]), (seed, 150))
+            self.assertAlmostEqual(numbers["pressure_Pa"] / 50e3, 1, delta=0.01)
+            self.assertAlmostEqual(numbers["K0"], 1, delta=0.02)
+            self.assertEqual(provenance["consolidation"], "isotropic")
+            self.assertIn("truncate", provenance["recipe"])
+        listed = self.run_app("specimen_library", "--list", "--output", "library.h5")
+        self.assert_done(listed)
+        self.assertEqual(listed.stdout, result.stdout)
+        for word in ("s0002", "K0", "D_r", "I_R"):
+            self.assertIn(word, listed.stdout)
+
+        self.assert_refused(self.make(*two), "library.h5", "exists", "--append", "--overwrite")
+        more = ("--append", "--consolidation", "k0", "--pressures", "50 kPa, 80kPa")
+        self.assert_done(self.make(*two, *more))
+        all_of_them = self.entries()
+        self.assertEqual(sorted(all_of_them), [f"s000{k}" for k in range(1, 7)])
+        self.assertEqual({name: all_of_them[name] for name in first}, first)
+        for name, pressure in (("s0003", 50e3), ("s0004", 50e3), ("s0005", 80e3)):
+            numbers, provenance, _ = all_of_them[name]
+            self.assertAlmostEqual(numbers["vertical_stress_Pa"] / pressure, 1, delta=0.02)
+            self.assertTrue(0.2 < numbers["K0"] < 0.8, numbers["K0"])
+            self.assertEqual(provenance["consolidation"], "k0")
+        self.assert_done(self.make(*two, *more))  # nothing is missing
+        self.assertEqual(self.entries(), all_of_them)
+
+        self.assert_done(self.make(*two, "--overwrite", "--quiet"))  # from the cache, to the same bits
+        self.assertEqual(self.entries(), first)
+
+    def test_density_is_that_after_k0_consolidation(self):
+        """Soft grains: most of the loss of void ratio comes after the search, which has to allow for it."""
+        result = self.make("-o", "soft.h5", "--consolidation", "k0", "--set", "contact.young=20 MPa", "--set",
+                           "specimen.density_tolerance=0.08", "--set", "specimen.void_ratio=0.62")
+        self.assert_done(result)
+        self.assertIn("rebalancing changes e", result.stderr)
+        numbers = self.entries("soft.h5")["s0001"][0]
+        self.assertAlmostEqual(numbers["void_ratio"], 0.62, delta=0.08 * (0.841 - 0.568))
+
+    def test_start_from_an_entry(self):
+        self.assert_done(self.make("-n", "2", "-o", "library.h5", "-q"))
+        scene = self.write("test.toml", tiny_scene(specimen=CELL + 'file = "library.h5#s0002"', stages=STAGE))
+        result = self.run_test(scene, "-o", "out")
+        self.assert_done(result)
+        self.assertIn("150 grains", result.stdout)
+        whole = self.run_test(scene, "-o", "none", "--set", "specimen.file=library.h5")
+        self.assert_refused(whole, "library.h5", "none of them is named", "s0001", "s0002", "seed", "50.0")
+        self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.file=library.h5#s0009"),
+                            "no entry \"s0009\"", "s0001", "library.h5#s0001")
+        self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.file=nowhere.h5#s0001"),
+                            "specimen.file", "is not there")
+        self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.domain=rigid-box"),
+                            "periodic-cell", "rigid-box")
+
+    def test_interrupted_and_again(self):
+        for old in self.cache.glob("*"):
+            old.unlink()
+        scene = self.write("rve.toml", SCENE)
+        command = self.command("specimen_library", scene, *NARROW, "-n", "40", "-j", "1", "-o", "library.h5", "-q")
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True) as process:
+            end = time.time() + 60
+            while len(list(self.cache.glob("*.h5"))) < 2 and time.time() < end and process.poll() is None:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGINT)
+            _, message = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, message)
+        self.assertIn("of 40 specimens are in", message)
+        self.assertFalse((self.folder / "library.h5").exists())
+        kept = len(list(self.cache.glob("*.h5")))
+        self.assertGreaterEqual(kept, 2)
+        result = self.make("-n", str(kept + 1), "-j", "1", "-o", "library.h5")
+        self.assert_done(result)
+        self.assertEqual(result.stderr.count("taken from"), kept)
+        self.assertEqual(len(self.entries()), kept + 1)
+
+
+class Mistakes(AppTest):
+    def refuse(self, arguments, *parts):
+        scene = self.write("rve.toml", SCENE)
+        self.assert_refused(self.run_app("specimen_library", scene, "-o", "library.h5", *NARROW, *arguments), *parts)
+        self.assertFalse((self.folder / "library.h5").exists())
+        self.assertEqual(list(self.cache.glob("*")), [])
+
+    def test_scene(self):
+        self.refuse(["--set", "specimen.domain=rigid-box"], "rve.toml", "rigid-box", "domain = \"periodic-cell\"")
+        self.write("packing.h5", "")
+        self.refuse(["--set", "specimen.file=packing.h5"], "packing.h5", "relative_density")
+        self.refuse(["--set", "grading.grain=5"], "grading.grain", "grading.grains")
+        self.assert_refused(self.run_app("specimen_library", "nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_app("specimen_library"), "no scene given", "--help")
+
+    def test_lists(self):
+        self.refuse(["--pressures", "50 kPa,20 mm"], "--pressures", "\"20 mm\"", "kPa")
+        self.refuse(["--pressures", "50 kPa,"], "--pressures", "\"\"")
+        self.refuse(["--pressures", "0 kPa"], "--pressures", "> 0 kPa")
+        self.refuse(["--pressures", "50 kPa,50000 Pa"], "asked for twice", "50 kPa")
+        self.refuse(["--relative-densities", "0.5,1.5"], "--relative-densities", "\"1.5\"", "[0, 1]")
+        self.refuse(["--relative-densities", "dense"], "--relative-densities", "\"dense\"")
+
+    def test_command_line(self):
+        for wrong in (["--consolidation", "k1"], ["-n", "0"], ["--append", "--overwrite"], ["--job"]):
+            scene = self.write("rve.toml", SCENE)
+            self.assertEqual(self.run_app("specimen_library", scene, "-o", "library.h5", *wrong).returncode, 2)
+
+    def test_output(self):
+        scene = self.write("rve.toml", SCENE)
+        self.assert_refused(self.run_app("specimen_library", scene, "-o", "library.toml"), "library.toml", ".h5")
+        self.assert_refused(self.run_app("specimen_library", scene, "-o", "rve.toml/library.h5"), "cannot be made")
+        self.write("library.h5", "precious")
+        for use in ("--append", ""):
+            self.assert_refused(self.run_app("specimen_library", scene, "-o", "library.h5", *filter(None, [use])),
+                                "library.h5", "not an HDF5" if use else "exists")
+        self.assertEqual((self.folder / "library.h5").read_text(encoding="utf-8"), "precious")
+
+    def test_list(self):
+        self.assert_refused(self.run_app("specimen_library", "--list"), "no library given", "--output")
+        self.assert_refused(self.run_app("specimen_library", "--list", "-o", "no.h5"), "no.h5", "no such file")
+
+    def test_density_out_of_reach(self):
+        scene = self.write("rve.toml", SCENE)
+        stiff = ("--set", "contact.young=10 GPa", "--set", "specimen.void_ratio=0.3")
+        self.assert_refused(self.run_app("specimen_library", scene, "-o", "library.h5", *NARROW, *stiff), "seed 1",
+                            "cannot be reached", "1 of 1")
+        self.assertFalse((self.folder / "library.h5").exists())
+
+
+if __name__ == "__main__":
+    main()
