@@ -276,13 +276,15 @@ void Assembly::deform(const Mat3 &displacement_gradient)
                     "Divide the increment or lower the strain rate.",
                     step_, size, greatest_strain_step));
   forces_known_ = false;
-  const AffineStep affine(cell_->deform(displacement_gradient));
+  PeriodicCell next = *cell_; // forces that are pending belong to the cell as it still is
+  const AffineStep affine(next.deform(displacement_gradient));
   const double speed_limit = explosion_step * min_radius_ / time_step;
   const MotionReport report = move_grains(speed_limit, &affine);
   if (report.exploded)
     report_explosion(speed_limit);
   tally.damping += report.damping_loss;
   greatest_step_ = report.greatest_speed * time_step + size * d_max_;
+  cell_ = next;
   turn_upright();
   contacts_.set_cell(cell_->edges);
   ++step_;

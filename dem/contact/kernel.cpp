@@ -28,7 +28,7 @@ struct KernelView
   const std::uint32_t *image = nullptr;
   const double *offsets = nullptr;
   double rate[6] = {}; ///< D: xx yy zz yz xz xy, 1/s
-  double *virial = nullptr;
+  double *virial = nullptr, virial_start = 0;
 };
 } // namespace isostat
 #endif
@@ -122,10 +122,19 @@ struct Loop
   }
 
   /// Sums of F b, upper triangle, lane by lane: see virial_start().
-  static HWY_INLINE void add_virial(double *sums, const Triple &force, const Triple &b)
+  static HWY_INLINE void add_virial(const KernelView &k, std::size_t lane, const Triple &force, const Triple &b)
   {
     const D d;
-    auto add = [&](int c, V f, V l) { hn::Store(hn::MulAdd(f, l, hn::Load(d, sums + 8 * c)), d, sums + 8 * c); };
+    double *sums = k.virial + lane;
+    auto add = [&](int c, V f, V l) {
+      const V sum = hn::Load(d, sums + 8 * c);
+#if HWY_NATIVE_FMA
+      hn::Store(hn::MulAdd(f, l, sum), d, sums + 8 * c);
+#else // a rounded product may be halfway between two points of the grid; which one it goes to must not follow the sum
+      const V start = hn::Set(d, k.virial_start), rounded = hn::Sub(hn::MulAdd(f, l, start), start);
+      hn::Store(hn::Add(sum, rounded), d, sums + 8 * c);
+#endif
+    };
     add(0, force.x, b.x);
     add(1, force.y, b.y);
     add(2, force.z, b.z);
@@ -163,7 +172,7 @@ struct Loop
         const V kn = closed(p, hn::Mul(rr, stiffness));
         const Triple force = scaled(p.n, hn::Mul(kn, p.overlap));
         if constexpr (Periodic)
-          add_virial(k.virial + lane, force, branch);
+          add_virial(k, lane, force, branch);
         add_forces(k.action, k.first + pair, k.target + pair, force);
         return;
       }
@@ -191,7 +200,7 @@ struct Loop
         const V half = hn::Set(d, 0.5);
         const Triple force = madd(p.n, p.fn, fs), couple = cross(p.n, fs);
         if constexpr (Periodic)
-          add_virial(k.virial + lane, force, branch);
+          add_virial(k, lane, force, branch);
         add_actions(k.action, k.first + pair, k.target + pair, force,
                     nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), moment),
                     nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), moment));
@@ -424,6 +433,7 @@ void add_contact_forces(const LawParams &law, const Packing &packing, double dt,
       view.image = list.image();
       view.offsets = list.offsets();
       view.virial = cell->virial->data(chunk);
+      view.virial_start = cell->virial->grid();
     }
   if (!dissipation)
     return run(list.features(), view);

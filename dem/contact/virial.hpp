@@ -11,8 +11,9 @@ namespace isostat
 /// chunks nor on pairs in the list that do not touch.
 ///
 /// Every partial sum starts from C = 1.5 2^k, which is larger than any sum can get: each term is thereby rounded to the
-/// same grid of 2^(k-52), and sums of grid points are exact in any order. With 2^k >= E V the grid is 2e-16 E V: with E
-/// = 10 GPa a contact adds its share of stress to 2e-6 Pa.
+/// same grid of 2^(k-52), and sums of grid points are exact in any order. (A product that is rounded before it is added
+/// can lie halfway between two grid points; the loop then rounds it by itself, see add_virial().) With 2^k >= E V the
+/// grid is 2e-16 E V: with E = 10 GPa a contact adds its share of stress to 2e-6 Pa.
 /// tested: tests/dem/contact/virial_test.cpp
 class Virial
 {
@@ -34,6 +35,8 @@ public:
     for (int c = 0; c < 6; ++c)
       sums_[8 * c] = six[c];
   }
+  /// What sums start from: rounds a number to the grid when it is added and taken off again.
+  double grid() const { return start_; }
   double *data(std::size_t chunk) { return sums_.data() + numbers * chunk; }
 
   /// Sum of F b, symmetric: the lower triangle repeats the upper, J.

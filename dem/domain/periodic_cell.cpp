@@ -9,11 +9,14 @@ namespace
 {
 constexpr double greatest_lean = 0.6;
 
-/// exp of the skew part of `gradient`, to round-off orthogonal for the small angles of a step.
-Mat3 rotation_of(const Mat3 &gradient)
+Vec3 axial_of(const Mat3 &gradient)
 {
-  const Vec3 axis =
-      0.5 * Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1));
+  return 0.5 * Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1));
+}
+
+/// exp of the skew matrix of `axis`, orthogonal to round-off.
+Mat3 rotation_by(const Vec3 &axis)
+{
   const double angle = axis.norm();
   return angle > 0 ? Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix() : Mat3::Identity().eval();
 }
@@ -38,16 +41,14 @@ Vec3 PeriodicCell::widths() const
 
 Mat3 PeriodicCell::deform(const Mat3 &displacement_gradient)
 {
-  Mat3 mid = displacement_gradient;
-  const bool turns = displacement_gradient != displacement_gradient.transpose();
-  if (turns || rotation != Mat3::Identity())
-    {
-      const Mat3 own = rotation.transpose() * displacement_gradient * rotation;
-      const Mat3 half = rotation_of(0.5 * own);
-      mid = half.transpose() * own * half;
-      rotation = orthogonal(rotation * rotation_of(mid));
-    }
-  strain_step = 0.5 * (mid + mid.transpose());
+  // stretching and spin are parted before they are turned: of a rigid rotation nothing is left in the first
+  const Mat3 stretching = 0.5 * (displacement_gradient + displacement_gradient.transpose());
+  const Vec3 spin = rotation.transpose() * axial_of(displacement_gradient);
+  const Mat3 half_on = rotation * rotation_by(0.5 * spin), own = half_on.transpose() * stretching * half_on;
+  rotation = orthogonal(rotation * rotation_by(spin));
+  strain_step = 0.5 * (own + own.transpose());
+  if (strain_step.isZero(0.0))
+    return Mat3::Zero();
   const Mat3 growth = strain_step + 0.5 * strain_step * strain_step;
   edges += (growth * edges).eval();
   deformation += (growth * deformation).eval();

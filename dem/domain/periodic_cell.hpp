@@ -24,9 +24,8 @@ inline Eigen::Vector3i image_shift(ImageCode code)
 ///
 ///         c ____          x = deformation X + fluctuations; an image of a grain stands at x + edges * (whole numbers)
 ///          /   /|
-///         /___/ | b       own frame: turns with the mean rotation of the material, so that all it ever sees is
-///         stretch;
-///     a  |   |  /         laboratory = rotation * own
+///         /___/ | b       own frame: turns with the mean rotation of the material,
+///     a  |   |  /         so that all it ever sees is stretch; laboratory = rotation * own
 ///        |___| /
 ///
 /// A step with displacement gradient H = L dt (laboratory) is split at mid-step (Hughes & Winget 1980): with Q the

@@ -39,7 +39,7 @@ void VerletList::update(const Packing &packing, const RigidBox &box, double grea
 bool VerletList::update(const Packing &packing, const PeriodicCell &cell, double greatest_step, ContactList &contacts,
                         int threads)
 {
-  const Domain domain{cell.deformation, Vec3::Zero(), nullptr, &cell};
+  const Domain domain{cell.edges, Vec3::Zero(), nullptr, &cell}; // other edges of the lattice are another shape
   const std::uint64_t before = n_rebuilds_;
   update(packing, domain, greatest_step, contacts, threads);
   return n_rebuilds_ != before;

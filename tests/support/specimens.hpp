@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace isostat::test
 {
@@ -30,19 +31,47 @@ inline GradingSpec small_grading(std::uint64_t grains)
 
 /// A real specimen in seconds: cloud, compression to 200 kPa at a preparation friction, 18 deg, balance. Made once per
 /// program and kept.
-inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees)
+inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees,
+                                const std::string &domain = "rigid-box")
 {
-  static std::map<std::pair<std::uint64_t, double>, Snapshot> made;
-  const auto key = std::pair(grains, preparation_degrees);
+  static std::map<std::tuple<std::uint64_t, double, std::string>, Snapshot> made;
+  const auto key = std::tuple(grains, preparation_degrees, domain);
   if (!made.contains(key))
     {
       Unobserved nobody;
-      const SpecimenSpec spec;
+      SpecimenSpec spec;
+      spec.domain = domain;
       const Cloud cloud = make_cloud(small_grading(grains));
       const Snapshot compacted = compact(cloud, paper_law(), std::tan(preparation_degrees * M_PI / 180), spec, nobody);
       made[key] = rebalance(compacted, paper_law(), spec, nobody);
     }
   return made[key];
+}
+
+/// The same in a periodic cell.
+inline const Snapshot &periodic_specimen(std::uint64_t grains, double preparation_degrees)
+{
+  return specimen(grains, preparation_degrees, "periodic-cell");
+}
+
+/// `n` periods of a periodic specimen in one long cell, contacts without their past.
+inline Snapshot row_of_periods(const Snapshot &specimen, std::size_t n)
+{
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (std::size_t period = 0; period < n; ++period)
+    for (std::size_t i = 0; i < specimen.grains.n_grains(); ++i)
+      {
+        centres.push_back(specimen.grains.centre(i) + period * specimen.cell->edges.col(0));
+        radii.push_back(specimen.grains.radius(i));
+      }
+  Snapshot row;
+  row.grains = make_packing(centres, radii, specimen.grains.density);
+  row.law = specimen.law;
+  row.cell = specimen.cell;
+  row.cell->edges.col(0) *= static_cast<double>(n);
+  row.cell->reference_volume *= static_cast<double>(n);
+  return row;
 }
 
 /// `n` copies of a specimen in a row along x in one long box, every other one mirrored: a larger packing without its

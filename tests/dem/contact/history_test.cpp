@@ -195,4 +195,77 @@ TEST(ContactList, HistoryGoesOverInEveryChunkOnAnyNumberOfThreads)
           expect_equal(list.history(lane), p.second - p.first == 1 + p.first % 2 ? marked(p) : ContactHistory{});
     }
 }
+
+TEST(ContactList, ImagesStayWithTheirPairsInEveryChunk)
+{
+  const std::uint32_t n = 5000;
+  std::vector<Pair> pairs;
+  std::vector<ImageCode> images;
+  auto shift_of = [](const Pair &p) {
+    return Eigen::Vector3i(static_cast<int>(p.first % 3) - 1, 0, static_cast<int>(p.second % 2));
+  };
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j : {i + 1, i + 1000})
+      if (j < n)
+        {
+          pairs.emplace_back(i, j);
+          images.push_back(image_code(shift_of(pairs.back())));
+        }
+  const Packing packing = make_packing(std::vector<Vec3>(n, Vec3(1, 2, 3)), std::vector<double>(n, 0.1), 2650);
+  Mat3 edges;
+  edges << 2, 0.5, 0.25, 0, 3, -0.5, 0, 0.125, 4;
+  ContactList list(full);
+  list.replace_pairs(pairs, n, 1, images);
+  ASSERT_GE(list.partition().n_chunks, 4u);
+  for (const LawFeatures on : {full, sliding})
+    for (const double factor : {1.0, 2.0}) // the cell deforms, the pairs stay
+      {
+        list.set_features(on);
+        list.set_cell(factor * edges);
+        for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
+          {
+            const Pair p = pair_at(list, lane);
+            Vec3 expected = Vec3::Zero();
+            if (p.first < n)
+              expected = factor * edges * shift_of(p).cast<double>();
+            if (p.first < n)
+              EXPECT_EQ(list.branch(packing, lane), expected);
+            else
+              EXPECT_EQ(list.image()[lane], 0u) << "idle lanes are not shifted";
+          }
+      }
+  list.replace_pairs(pairs, n);
+  EXPECT_EQ(list.image(), nullptr) << "a box has no images";
+}
+
+TEST(ContactList, SavedHistoryComesBackAndAllOtherPairsForget)
+{
+  const auto few = pairs_of(12, [](auto i, auto j) { return (i + j) % 3 != 0; }),
+             all = pairs_of(12, [](auto, auto) { return true; });
+  for (const LawFeatures on : {full, sliding, rolling, twisting})
+    {
+      ContactList list(on);
+      list.replace_pairs(few, 12);
+      for (std::size_t p = 0; p < few.size(); p += 2)
+        list.set_history(p, marked(few[p]));
+      std::vector<Pair> pairs;
+      std::vector<double> numbers;
+      list.save_history(pairs, numbers);
+      ASSERT_EQ(pairs.size(), (few.size() + 1) / 2);
+      ASSERT_EQ(numbers.size(), pairs.size() * list.n_components());
+      ContactList other = marked_list(on, all, 12);
+      other.restore_history(pairs, numbers);
+      for (std::size_t p = 0; p < all.size(); ++p)
+        {
+          const auto at = std::find(few.begin(), few.end(), all[p]);
+          const bool saved = at != few.end() && (at - few.begin()) % 2 == 0;
+          expect_equal(other.history(p), saved ? list.history(at - few.begin()) : ContactHistory{});
+        }
+      std::vector<Pair> pairs_again;
+      std::vector<double> numbers_again;
+      other.save_history(pairs_again, numbers_again);
+      EXPECT_EQ(pairs_again, pairs);
+      EXPECT_EQ(numbers_again, numbers);
+    }
+}
 } // namespace isostat

@@ -248,6 +248,77 @@ TEST_P(Leapfrog, ReportsAFastGrainAndNotANumber)
         }
 }
 
+namespace
+{
+/// How a step of a periodic cell stretches positions; not symmetric, so that a mix-up of rows and columns would show.
+Mat3 growth_of_a_step()
+{
+  Mat3 growth;
+  growth << 1e-4, 2e-5, -3e-5, 4e-5, -2e-4, 5e-5, 6e-5, -7e-5, 1.5e-4;
+  return growth;
+}
+} // namespace
+
+TEST_P(Leapfrog, HomogeneousStrainComesOnTopOfTheMotion)
+{
+  const double dt = 5e-8;
+  const Mat3 growth = growth_of_a_step();
+  const AffineStep affine(growth);
+  for (const bool measured : {false, true})
+    {
+      const Packing before = moving_packing(40);
+      Packing packing = before, plain = before;
+      Action action = random_action(packing, dt, 3), same = action;
+      const MotionReport report = integrate(packing, 0, 40, action.data(), dt, 0.2, no_limit, measured, &affine);
+      const MotionReport expected = integrate(plain, 0, 40, same.data(), dt, 0.2, no_limit, measured);
+      // velocities are fluctuations: damping and everything else goes by them alone
+      EXPECT_EQ(packing.velocity, plain.velocity);
+      EXPECT_EQ(packing.spin, plain.spin);
+      EXPECT_EQ(action, same);
+      EXPECT_EQ(report.greatest_speed, expected.greatest_speed);
+      EXPECT_EQ(report.damping_loss, expected.damping_loss);
+      for (std::size_t i = 0; i < 40; ++i)
+        {
+          const Vec3 x = before.centre(i) + (dt * packing.linear_velocity(i) + growth * before.centre(i));
+          for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(packing.centre(i)[k], x[k], 0x1p-52 * std::abs(x[k])); // one unit of the last place
+          EXPECT_EQ(packing.radius(i), before.radius(i));
+        }
+      for (std::size_t at = 4 * 40; at < packing.position.size(); ++at)
+        EXPECT_EQ(packing.position[at], before.position[at]);
+    }
+}
+
+TEST_P(Leapfrog, HomogeneousStrainMovesGrainsOfTheRangeOnly)
+{
+  const AffineStep affine(growth_of_a_step());
+  const Packing before = moving_packing(10);
+  Packing packing = before;
+  Action action = resting_action(packing);
+  integrate(packing, 3, 7, action.data(), 1e-8, 0.2, no_limit, false, &affine);
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_EQ(packing.centre(i) != before.centre(i), i >= 3 && i < 7) << i;
+}
+
+TEST_P(Leapfrog, GrainsAtRestFollowTheStrainExactly)
+{
+  Packing packing = moving_packing(20);
+  for (std::size_t i = 0; i < 20; ++i)
+    packing.set_linear_velocity(i, Vec3::Zero());
+  const Packing before = packing;
+  const Mat3 growth = 10 * growth_of_a_step(), once = Mat3::Identity() + growth;
+  Mat3 deformation = Mat3::Identity();
+  for (int step = 0; step < 100; ++step)
+    {
+      Action action = resting_action(packing);
+      const AffineStep affine(growth);
+      integrate(packing, 0, 20, action.data(), 1e-8, 0.2, no_limit, false, &affine);
+      deformation = once * deformation;
+    }
+  for (std::size_t i = 0; i < 20; ++i)
+    EXPECT_LE((packing.centre(i) - deformation * before.centre(i)).norm(), 1e-13 * before.centre(i).norm());
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Leapfrog, testing::ValuesIn(test::instruction_sets()),
                          [](const auto &set) { return std::string(hwy::TargetName(set.param)); });
 } // namespace isostat

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The SIMD contact loop in a periodic cell against its scalar twin: images of grains, homogeneous strain, virial.
+#include "tests/dem/contact/scalar_twin.hpp"
+#include "tests/support/instruction_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <hwy/targets.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double tolerance = 1e-13;
+using namespace test;
+using Pair = ContactList::Pair;
+
+/// A random cloud whose grains stand in other images of the cell: no pair is where it seems to be.
+struct CloudInCell
+{
+  Cloud cloud;
+  std::vector<ImageCode> images; ///< of each pair
+  Mat3 edges, strain_step;
+
+  Vec3 offset(std::size_t p) const { return edges * image_shift(images[p]).cast<double>(); }
+  Vec3 branch(std::size_t p) const
+  {
+    const auto [i, j] = cloud.pairs[p];
+    return cloud.packing.centre(j) - cloud.packing.centre(i) + offset(p);
+  }
+  /// The second grain at its image, with the velocity that homogeneous strain gives it there.
+  ContactPair seen(std::size_t p) const
+  {
+    ContactPair pair = pair_in_box(cloud, p);
+    pair.x2 += offset(p);
+    pair.v2 += strain_step / dt * branch(p);
+    return pair;
+  }
+};
+
+/// @param far  whole edges that grains are shifted by
+CloudInCell cloud_in_cell(unsigned seed, int far = 1)
+{
+  CloudInCell c{random_cloud(seed), {}, {}, {}};
+  c.edges << 1.6e-3, 0.5e-3, -0.2e-3, 1e-5, 1.5e-3, 0.6e-3, 0, -2e-5, 1.7e-3;
+  c.strain_step << 2e-5, 1e-5, -3e-5, 1e-5, -6e-5, 2e-5, -3e-5, 2e-5, 4e-5; // 1000/s: as fast as the grains
+  Random random(seed + 100);
+  std::vector<Eigen::Vector3i> shift;
+  Packing &g = c.cloud.packing;
+  for (std::size_t i = 0; i < g.n_grains(); ++i)
+    {
+      const Vec3 whole = ((far + 0.5) * random.vector(0.999)).array().round();
+      shift.push_back(whole.cast<int>());
+      g.set_centre(i, g.centre(i) + c.edges * whole);
+    }
+  for (const auto &[i, j] : c.cloud.pairs)
+    c.images.push_back(image_code(shift[i] - shift[j]));
+  return c;
+}
+
+/// What touches only.
+CloudInCell touching_pairs(const CloudInCell &all)
+{
+  CloudInCell c{{all.cloud.packing, {}, {}}, {}, all.edges, all.strain_step};
+  for (std::size_t p = 0; p < all.images.size(); ++p)
+    if (const auto &[i, j] = all.cloud.pairs[p];
+        all.branch(p).norm() < all.cloud.packing.radius(i) + all.cloud.packing.radius(j))
+      {
+        c.cloud.pairs.push_back(all.cloud.pairs[p]);
+        c.cloud.histories.push_back(all.cloud.histories[p]);
+        c.images.push_back(all.images[p]);
+      }
+  return c;
+}
+
+struct CellOutcome : Outcome
+{
+  Mat3 virial;
+};
+
+ContactList list_of(const CloudInCell &c, LawFeatures active, bool with_images = true)
+{
+  ContactList list(active);
+  const auto n = static_cast<std::uint32_t>(c.cloud.packing.n_grains());
+  list.replace_pairs(c.cloud.pairs, n, 1, with_images ? c.images : std::vector<ImageCode>{});
+  list.set_cell(c.edges);
+  std::size_t p = 0;
+  for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
+    if (list.first()[lane] != n)
+      list.set_history(lane, c.cloud.histories[p++]);
+  return list;
+}
+
+/// @param bound  of the sum of F b, J
+CellOutcome simd_outcome(const LawParams &law, const CloudInCell &c, bool with_energy, double bound)
+{
+  CellOutcome out;
+  ContactList list = list_of(c, law.active());
+  Virial virial;
+  virial.start(list.partition().n_chunks, bound);
+  const CellMotion motion{c.strain_step, &virial};
+  out.action.assign(8 * list.n_slots(), 0.0);
+  add_contact_forces(law, c.cloud.packing, dt, list, out.action.data(), with_energy ? &out.loss : nullptr, &motion);
+  out.virial = virial.sum();
+  std::size_t p = 0;
+  for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
+    if (list.first()[lane] < c.cloud.packing.n_grains())
+      {
+        out.histories.push_back(list.history(lane));
+        if (with_energy && law.active().friction) // in order of pairs: chunks leave lanes idle
+          for (auto *v : {&out.loss.sliding, &out.loss.rolling, &out.loss.released, &out.loss.created})
+            (*v)[p] = (*v)[lane];
+        ++p;
+      }
+  return out;
+}
+
+/// Sum of F b by the scalar law, and of |F| |b|.
+std::pair<Mat3, double> scalar_virial(const LawParams &law, const CloudInCell &c)
+{
+  Mat3 sum = Mat3::Zero();
+  double size = 0;
+  for (std::size_t p = 0; p < c.images.size(); ++p)
+    {
+      ContactHistory history = masked(c.cloud.histories[p], law.active());
+      const Vec3 force = contact_force(law, c.seen(p), dt, history).force, b = c.branch(p);
+      sum += force * b.transpose();
+      size += force.norm() * b.norm();
+    }
+  sum.triangularView<Eigen::StrictlyLower>() = sum.transpose(); // the loop sums the upper triangle
+  return {sum, size};
+}
+
+/// Clouds upon each other, as many as make several chunks, with pairs from each cloud to the next.
+CloudInCell many_clouds(unsigned seed)
+{
+  const CloudInCell one = cloud_in_cell(seed);
+  const Packing &g = one.cloud.packing;
+  const auto n = static_cast<std::uint32_t>(g.n_grains());
+  const std::uint32_t copies = 3000 / n + 1, total = copies * n;
+  CloudInCell all{{}, {}, one.edges, one.strain_step};
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  auto add = [&](std::uint32_t first, std::uint32_t second, std::size_t p) {
+    all.cloud.pairs.emplace_back(first, second);
+    all.cloud.histories.push_back(one.cloud.histories[p]);
+    all.images.push_back(one.images[p]);
+  };
+  for (std::uint32_t at = 0; at < total; ++at)
+    {
+      const std::uint32_t i = at % n, copy = at - i;
+      centres.push_back(g.centre(i));
+      radii.push_back(g.radius(i));
+      for (const std::uint32_t to : {copy, copy + n}) // to its own copy, and to the next one
+        for (std::size_t p = 0; p < one.images.size(); ++p)
+          if (one.cloud.pairs[p].first == i && to < total && (to == copy || p % 7 == 0))
+            add(at, to + one.cloud.pairs[p].second, p);
+    }
+  all.cloud.packing = make_packing(centres, radii, 2650);
+  for (std::uint32_t at = 0; at < total; ++at)
+    {
+      all.cloud.packing.set_linear_velocity(at, g.linear_velocity(at % n));
+      all.cloud.packing.set_angular_velocity(at, g.angular_velocity(at % n));
+    }
+  return all;
+}
+
+double energy_of(const LawParams &law, const CloudInCell &c) { return law.young * c.edges.determinant(); }
+
+/// Worst misfit of the loop: forces, histories and losses, and the virial in units of sum |F| |b|.
+std::pair<double, double> worst_misfit(const LawParams &law, const CloudInCell &c, bool with_energy)
+{
+  const CellOutcome out = simd_outcome(law, c, with_energy, energy_of(law, c));
+  const auto [virial, size] = scalar_virial(law, c);
+  Outcome twin = scalar_outcome(law, c.cloud, [&](std::size_t p) { return c.seen(p); });
+  return {misfit(out, twin, with_energy), (out.virial - virial).norm() / size};
+}
+
+bool same_bits(const Mat3 &a, const Mat3 &b) { return (a.array() == b.array()).all(); }
+} // namespace
+
+/// Runs once for each instruction set that both the machine and the compiler have.
+class CellKernel : public testing::TestWithParam<std::int64_t>
+{
+protected:
+  void SetUp() override
+  {
+    hwy::SetSupportedTargetsForTest(GetParam());
+    ASSERT_EQ(instruction_set(), hwy::TargetName(GetParam()));
+  }
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+TEST_P(CellKernel, EqualsTheScalarLawAtTheImage)
+{
+  for (const Variant &v : variants)
+    for (const bool with_energy : {false, true})
+      {
+        double worst = 0, worst_virial = 0;
+        for (unsigned seed = 1; seed <= 10; ++seed)
+          {
+            const auto [all, virial] = worst_misfit(law_of(v), cloud_in_cell(seed), with_energy);
+            worst = std::max(worst, all);
+            worst_virial = std::max(worst_virial, virial);
+          }
+        std::printf("%-9s %-12s %-6s %.1e, virial %.1e\n", instruction_set().c_str(), v.name,
+                    with_energy ? "energy" : "", worst, worst_virial);
+        EXPECT_LE(worst, tolerance) << v.name << (with_energy ? " with energy" : "");
+        EXPECT_LE(worst_virial, 1e-12) << v.name;
+      }
+}
+
+TEST_P(CellKernel, ChunksAndGhostsAddUpToTheScalarSums)
+{
+  const CloudInCell c = many_clouds(15);
+  ASSERT_GT(list_of(c, {}).partition().n_chunks, 3u);
+  ASSERT_GT(list_of(c, {}).n_slots(), c.cloud.packing.n_grains() + Packing::n_padding);
+  for (const Variant &v : variants)
+    for (const bool with_energy : {false, true})
+      {
+        const auto [worst, virial] = worst_misfit(law_of(v), c, with_energy);
+        EXPECT_LE(worst, tolerance) << v.name << (with_energy ? " with energy" : "");
+        EXPECT_LE(virial, 1e-12) << v.name;
+      }
+}
+
+TEST_P(CellKernel, WithoutStrainAndImagesItChangesNoBit)
+{
+  for (const Variant &v : variants)
+    {
+      CloudInCell c = cloud_in_cell(16, 0);
+      c.strain_step.setZero();
+      const LawParams law = law_of(v);
+      ContactList box_list = list_of(c, law.active(), false);
+      AlignedVector<double> action(8 * box_list.n_slots(), 0.0);
+      add_contact_forces(law, c.cloud.packing, dt, box_list, action.data());
+      const CellOutcome out = simd_outcome(law, c, false, energy_of(law, c));
+      EXPECT_EQ(std::memcmp(action.data(), out.action.data(), 8 * action.size()), 0) << v.name;
+    }
+}
+
+TEST_P(CellKernel, PairsThatDoNotTouchAndEnergySumsChangeNoBit)
+{
+  // a low bound of the virial makes its grid coarse: rounding that went by what is already in a lane would show
+  for (const Variant &v : variants)
+    for (unsigned seed = 20; seed < 40; ++seed)
+      for (const double bound : {4.0, 1e6})
+        {
+          const CloudInCell c = cloud_in_cell(seed);
+          const CellOutcome all = simd_outcome(law_of(v), c, false, bound),
+                            few = simd_outcome(law_of(v), touching_pairs(c), false, bound),
+                            measured = simd_outcome(law_of(v), c, true, bound);
+          ASSERT_GT(all.histories.size(), few.histories.size() + 8);
+          EXPECT_EQ(std::memcmp(all.action.data(), few.action.data(), 8 * all.action.size()), 0) << v.name;
+          EXPECT_EQ(std::memcmp(all.action.data(), measured.action.data(), 8 * all.action.size()), 0) << v.name;
+          EXPECT_TRUE(same_bits(all.virial, few.virial)) << v.name << " seed " << seed << " bound " << bound;
+          EXPECT_TRUE(same_bits(all.virial, measured.virial)) << v.name << " seed " << seed;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, CellKernel, testing::ValuesIn(test::instruction_sets()),
+                         [](const auto &set) { return std::string(hwy::TargetName(set.param)); });
+} // namespace isostat

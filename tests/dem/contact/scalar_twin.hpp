@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the contact loop is tested against: contact_force() over all pairs of a random cloud, and the misfit of both.
+#pragma once
+#include "dem/contact/kernel.hpp"
+#include "tests/dem/contact/random_cloud.hpp"
+
+namespace isostat::test
+{
+inline constexpr double dt = 5e-8; // s
+
+/// What one force evaluation leaves behind.
+struct Outcome
+{
+  AlignedVector<double> action; ///< [F 0 T 0] per grain
+  std::vector<ContactHistory> histories;
+  DissipationPerPair loss;
+};
+
+/// History that the parts of the law which are off do not have.
+inline ContactHistory masked(const ContactHistory &h, LawFeatures on)
+{
+  const Vec3 zero = Vec3::Zero();
+  if (!on.friction)
+    return {};
+  return {h.normal, h.shear_force, on.rolling ? h.bending_moment : zero, on.twisting ? h.twisting_moment : zero};
+}
+
+inline double spring_energy(const Vec3 &force, double stiffness)
+{
+  return stiffness > 0 ? 0.5 * force.squaredNorm() / stiffness : 0;
+}
+
+/// Losses of a pair from the scalar law alone: without limits it gives the trial state, without stiffness the history
+/// that has only turned.
+inline void scalar_loss(const LawParams &law, const ContactPair &pair, const ContactHistory &past,
+                        const ContactHistory &now, bool touching, std::size_t p, DissipationPerPair &loss)
+{
+  const ContactStiffness k = contact_stiffness(law, pair.r1, pair.r2);
+  if (!touching)
+    {
+      loss.released[p] = spring_energy(past.shear_force, k.shear) + spring_energy(past.bending_moment, k.rolling) +
+                         spring_energy(past.twisting_moment, k.twisting);
+      return;
+    }
+  LawParams unlimited = law;
+  unlimited.friction = unlimited.rolling_limit = 1e30;
+  LawParams limp = unlimited;
+  limp.stiffness_ratio = 0;
+  ContactHistory trial = past, turned = past;
+  contact_force(unlimited, pair, dt, trial);
+  contact_force(limp, pair, dt, turned);
+  const Vec3 mid_force = 0.5 * (turned.shear_force + now.shear_force);
+  loss.sliding[p] = mid_force.dot(trial.shear_force - now.shear_force) / k.shear;
+  // the law measures slip with arms R1, R2; its force acts at the contact point
+  const Vec3 branch = pair.x2 - pair.x1, n = branch.normalized(), point = 0.5 * (branch + (pair.r1 - pair.r2) * n);
+  const Vec3 true_slip = pair.v2 - pair.v1 + pair.w2.cross(point - branch) - pair.w1.cross(point);
+  const Vec3 law_slip =
+      (pair.r1 + pair.r2) / branch.norm() * (pair.v2 - pair.v1) - (pair.r2 * pair.w2 + pair.r1 * pair.w1).cross(n);
+  loss.created[p] = dt * mid_force.dot(true_slip - law_slip);
+  if (k.rolling > 0)
+    loss.rolling[p] =
+        0.5 * (turned.bending_moment + now.bending_moment).dot(trial.bending_moment - now.bending_moment) / k.rolling;
+}
+
+/// The same by the scalar law, pair after pair; `see(p)` gives pair p as the law sees it.
+template <typename See>
+Outcome scalar_outcome(const LawParams &law, const Cloud &cloud, const See &see)
+{
+  Outcome out;
+  const Packing &g = cloud.packing;
+  out.action.assign(8 * (g.n_grains() + Packing::n_padding), 0.0);
+  out.loss.resize(cloud.pairs.size());
+  for (std::size_t p = 0; p < cloud.pairs.size(); ++p)
+    {
+      const auto [i, j] = cloud.pairs[p];
+      const ContactPair pair = see(p);
+      const ContactHistory past = masked(cloud.histories[p], law.active());
+      ContactHistory now = past;
+      const ContactForce f = contact_force(law, pair, dt, now);
+      for (int k = 0; k < 3; ++k)
+        {
+          out.action[8 * i + k] -= f.force[k];
+          out.action[8 * j + k] += f.force[k];
+          out.action[8 * i + 4 + k] += f.torque1[k];
+          out.action[8 * j + 4 + k] += f.torque2[k];
+        }
+      out.histories.push_back(masked(now, law.active()));
+      if (law.active().friction)
+        scalar_loss(law, pair, past, now, f.touching, p, out.loss);
+    }
+  return out;
+}
+
+/// Pair p as it stands, without periodic images.
+inline ContactPair pair_in_box(const Cloud &cloud, std::size_t p)
+{
+  const Packing &g = cloud.packing;
+  const auto [i, j] = cloud.pairs[p];
+  return {g.centre(i),          g.linear_velocity(i),  g.angular_velocity(i), g.centre(j),
+          g.linear_velocity(j), g.angular_velocity(j), g.radius(i),           g.radius(j)};
+}
+
+/// Largest |a - b| over largest |b|; `pick` gives a vector of an element.
+template <typename Container, typename Pick>
+double misfit(const Container &a, const Container &b, std::size_t n, const Pick &pick)
+{
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    {
+      error = std::max(error, (pick(a, i) - pick(b, i)).norm());
+      scale = std::max(scale, pick(b, i).norm());
+    }
+  return scale > 0 ? error / scale : error;
+}
+
+/// Worst misfit of everything that a force evaluation leaves behind.
+inline double misfit(const Outcome &a, const Outcome &b, bool with_energy)
+{
+  using Histories = std::vector<ContactHistory>;
+  using Numbers = AlignedVector<double>;
+  const std::size_t n = b.histories.size(), grains = b.action.size() / 8;
+  auto record = [](std::size_t offset) {
+    return [=](const Numbers &v, std::size_t i) { return Vec3(&v[8 * i + offset]); };
+  };
+  auto member = [](auto m) { return [=](const Histories &h, std::size_t i) { return h[i].*m; }; };
+  auto number = [](const Numbers &v, std::size_t i) { return Vec3(v[i], 0, 0); };
+  double worst = std::max(misfit(a.action, b.action, grains, record(0)), misfit(a.action, b.action, grains, record(4)));
+  for (auto m : {&ContactHistory::normal, &ContactHistory::shear_force, &ContactHistory::bending_moment,
+                 &ContactHistory::twisting_moment})
+    worst = std::max(worst, misfit(a.histories, b.histories, n, member(m)));
+  if (with_energy && !a.loss.sliding.empty())
+    for (auto m : {&DissipationPerPair::sliding, &DissipationPerPair::rolling, &DissipationPerPair::released,
+                   &DissipationPerPair::created})
+      worst = std::max(worst, misfit(a.loss.*m, b.loss.*m, n, number));
+  return worst;
+}
+
+struct Variant
+{
+  const char *name;
+  bool friction, rolling, twisting;
+};
+inline constexpr Variant variants[] = {{"frictionless", false, false, false},
+                                       {"sliding", true, false, false},
+                                       {"rolling", true, true, false},
+                                       {"twisting", true, false, true},
+                                       {"full", true, true, true}};
+
+inline LawParams law_of(const Variant &v)
+{
+  LawParams law;
+  law.twisting_stiffness = 0.7; // other than alpha_r: a mix-up would show
+  law.features = {v.friction, v.rolling, v.twisting};
+  return law;
+}
+} // namespace isostat::test

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pairs of a periodic packing, and the list that follows them, against brute force over images.
+#include "dem/neighbours/periodic_grid.hpp"
+
+#include "dem/error.hpp"
+#include "dem/neighbours/verlet_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+namespace isostat
+{
+namespace
+{
+using Pair = ContactList::Pair;
+
+struct Random
+{
+  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
+  Vec3 vector()
+  {
+    const double x = (*this)(), y = (*this)();
+    return {x, y, (*this)()};
+  }
+  std::mt19937_64 engine{1};
+};
+
+struct Image
+{
+  Eigen::Vector3i shift;
+  Vec3 branch; ///< from the first grain to this image of the second, m
+};
+
+/// visit(i, j, image) for every image, of the (2 range + 1)^3 about the second grain's place in the cell of the first,
+/// whose surface is closer than `skin`.
+template <typename Visit>
+void for_near_images(const Packing &packing, const Mat3 &edges, double skin, int range, const Visit &visit)
+{
+  const Mat3 to_fraction = edges.inverse();
+  for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
+    for (std::uint32_t j = i + 1; j < packing.n_grains(); ++j)
+      {
+        const Vec3 between = packing.centre(j) - packing.centre(i);
+        const Eigen::Vector3i middle = (to_fraction * between).array().floor().cast<int>();
+        const double reach = packing.radius(i) + packing.radius(j) + skin;
+        for (int a = -range; a <= range; ++a)
+          for (int b = -range; b <= range; ++b)
+            for (int c = -range; c <= range; ++c)
+              {
+                const Eigen::Vector3i shift = Eigen::Vector3i(a, b, c) - middle;
+                const Vec3 branch = between + edges * shift.cast<double>();
+                if (branch.squaredNorm() < reach * reach)
+                  visit(i, j, Image{shift, branch});
+              }
+      }
+}
+
+std::map<Pair, Image> near_pairs(const Packing &packing, const Mat3 &edges, double skin, int range)
+{
+  std::map<Pair, Image> near;
+  for_near_images(packing, edges, skin, range, [&](std::uint32_t i, std::uint32_t j, const Image &image) {
+    EXPECT_TRUE(near.emplace(Pair(i, j), image).second) << "near through two images: the cell is too narrow";
+  });
+  return near;
+}
+
+/// Grains anywhere in the cell or, `far` edges from it, outside; they may overlap.
+Packing random_packing(Random &random, std::size_t n, const Mat3 &edges, double radius, int far)
+{
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < n; ++i)
+    {
+      radii.push_back(radius * (1 + 0.5 * random()));
+      const Vec3 whole = ((far + 0.5) * random.vector()).array().round();
+      centres.push_back(edges * (0.5 * random.vector() + Vec3::Constant(0.5) + whole));
+    }
+  return make_packing(centres, radii, 2650);
+}
+
+Mat3 leaning(const Vec3 &lengths, double ab, double ac, double bc)
+{
+  Mat3 edges = lengths.asDiagonal();
+  edges.col(1) += ab * edges.col(0);
+  edges.col(2) += ac * edges.col(0) + bc * edges.col(1);
+  return edges;
+}
+
+struct Cell
+{
+  const char *name;
+  Mat3 edges;
+  std::size_t n;
+};
+std::vector<Cell> cells()
+{
+  const Vec3 cube = Vec3::Constant(2);
+  return {{"cubic", cube.asDiagonal(), 200},
+          {"sheared", leaning(cube, 0.6, -0.6, 0.5), 200},
+          {"sheared_far", leaning(cube, 1.4, -0.9, 1.2), 200},
+          {"left_handed", leaning(Vec3(2, -2, 2), 0.3, 0.5, -0.2), 200},
+          {"elongated", leaning(Vec3(20, 1.3, 1.5), 0.1, 0, 0.4), 200},
+          {"flat", leaning(Vec3(6, 6, 0.95), 0.5, 0.01, 0), 200},
+          {"one_row", Vec3::Constant(0.91).asDiagonal(), 60},
+          {"two_rows", leaning(Vec3(1.1, 1, 1.2), 0.3, 0.2, -0.3), 60},
+          {"three_rows", leaning(Vec3(1.4, 1.5, 1.45), 0.1, 0, 0.2), 100},
+          {"wide_and_empty", Vec3(300, 200, 400).asDiagonal(), 30}};
+}
+} // namespace
+
+TEST(FindPairsInACell, EqualsBruteForceOverImages)
+{
+  Random random;
+  std::size_t found = 0, across = 0;
+  for (const Cell &cell : cells())
+    for (const double skin : {0.0, 1e-3, 0.1})
+      for (const int far : {0, 1, 100})
+        {
+          const Packing packing = random_packing(random, cell.n, cell.edges, 0.1, far);
+          SCOPED_TRACE(testing::Message() << cell.name << " skin " << skin << " far " << far);
+          const auto expected = near_pairs(packing, cell.edges, skin, 3);
+          const auto [pairs, images] = find_pairs(packing, cell.edges, skin);
+          ASSERT_EQ(pairs.size(), expected.size());
+          ASSERT_EQ(images.size(), expected.size());
+          std::size_t p = 0;
+          for (const auto &[pair, image] : expected)
+            {
+              ASSERT_EQ(pairs[p], pair);
+              ASSERT_EQ(image_shift(images[p]), image.shift);
+              across += image.shift != Eigen::Vector3i::Zero();
+              ++p;
+            }
+          found += p;
+        }
+  std::printf("%zu pairs, %zu of them with an image\n", found, across);
+  EXPECT_GT(across, 1000u);
+}
+
+TEST(FindPairsInACell, NoneOneAndTwo)
+{
+  const Mat3 edges = leaning(Vec3::Ones(), 0.3, 0, 0.2);
+  EXPECT_TRUE(find_pairs(make_packing({}, {}, 2650), edges, 0.1).first.empty());
+  EXPECT_TRUE(find_pairs(make_packing({Vec3(1, 2, 3)}, {0.1}, 2650), edges, 0.1).first.empty());
+  const Vec3 here(0.1, 0.2, 0.3), near(0.15, 0, 0);
+  const auto [pairs, images] =
+      find_pairs(make_packing({here + edges * Vec3(2, -3, 1), here + near}, {0.1, 0.1}, 2650), edges, 0);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(image_shift(images[0]), Eigen::Vector3i(2, -3, 1));
+  // touching exactly is no pair, through a face neither
+  EXPECT_TRUE(
+      find_pairs(make_packing({Vec3(0.25, 0, 0), Vec3(3.75, 0, 0)}, {0.25, 0.25}, 2650), 4 * Mat3::Identity(), 0)
+          .first.empty());
+}
+
+namespace
+{
+ContactHistory marked(const Pair &p) { return {Vec3(1, p.first, p.second), Vec3(2, p.first, p.second), {}, {}}; }
+
+struct Motion
+{
+  const char *name;
+  double drift, jitter; ///< per step; the mean radius is 0.12
+  double shear, normal; ///< strain per step
+};
+
+/// Grains that drift and jitter in a cell that deforms and flips, with a list that follows them.
+class MovingCell
+{
+public:
+  explicit MovingCell(const Motion &m)
+      : motion_(m), cell_(PeriodicCell::with_edges({2, 1.8, 2.2})),
+        packing_(random_packing(random_, 120, cell_.edges, 0.12, 0))
+  {
+    for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+      drift_.push_back(m.drift * random_.vector());
+    gradient_ << 0.5 * m.normal, m.shear, 0, 0, -m.normal, 0.7 * m.shear, 0, 0, 0.5 * m.normal;
+    list_.update(packing_, cell_, 0, contacts_);
+    contacts_.set_cell(cell_.edges);
+    check();
+  }
+
+  void step()
+  {
+    const Mat3 growth = cell_.deform(gradient_);
+    double greatest = 0;
+    for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+      {
+        const Vec3 moved = drift_[i] + motion_.jitter * random_.vector();
+        packing_.set_centre(i, packing_.centre(i) + growth * packing_.centre(i) + moved);
+        greatest = std::max(greatest, moved.norm());
+      }
+    if (const auto upright = cell_.upright_edges())
+      flip(*upright);
+    list_.update(packing_, cell_, greatest + growth.norm() * 2 * packing_.max_radius(), contacts_);
+    contacts_.set_cell(cell_.edges);
+  }
+
+  /// Everything that touches is listed with the right image, and pairs that went on touching have their history.
+  void check()
+  {
+    std::map<Pair, std::size_t> place;
+    for (std::size_t p = 0; p < contacts_.n_pairs(); ++p)
+      place[{contacts_.first()[p], contacts_.second()[p]}] = p;
+    const auto now = near_pairs(packing_, cell_.edges, 0, 1);
+    for (const auto &[pair, image] : now)
+      {
+        ASSERT_TRUE(place.contains(pair)) << pair.first << ' ' << pair.second;
+        const std::size_t p = place[pair];
+        ASSERT_LE((contacts_.branch(packing_, p) - image.branch).norm(), 1e-13);
+        if (touching_.contains(pair))
+          {
+            ASSERT_EQ(contacts_.history(p).normal, marked(pair).normal);
+            ASSERT_EQ(contacts_.history(p).shear_force, marked(pair).shear_force);
+          }
+        contacts_.set_history(p, marked(pair));
+      }
+    n_touching += now.size();
+    touching_ = now;
+  }
+
+  const PeriodicCell &cell() const { return cell_; }
+  const VerletList &list() const { return list_; }
+  std::size_t n_touching = 0;
+
+private:
+  void flip(const Mat3 &upright)
+  {
+    cell_.edges = upright;
+    ++cell_.flips;
+    const Mat3 to_fraction = upright.inverse();
+    for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+      {
+        const Vec3 whole = (to_fraction * packing_.centre(i)).array().floor();
+        packing_.set_centre(i, packing_.centre(i) - upright * whole);
+      }
+    list_.invalidate();
+  }
+
+  Random random_;
+  Motion motion_;
+  Mat3 gradient_;
+  PeriodicCell cell_;
+  Packing packing_;
+  std::vector<Vec3> drift_;
+  VerletList list_;
+  ContactList contacts_{LawFeatures{true, false, false}};
+  std::map<Pair, Image> touching_;
+};
+
+const Motion motions[] = {{"jitter", 0, 1e-3, 0, 0},           {"drift", 5e-4, 0, 0, 0},
+                          {"fast", 1e-2, 1e-2, 0, 0},          {"shear", 1e-5, 1e-5, 1e-4, 0},
+                          {"fast_shear", 1e-4, 1e-3, 6e-3, 0}, {"compression", 1e-5, 1e-5, 0, 1e-3},
+                          {"all", 1e-5, 1e-4, 4e-3, -5e-4}};
+} // namespace
+
+class VerletListInACell : public testing::TestWithParam<Motion>
+{};
+
+TEST_P(VerletListInACell, NoContactIsMissedAndHistoryStays)
+{
+  const Motion m = GetParam();
+  MovingCell moving(m);
+  for (int step = 0; step < 300; ++step)
+    {
+      moving.step();
+      ASSERT_NO_FATAL_FAILURE(moving.check()) << "step " << step;
+    }
+  std::printf("%s: %llu rebuilds, %llu searches, %llu flips in 300 steps\n", m.name,
+              static_cast<unsigned long long>(moving.list().n_rebuilds()),
+              static_cast<unsigned long long>(moving.list().n_searches()),
+              static_cast<unsigned long long>(moving.cell().flips));
+  EXPECT_GT(moving.n_touching, 15'000u);
+  EXPECT_GT(moving.list().n_rebuilds(), 1u);
+  EXPECT_GE(moving.cell().flips, m.shear > 1e-3 ? 1u : 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Motions, VerletListInACell, testing::ValuesIn(motions),
+                         [](const auto &m) { return std::string(m.param.name); });
+
+TEST(VerletListOfACell, HomogeneousShearNeedsFewRebuilds)
+{
+  MovingCell moving({"", 0, 0, 1e-4, 0});
+  for (int step = 0; step < 100; ++step)
+    {
+      moving.step();
+      ASSERT_NO_FATAL_FAILURE(moving.check()) << "step " << step;
+    }
+  EXPECT_LT(moving.list().n_rebuilds(), 30u);
+}
+
+TEST(VerletListOfACell, OtherEdgesOfTheSameLatticeAreNoticed)
+{
+  // the same number of flips, but other ones: positions and edges have been replaced by those of another state
+  Random random;
+  PeriodicCell cell = PeriodicCell::with_edges(Vec3::Constant(2)), other = cell;
+  other.edges.col(0) += other.edges.col(1);
+  const Packing packing = random_packing(random, 100, cell.edges, 0.15, 0);
+  ContactList contacts;
+  VerletList list;
+  list.update(packing, cell, 0, contacts);
+  list.recheck();
+  list.update(packing, other, 0, contacts);
+  contacts.set_cell(other.edges);
+  std::size_t touching = 0;
+  for (std::size_t p = 0; p < contacts.n_pairs(); ++p)
+    touching +=
+        contacts.branch(packing, p).norm() < packing.radius(contacts.first()[p]) + packing.radius(contacts.second()[p]);
+  EXPECT_EQ(touching, near_pairs(packing, cell.edges, 0, 1).size());
+}
+
+TEST(VerletListOfACell, ACellTooNarrowForItsGrainsIsRefused)
+{
+  const Packing packing = make_packing({Vec3::Zero(), Vec3(0.5, 0.5, 0.5)}, {0.2, 0.25}, 2650);
+  const auto update = [&](const Vec3 &lengths) {
+    ContactList contacts;
+    VerletList list;
+    list.update(packing, PeriodicCell::with_edges(lengths), 0, contacts);
+  };
+  EXPECT_NO_THROW(update({1.01, 1.01, 1.01}));
+  EXPECT_THROW(update({3, 0.99, 3}), RunFailure);
+  EXPECT_THROW(update({0.3, 3, 3}), RunFailure);
+  PeriodicCell sheared = PeriodicCell::with_edges({1.1, 1.1, 1.1}); // edges are longer, widths smaller
+  sheared.edges.col(1) += 0.6 * sheared.edges.col(0);
+  ContactList contacts;
+  VerletList list;
+  EXPECT_THROW(list.update(packing, sheared, 0, contacts), RunFailure);
+}
+
+TEST(VerletListOfACell, ACellThatGetsTooNarrowIsNoticedInTime)
+{
+  MovingCell moving({"", 1e-5, 1e-5, 0, 2e-3}); // flatter and flatter; near_pairs() fails where a pair meets twice
+  bool refused = false;
+  for (int step = 0; step < 1000 && !refused; ++step)
+    try
+      {
+        moving.step();
+        ASSERT_NO_FATAL_FAILURE(moving.check()) << "step " << step;
+      }
+    catch (const RunFailure &)
+      {
+        refused = true;
+      }
+  EXPECT_TRUE(refused);
+}
+} // namespace isostat

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What must hold for a real packing in a periodic cell at rest or in motion, whatever place, frame and time it is seen
+// from.
+#include "dem/measure/stress.hpp"
+#include "tests/support/cells.hpp"
+
+#include <random>
+
+namespace isostat
+{
+namespace
+{
+using namespace test;
+
+struct Random
+{
+  explicit Random(unsigned seed) : engine(seed) {}
+  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
+  Vec3 vector()
+  {
+    const double x = (*this)(), y = (*this)();
+    return {x, y, (*this)()};
+  }
+  std::mt19937_64 engine;
+};
+
+Vec3 momentum(const Packing &grains)
+{
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    sum += grains.mass(i) * grains.linear_velocity(i);
+  return sum;
+}
+
+double size_of_momentum(const Packing &grains)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    sum += grains.mass(i) * grains.linear_velocity(i).norm();
+  return sum;
+}
+
+/// The specimen, and what becomes of it within some steps at rest: it was made with another time step.
+Assembly at_rest(int steps)
+{
+  Assembly a(periodic_specimen(500, 5));
+  a.time_step = 5e-8;
+  strain(a, Mat3::Zero(), steps);
+  return a;
+}
+} // namespace
+
+TEST(PeriodicPacking, CarriesThePressureItWasMadeFor)
+{
+  Assembly a = at_rest(1);
+  const Mat3 stress = a.stress() / 200e3;
+  const auto widths = a.cell()->widths();
+  std::printf("%zu contacts, Z = %.2f, stress/200 kPa + 1: %.1e, cell %.2f mm wide\n", a.snapshot().contacts.size(),
+              2.0 * a.snapshot().contacts.size() / 500, (stress + Mat3::Identity()).diagonal().norm(),
+              1e3 * widths.minCoeff());
+  EXPECT_LE((stress + Mat3::Identity()).diagonal().norm(), 0.005);
+  EXPECT_LE(a.unbalanced_force_ratio(), 1e-4);
+}
+
+TEST(PeriodicPacking, MomentumOfTheFluctuationsIsKeptToRoundOff)
+{
+  Random random(1);
+  Snapshot s = periodic_specimen(500, 5);
+  for (std::size_t i = 0; i < 500; ++i)
+    s.grains.set_linear_velocity(i, 0.05 * random.vector());
+  const Vec3 mean = momentum(s.grains) * (1 / (s.grains.density * s.grains.solid_volume()));
+  for (std::size_t i = 0; i < 500; ++i)
+    s.grains.set_linear_velocity(i, s.grains.linear_velocity(i) - mean);
+  Assembly a(s);
+  a.time_step = 5e-8;
+  a.damping = 0;
+  Mat3 gradient = 2e-6 * Mat3::Random();
+  double worst = 0;
+  for (int look = 0; look < 50; ++look)
+    {
+      strain(a, gradient, 100);
+      worst = std::max(worst, momentum(a.packing()).norm() / size_of_momentum(a.packing()));
+    }
+  std::printf("momentum at most %.1e of the sum of magnitudes in 5,000 steps\n", worst);
+  EXPECT_LE(worst, 1e-13);
+}
+
+TEST(PeriodicPacking, PlaceAndImagesOfGrainsDoNotMatter)
+{
+  Random random(2);
+  const Snapshot start = at_rest(1).checkpoint();
+  Snapshot moved = start;
+  const Vec3 shift(0.8e-3, -1.7e-3, 2.3e-3);
+  for (std::size_t i = 0; i < 500; ++i)
+    {
+      const Vec3 whole = (2.5 * random.vector()).array().round();
+      moved.grains.set_centre(i, start.grains.centre(i) + shift + start.cell->edges * whole);
+    }
+  Assembly a(start), b(moved);
+  a.time_step = b.time_step = 5e-8;
+  a.compute_forces();
+  b.compute_forces();
+  const ForceMisfit at_once = misfit_of_forces(a.snapshot(), b.snapshot());
+  const double stress_at_once = (a.stress() - b.stress()).norm() / 200e3;
+  strain(a, simple_shear(1e-7), 100);
+  strain(b, simple_shear(1e-7), 100);
+  const double later = (a.stress() - b.stress()).norm() / 200e3;
+  std::printf("forces differ by %.1e, moments by %.1e of the mean, stress by %.1e p'; after 100 steps by %.1e p'\n",
+              at_once.force, at_once.moment, stress_at_once, later);
+  EXPECT_GT(at_once.contacts, 500u);
+  EXPECT_LE(at_once.force, 1e-9);
+  EXPECT_LE(at_once.moment, 1e-9);
+  EXPECT_LE(stress_at_once, 1e-9);
+  EXPECT_LE(later, 1e-7);
+}
+
+namespace
+{
+/// The specimen without what moves in it still, grains without contact above all.
+Assembly at_rest_without_motion()
+{
+  Assembly a = at_rest(1);
+  a.damping = 0.7;
+  strain(a, Mat3::Zero(), 20'000);
+  Snapshot s = a.checkpoint();
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      s.grains.set_linear_velocity(i, Vec3::Zero());
+      s.grains.set_angular_velocity(i, Vec3::Zero());
+    }
+  Assembly b(s);
+  b.time_step = 5e-8;
+  b.compute_forces();
+  return b;
+}
+} // namespace
+
+TEST(RigidRotation, ChangesNoBitOfThePacking)
+{
+  Assembly held(periodic_specimen(500, 5)), turned(periodic_specimen(500, 5));
+  held.time_step = turned.time_step = 5e-8;
+  Mat3 spin;
+  spin << 0, -3e-4, 2e-4, 3e-4, 0, -5e-4, -2e-4, 5e-4, 0;
+  strain(held, Mat3::Zero(), 2000);
+  strain(turned, spin, 2000);
+  EXPECT_EQ(held.packing().position, turned.packing().position);
+  EXPECT_EQ(held.packing().velocity, turned.packing().velocity);
+  EXPECT_EQ(held.packing().spin, turned.packing().spin);
+  EXPECT_GT((turned.cell()->rotation - Mat3::Identity()).norm(), 0.5);
+}
+
+TEST(RigidRotation, ByNinetyDegreesTurnsForcesAndStressAlong)
+{
+  Assembly a = at_rest_without_motion();
+  const Snapshot before = a.snapshot();
+  const Mat3 stress = a.stress();
+  const int steps = 100'000;
+  Mat3 spin = Mat3::Zero();
+  spin(1, 0) = 0.5 * M_PI / steps;
+  spin(0, 1) = -spin(1, 0);
+  strain(a, spin, steps);
+  const Snapshot after = a.snapshot(); // in the laboratory
+  const Mat3 q = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();
+  const ForceMisfit sizes = misfit_of_forces(before, after, q, true), vectors = misfit_of_forces(before, after, q);
+  const double co_rotates = (a.stress() - q * stress * q.transpose()).norm() / stress.norm();
+  std::printf(
+      "forces keep their size to %.1e, moments to %.1e, their direction in the packing to %.1e and %.1e; stress "
+      "co-rotates to %.1e, rotation is right to %.1e\n",
+      sizes.force, sizes.moment, vectors.force, vectors.moment, co_rotates, (a.cell()->rotation - q).norm());
+  EXPECT_LE(std::max(sizes.force, sizes.moment), 1e-6);
+  EXPECT_LE(std::max(vectors.force, vectors.moment), 1e-6);
+  EXPECT_LE(co_rotates, 1e-6);
+  EXPECT_LE((a.cell()->rotation - q).norm(), 1e-12);
+  EXPECT_LE((contact_stress(after) - a.stress()).norm(), 1e-4 * stress.norm()); // the skew part is in the first only
+}
+
+namespace
+{
+/// Symmetric part of Love-Weber stress; that of the loop goes by its upper triangle, which is another one in another
+/// frame.
+Mat3 symmetric_stress(const Assembly &a)
+{
+  const Mat3 stress = contact_stress(a.snapshot());
+  return 0.5 * (stress + stress.transpose());
+}
+
+/// The packing itself turned in space, so that its own frame is another one.
+Snapshot turned_packing(Snapshot s, const Mat3 &q)
+{
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      s.grains.set_centre(i, q * s.grains.centre(i));
+      s.grains.set_linear_velocity(i, q * s.grains.linear_velocity(i));
+      s.grains.set_angular_velocity(i, q * s.grains.angular_velocity(i));
+    }
+  for (Contact &c : s.contacts)
+    for (auto m : {&ContactHistory::normal, &ContactHistory::shear_force, &ContactHistory::bending_moment,
+                   &ContactHistory::twisting_moment})
+      c.history.*m = q * c.history.*m;
+  s.cell->edges = q * s.cell->edges;
+  s.cell->strain_step = q * s.cell->strain_step * q.transpose();
+  return s;
+}
+} // namespace
+
+TEST(RigidRotation, ATurnedPackingShearedInTheTurnedDirectionGivesTheTurnedStressPath)
+{
+  Random random(3);
+  const Mat3 q = Eigen::AngleAxisd(2 * random(), random.vector().normalized()).toRotationMatrix();
+  const Snapshot start = at_rest(1).checkpoint();
+  for (const double damping : {0.0, 0.2}) // damping goes component by component: it knows the axes
+    {
+      Assembly a(start), b(turned_packing(start, q));
+      a.time_step = b.time_step = 5e-8;
+      a.damping = b.damping = damping;
+      const Mat3 gradient = simple_shear(1e-3 / 20'000);
+      double worst = 0;
+      for (int look = 0; look <= 20; ++look) // a first one before contacts that open and close amplify round-off
+        {
+          const int steps = look == 0 ? 20 : 1000;
+          strain(a, gradient, steps);
+          strain(b, q * gradient * q.transpose(), steps);
+          const double off = (symmetric_stress(b) - q * symmetric_stress(a) * q.transpose()).norm() / a.stress().norm();
+          std::printf("%s%.1e", look ? " " : "off by ", off);
+          worst = std::max(worst, off);
+          EXPECT_LE(off, look > 0 ? 1e-3 : damping > 0 ? 1e-4 : 1e-9);
+        }
+      std::printf("\ndamping %g: turned stress path off by %.1e at most over a shear strain of 0.1 %%, tau/p' = %.2f\n",
+                  damping, worst, -a.stress()(0, 1) / (a.stress().trace() / 3));
+    }
+}
+} // namespace isostat

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Real packings in a periodic cell under large strain: volume, symmetry of stress, flips of the cell, energy.
+#include "dem/drive/strain_path.hpp"
+#include "dem/measure/stress.hpp"
+#include "tests/support/cells.hpp"
+
+namespace isostat
+{
+namespace
+{
+using namespace test;
+constexpr double dt = 2.5e-8;
+
+/// Sum of the torques on all grains, in the cell's own frame, N m.
+Vec3 sum_of_torques(const Assembly &a)
+{
+  const AssemblyState state = a.save();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < a.packing().n_grains(); ++i)
+    sum += Vec3(&state.grains[15 * i + 12]);
+  return sum;
+}
+
+/// e_ijk s_jk
+Vec3 axial_of(const Mat3 &s) { return {s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0)}; }
+} // namespace
+
+TEST(SimpleShear, AHundredPercentAtConstantVolumePassWithoutIncident)
+{
+  Assembly a(periodic_specimen(500, 20)); // a dense one would go up to 20 MPa
+  const double volume = a.volume();
+  const Mat3 compression = a.cell()->deformation;
+  double off = 0, skew = 0, torque_gap = 0, unbalanced = 0, least_width = 1;
+  const int steps = 50'000; // some 400/s: a quick one
+  for (int look = 0; look < 100; ++look)
+    {
+      review_time_step(a);
+      strain(a, simple_shear(1.0 / steps), steps / 100);
+      off = std::max(off, std::abs(a.volume() / volume - 1));
+      const Mat3 stress = contact_stress(a.snapshot());
+      const double p = -stress.trace() / 3;
+      ASSERT_GT(p, 0);
+      skew = std::max(skew, 0.5 * (stress - stress.transpose()).norm() / p);
+      unbalanced = std::max(unbalanced, a.unbalanced_force_ratio());
+      // F acts at the contact point, moments are opposite: torques on the grains are what is not symmetric
+      const Vec3 torque = a.cell()->rotation * sum_of_torques(a) / -volume;
+      torque_gap = std::max(torque_gap, (axial_of(stress) - torque).norm() / p);
+      EXPECT_LE((0.5 * (stress + stress.transpose()) - a.stress()).norm(),
+                0.51 * (stress - stress.transpose()).norm() + 1e-9 * p); // the loop takes the upper triangle
+      least_width = std::min(least_width, a.cell()->widths().minCoeff() / std::cbrt(volume));
+    }
+  std::printf("volume off by %.1e; skew part of stress at most %.1e p', unbalanced force %.1e; skew part less torques "
+              "%.1e p'; cell >= %.2f V^1/3 wide, %llu flips, |stress| now %.0f kPa\n",
+              off, skew, unbalanced, torque_gap, least_width, static_cast<unsigned long long>(a.cell()->flips),
+              a.stress().norm() / 1e3);
+  EXPECT_LE(off, 1e-12);
+  EXPECT_GE(a.cell()->flips, 1u);
+  EXPECT_LE(torque_gap, 1e-9);
+  EXPECT_LE(skew, 0.5 * unbalanced);
+  const Mat3 expected = (Mat3::Identity() + simple_shear(1)) * compression; // that of its preparation
+  EXPECT_LE((a.cell()->rotation * a.cell()->deformation - expected).norm(), 1e-9);
+}
+
+TEST(SimpleShear, OfQuasiStaticSpeedHasSymmetricStress)
+{
+  Assembly a(periodic_specimen(500, 5));
+  a.time_step = dt;
+  double skew = 0;
+  for (int look = 0; look < 50; ++look)
+    {
+      strain(a, simple_shear(2.5e-8), 400); // 1/s, to 0.05 %
+      const Mat3 stress = contact_stress(a.snapshot());
+      skew = std::max(skew, 0.5 * (stress - stress.transpose()).norm() / -(stress.trace() / 3));
+    }
+  std::printf("skew part of stress at most %.1e p', unbalanced force %.1e\n", skew, a.unbalanced_force_ratio());
+  EXPECT_LE(skew, 1e-3);
+}
+
+TEST(Flip, ChangesForcesToRoundOffAndKeepsContactsAndHistories)
+{
+  const double step = 2e-5;
+  Assembly a(before_flip(step));
+  a.time_step = dt;
+  Snapshot last;
+  while (a.cell()->flips == 0)
+    {
+      last = a.checkpoint();
+      a.compute_forces();
+      a.deform(simple_shear(step));
+    }
+  // a twin that has the edges after the flip beforehand: its grains stand elsewhere, and its cell does not flip
+  const Mat3 combination = (last.cell->edges.inverse() * a.cell()->edges).array().round();
+  ASSERT_GT((combination - Mat3::Identity()).norm(), 0.5);
+  EXPECT_NEAR(combination.determinant(), 1, 1e-12);
+  last.cell->edges = (last.cell->edges * combination).eval();
+  Assembly b(last);
+  b.time_step = dt;
+  b.compute_forces();
+  b.deform(simple_shear(step));
+  ASSERT_EQ(b.cell()->flips, 0u);
+  EXPECT_EQ(a.checkpoint().contacts.size(), b.checkpoint().contacts.size()); // histories of the step before
+  for (const int more : {0, 1, 10})
+    {
+      strain(a, simple_shear(step), more);
+      strain(b, simple_shear(step), more);
+      const ForceMisfit misfit = misfit_of_forces(a.snapshot(), b.snapshot());
+      const double stress = (a.stress() - b.stress()).norm() / a.stress().norm();
+      std::printf(
+          "%zu contacts, %d steps after the flip: forces differ by %.1e, moments by %.1e of the mean, stress by "
+          "%.1e\n",
+          misfit.contacts, more, misfit.force, misfit.moment, stress);
+      EXPECT_GT(misfit.contacts, 500u);
+      EXPECT_LE(misfit.force, 1e-9);
+      EXPECT_LE(misfit.moment, 1e-9);
+      EXPECT_LE(stress, 1e-9);
+    }
+  EXPECT_EQ(a.cell()->flips, 1u);
+}
+
+namespace
+{
+/// Energy after strain with a smooth start; `direction` is the displacement gradient of a unit of it.
+EnergyBalance strained(double time_step, const Mat3 &direction, double strain, double rate)
+{
+  Assembly a(periodic_specimen(500, 5));
+  a.time_step = time_step;
+  a.measure_energy = true;
+  double total = 0, now = 0;
+  while (total < strain)
+    {
+      a.compute_forces();
+      now = std::min(rate, now + rate * time_step / 2e-5);
+      total += now * time_step;
+      a.deform(now * time_step * direction);
+    }
+  a.compute_forces();
+  return a.energy();
+}
+
+void expect_balance(const char *what, const EnergyBalance &e)
+{
+  std::printf("%s: work %.4e J, elastic %+.3e, kinetic %+.2e, sliding %.3e, rolling %.3e, released %.2e, damping %.3e, "
+              "created %.2e, residual/work %.2e\n",
+              what, e.boundary_work, e.elastic, e.kinetic, e.sliding, e.rolling, e.released, e.damping, e.created,
+              e.residual() / e.boundary_work);
+  EXPECT_GT(e.boundary_work, 0);
+  EXPECT_GT(e.sliding, 0.01 * e.boundary_work);
+  EXPECT_GE(e.damping, 0);
+  EXPECT_LT(std::abs(e.residual()), 1e-5 * e.boundary_work);
+}
+} // namespace
+
+TEST(EnergyBalanceInACell, ClosesUnderShearWithSliding)
+{
+  for (const double time_step : {4e-8, 2e-8})
+    expect_balance("simple shear", strained(time_step, simple_shear(1), 1e-3, 2));
+  const Mat3 compression = Vec3(0.5, -1, 0.5).asDiagonal();
+  expect_balance("compression at constant volume", strained(2e-8, compression, 5e-4, 1));
+}
+} // namespace isostat
