@@ -81,7 +81,6 @@ void Assembly::compute_forces()
     {
       if (verlet_.update(packing_, *cell_, greatest_step_, contacts_, n_threads()))
         contacts_.set_cell(cell_->edges);
-      strain_step_ = cell_->strain_step;
       virial_.start(contacts_.partition().n_chunks, law_.young * cell_->reference_volume);
     }
   else
@@ -135,7 +134,7 @@ void Assembly::for_chunks(const Work &work) const
 
 void Assembly::evaluate_chunk(std::size_t chunk) const
 {
-  const CellMotion motion{strain_step_, &virial_};
+  const CellMotion motion{cell_ ? cell_->strain_step : Mat3::Zero(), &virial_};
   add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(),
                      measure_energy ? &dissipation_ : nullptr, &motion);
 }

@@ -163,10 +163,9 @@ private:
   VerletList verlet_;
   mutable AlignedVector<double> action_; ///< [F 0 T 0] per slot
   mutable DissipationPerPair dissipation_;
-  Mat3 strain_step_ = Mat3::Zero(); ///< of the cell when compute_forces() was called: pending contacts slide by it
-  mutable Virial virial_;           ///< of a cell
-  Mat3 virial_sum_ = Mat3::Zero();  ///< of the step that save() and boundary work look at, J
-  bool forces_known_ = false;       ///< compute_forces() has been called in this step: again is for free
+  mutable Virial virial_;          ///< of a cell
+  Mat3 virial_sum_ = Mat3::Zero(); ///< of the step that save() and boundary work look at, J
+  bool forces_known_ = false;      ///< compute_forces() has been called in this step: again is for free
   enum class Pending
   {
     nothing,

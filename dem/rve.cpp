@@ -20,6 +20,7 @@ constexpr double rate_interval = 50;
 constexpr std::uint64_t servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
 constexpr int settled = 3;                          ///< looks in a row with stresses on target
+constexpr double least_reference = 1e-7;            ///< of the contact modulus: p0 of a specimen without contacts
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
 Mat3 logarithm(const Mat3 &h) { return h - 0.5 * h * h + h * h * h / 3; }
@@ -60,7 +61,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
   update_time_step(settings_.motion, true, assembly_, drive_);
   assembly_.compute_forces();
-  drive_.p0 = mean_stress();
+  drive_.p0 = std::max(mean_stress(), least_reference * assembly_.law().young);
   keep_safe();
 }
 
@@ -166,7 +167,9 @@ RveResponse Rve::guarded(double size, const Run &run)
   const auto begin = std::chrono::steady_clock::now();
   try
     {
-      if (!(size <= settings_.greatest_increment))
+      if (!std::isfinite(size))
+        response.reason = "the increment asked for is not a number";
+      else if (!(size <= settings_.greatest_increment))
         response.reason =
             fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
                         settings_.greatest_increment);
@@ -214,6 +217,8 @@ RveResponse Rve::advance(const MixedIncrement &increment)
   return guarded(increment.gradient.norm(), [&] {
     if (increment.controlled != increment.controlled.transpose())
       throw RunFailure("stress control must be asked for symmetrically: controlled(i,j) = controlled(j,i)");
+    if (!(increment.stress.allFinite() && increment.tolerance > 0))
+      throw RunFailure("the stress asked for is not a number, or its tolerance is not positive");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
           "mixed control works along the axes of the specimen: it wants an element whose frame is identity");

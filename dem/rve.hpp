@@ -82,6 +82,7 @@ class Rve
 public:
   /// @param specimen  a periodic packing at rest
   /// @throws InputError  a packing in a box; settings out of range
+  /// @throws RunFailure  a cell too narrow for its grains; a fixed time step that is unstable
   Rve(const Snapshot &specimen, const RveSettings &settings);
 
   /// Strains the element by the displacement gradient dH (laboratory, relative to its present shape): F <- (I + dH) F.

@@ -121,7 +121,7 @@ struct Loop
             hn::MulAdd(rate(4), b.x, hn::MulAdd(rate(3), b.y, hn::MulAdd(rate(2), b.z, dv.z)))};
   }
 
-  /// Sums of F b, upper triangle, lane by lane: see virial_start().
+  /// Sums of F b and its transpose, lane by lane: see Virial.
   static HWY_INLINE void add_virial(const KernelView &k, std::size_t lane, const Triple &force, const Triple &b)
   {
     const D d;
@@ -138,9 +138,9 @@ struct Loop
     add(0, force.x, b.x);
     add(1, force.y, b.y);
     add(2, force.z, b.z);
-    add(3, force.y, b.z);
-    add(4, force.x, b.z);
-    add(5, force.x, b.y);
+    add(3, force.y, b.z), add(3, force.z, b.y);
+    add(4, force.x, b.z), add(4, force.z, b.x);
+    add(5, force.x, b.y), add(5, force.y, b.x);
   }
 
   static HWY_INLINE void sub_block(const KernelView &k, std::size_t pair, std::size_t lane, double *h, bool occupied,

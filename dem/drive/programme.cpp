@@ -172,10 +172,11 @@ private:
     return about_centre(edges);
   }
 
-  /// Strain of this step of a cell that brings the servo's axes to `target` (Pa, compression positive).
+  /// Strain of this step of a cell that brings the servo's axes to `target` (Pa, compression positive). Where a
+  /// specimen is made or kept at its pressure, shear stresses are brought to zero as well.
   Mat3 servo_strain(const Vec3 &target, double rate_cap)
   {
-    Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
+    Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(!is_shear(stage_.kind));
     for (int axis = 0; axis < 3; ++axis)
       controlled(axis, axis) = servo_axes()[axis];
     return stress_servo(assembly_, Mat3((-target).asDiagonal()), controlled, rate_cap, state_);

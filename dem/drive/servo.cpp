@@ -50,11 +50,14 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Mat
 
 double stress_error(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled)
 {
-  const Vec3 stress = -assembly.stress().diagonal();
+  const Mat3 stress = -assembly.stress();
   double worst = 0;
   for (int axis = 0; axis < 3; ++axis)
-    if (controlled[axis])
-      worst = std::max(worst, std::abs(stress[axis] / target[axis] - 1));
+    {
+      if (controlled[axis])
+        worst = std::max(worst, std::abs(stress(axis, axis) / target[axis] - 1));
+      worst = std::max(worst, std::abs(stress(axis, (axis + 1) % 3)) / target.mean());
+    }
   return worst;
 }
 } // namespace isostat

@@ -28,7 +28,7 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double rate_cap, DriveState &state);
 
-/// Largest |sigma_k / target_k - 1| over the controlled axes.
+/// Largest |sigma_k / target_k - 1| over the controlled axes, and in a cell |shear stress| / mean target.
 double stress_error(const Assembly &assembly, const Vec3 &target,
                     const std::array<bool, 3> &controlled = {true, true, true});
 } // namespace isostat

@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <tuple>
 
@@ -104,20 +105,19 @@ void VerletList::choose_skin(double r_min)
 
 void VerletList::search(const Packing &packing, const Domain &domain, int threads)
 {
-  wide_skin_ = wide_over_tight * skin_;
   greatest_reach_ = 2 * packing.max_radius();
+  // a narrow cell bounds the skin: no pair may be near through two faces at once
+  const double room = domain.cell ? 0.5 * domain.cell->widths().minCoeff() - greatest_reach_ : HUGE_VAL;
+  if (!(room > 0)) // the list stays as it was
+    throw RunFailure(fmt::format("the periodic cell is {:.4g} m wide, less than twice the largest diameter {:.4g} "
+                                 "m: a grain would touch another one and its image at once. Take more grains.",
+                                 2 * (room + greatest_reach_), greatest_reach_));
+  wide_skin_ = std::min(wide_over_tight * skin_, 0.99 * room);
+  skin_ = std::min(skin_, 0.5 * wide_skin_);
   wide_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};
   ++n_searches_;
   if (domain.cell)
     {
-      // a narrow cell bounds the skin: no pair may be near through two faces at once
-      const double room = 0.5 * domain.cell->widths().minCoeff() - greatest_reach_;
-      wide_skin_ = std::min(wide_skin_, 0.99 * room);
-      skin_ = std::min(skin_, 0.5 * wide_skin_);
-      if (!(room > 0))
-        throw RunFailure(fmt::format("the periodic cell is {:.4g} m wide, less than twice the largest diameter {:.4g} "
-                                     "m: a grain would touch another one and its image at once. Take more grains.",
-                                     2 * (room + greatest_reach_), greatest_reach_));
       std::tie(candidates_, candidate_images_) = find_pairs(packing, domain.cell->edges, wide_skin_);
       return;
     }

@@ -19,8 +19,8 @@ namespace isostat
 {
 namespace
 {
-constexpr int recipe_version = 1;    // raise when preparation itself changes
-constexpr int k0_recipe_version = 2; // the same of K0 consolidation; 2: starts from 0.1 of the vertical stress, not 0.4
+constexpr int recipe_version = 1;      // raise when preparation itself changes
+constexpr int cell_recipe_version = 3; // the same in a periodic cell; 3: shear stresses are brought to zero
 constexpr int density_attempts = 3;
 
 std::mutex hdf5_access; // HDF5 serves one thread at a time
@@ -172,7 +172,7 @@ std::string specimen_recipe(const Scene &scene)
   recipe.contact = scene.contact;
   recipe.specimen = scene.specimen;
   recipe.specimen.cache = SpecimenSpec{}.cache;
-  const int version = scene.specimen.consolidation == "k0" ? k0_recipe_version : recipe_version;
+  const int version = scene.specimen.domain == "periodic-cell" ? cell_recipe_version : recipe_version;
   return fmt::format("# recipe {}\n{}", version, to_toml(recipe));
 }
 

@@ -76,7 +76,10 @@ TEST(CellSpecimen, IsAtItsPressureAndInBalance)
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   for (int k = 0; k < 3; ++k)
-    EXPECT_NEAR(stress(k, k) / 200e3, 1, 3e-3);
+    {
+      EXPECT_NEAR(stress(k, k) / 200e3, 1, 3e-3);
+      EXPECT_NEAR(stress(k, (k + 1) % 3) / 200e3, 0, 3e-3);
+    }
   EXPECT_LT(assembly.unbalanced_force_ratio(), 2e-4);
 }
 
@@ -103,9 +106,9 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
   stage.balance = 2e-3;
   const Result result = run(stage, medium());
   const Mat3 before = medium().cell->edges, after = result.end.cell->edges;
-  EXPECT_NEAR(after(0, 0) / before(0, 0), 1, 1e-12);
-  EXPECT_NEAR(after(2, 2) / before(2, 2), 1, 1e-12);
-  EXPECT_LT(after(1, 1), before(1, 1));
+  EXPECT_NEAR(after(0, 0) / before(0, 0), 1, 1e-6); // to the second order of the shear strain that frees shear stress
+  EXPECT_NEAR(after(2, 2) / before(2, 2), 1, 1e-6);
+  EXPECT_LT(after(1, 1), before(1, 1) * (1 - 1e-5));
   EXPECT_NEAR(result.watcher.rows.back().stress(1, 1) / 300e3, 1, 0.01);
 }
 

@@ -116,7 +116,7 @@ CellOutcome simd_outcome(const LawParams &law, const CloudInCell &c, bool with_e
   return out;
 }
 
-/// Sum of F b by the scalar law, and of |F| |b|.
+/// Symmetric part of the sum of F b by the scalar law, and sum of |F| |b|.
 std::pair<Mat3, double> scalar_virial(const LawParams &law, const CloudInCell &c)
 {
   Mat3 sum = Mat3::Zero();
@@ -128,8 +128,7 @@ std::pair<Mat3, double> scalar_virial(const LawParams &law, const CloudInCell &c
       sum += force * b.transpose();
       size += force.norm() * b.norm();
     }
-  sum.triangularView<Eigen::StrictlyLower>() = sum.transpose(); // the loop sums the upper triangle
-  return {sum, size};
+  return {0.5 * (sum + sum.transpose()), size};
 }
 
 /// Clouds upon each other, as many as make several chunks, with pairs from each cloud to the next.

@@ -47,10 +47,20 @@ Mat3 summed(const std::vector<Term> &terms, std::size_t n_chunks, const Place &p
       const auto [chunk, lane] = place(t);
       double *sums = virial.data(chunk) + lane;
       const auto &[f, b] = terms[t];
-      const std::array<std::pair<double, double>, 6> products{
-          {{f[0], b[0]}, {f[1], b[1]}, {f[2], b[2]}, {f[1], b[2]}, {f[0], b[2]}, {f[0], b[1]}}};
-      for (std::size_t c = 0; c < 6; ++c)
-        sums[8 * c] = std::fma(products[c].first, products[c].second, sums[8 * c]);
+      const std::array<std::pair<double, double>, 9> products{{{f[0], b[0]},
+                                                               {f[1], b[1]},
+                                                               {f[2], b[2]},
+                                                               {f[1], b[2]},
+                                                               {f[0], b[2]},
+                                                               {f[0], b[1]},
+                                                               {f[2], b[1]},
+                                                               {f[2], b[0]},
+                                                               {f[1], b[0]}}};
+      for (std::size_t c = 0; c < 9; ++c)
+        {
+          double &to = sums[8 * (c < 6 ? c : c - 3)];
+          to = std::fma(products[c].first, products[c].second, to);
+        }
     }
   return virial.sum();
 }
@@ -97,7 +107,9 @@ TEST(Virial, IsTheSumToRoundOffOfEVAndSymmetric)
   for (const Term &t : terms)
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j)
-        exact[i][j] += static_cast<long double>(t.force[i]) * t.branch[j];
+        exact[i][j] +=
+            (static_cast<long double>(t.force[i]) * t.branch[j] + static_cast<long double>(t.force[j]) * t.branch[i]) /
+            2;
   const Mat3 sum = summed(terms, 2, [](std::size_t t) { return Place(t % 2, t % 8); });
   double error = 0;
   for (int i = 0; i < 3; ++i)

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The states and inputs in which representative volume elements break. Each test asserts what must come out: which
+// increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
+#include "dem/error.hpp"
+#include "dem/rve.hpp"
+#include "tests/support/periodic.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+
+constexpr std::uint64_t grains = 400;
+constexpr double p0 = 200e3;
+
+Mat3 simple_shear(double gamma)
+{
+  Mat3 gradient = Mat3::Zero();
+  gradient(0, 1) = gamma;
+  return gradient;
+}
+
+double mean_stress(const Rve &rve) { return -rve.stress().trace() / 3; } // compression positive
+
+/// The rate control at work, but no slower than 1 1/s, which is I = 3e-5 at p0.
+RveSettings quick()
+{
+  RveSettings settings;
+  settings.motion.rate_floor = 1;
+  return settings;
+}
+
+/// What a run of increments went through.
+struct Path
+{
+  double least_p = 1e300, greatest_p = -1e300, greatest_tau = 0;
+};
+
+/// Simple shear at constant volume in equal increments; every one is accepted, finite and keeps the volume.
+Path shear(Rve &rve, double gamma, int increments)
+{
+  const double volume = rve.assembly().volume();
+  Path path;
+  for (int k = 0; k < increments; ++k)
+    {
+      const RveResponse r = rve.undrained(simple_shear(gamma / increments));
+      EXPECT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+      EXPECT_TRUE(r.stress.allFinite() && std::isfinite(r.indicator) && std::isfinite(r.mean_stress_change));
+      EXPECT_LT((r.stress - r.stress.transpose()).norm(), 1e-9 * (1 + r.stress.norm()));
+      if (r.outcome == RveOutcome::rejected)
+        break;
+      path.least_p = std::min(path.least_p, mean_stress(rve));
+      path.greatest_p = std::max(path.greatest_p, mean_stress(rve));
+      path.greatest_tau = std::max(path.greatest_tau, std::abs(r.stress(0, 1)));
+    }
+  EXPECT_NEAR(rve.assembly().volume() / volume, 1, 1e-12);
+  EXPECT_LT(rve.kinetic_stress().norm(), 0.01 * std::max(path.greatest_p, 0.05 * p0)) << "far from quasi-static";
+  return path;
+}
+
+/// Expands evenly until hardly a contact is left, p' < p0/1000, and by a linear strain more.
+void liquefy(Rve &rve, double more)
+{
+  const double void_ratio = rve.void_ratio();
+  const auto expand = [&](double linear) {
+    const RveResponse r = rve.advance(Mat3(linear * Mat3::Identity()));
+    ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  };
+  while (mean_stress(rve) >= 1e-3 * p0)
+    {
+      expand(1e-5);
+      ASSERT_LT(rve.void_ratio(), void_ratio + 1e-3);
+    }
+  expand(more);
+  EXPECT_LT(mean_stress(rve), 1e-3 * p0);
+}
+
+/// The same bits in everything the next step depends on.
+bool same(const RveState &a, const RveState &b)
+{
+  const auto bits = [](const auto &x, const auto &y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) == 0;
+  };
+  const AssemblyState &g = a.grains, &h = b.grains;
+  std::vector<double> drive_a, drive_b;
+  DriveState da = a.drive, db = b.drive;
+  da.for_each([&](const std::string &, double &value) { drive_a.push_back(value); });
+  db.for_each([&](const std::string &, double &value) { drive_b.push_back(value); });
+  return bits(g.grains, h.grains) && g.pairs == h.pairs && bits(g.history, h.history) && bits(drive_a, drive_b) &&
+         g.cell.edges == h.cell.edges && g.cell.deformation == h.cell.deformation &&
+         g.cell.rotation == h.cell.rotation && g.cell.strain_step == h.cell.strain_step &&
+         g.cell.volume_strain == h.cell.volume_strain && g.virial == h.virial && g.time == h.time &&
+         g.time_step == h.time_step && g.step == h.step;
+}
+
+/// A refused increment: says why, changes nothing, and the element goes on as one that was never asked.
+template <typename Increment>
+void expect_rejected(Rve &rve, const Increment &increment, const std::vector<std::string> &words)
+{
+  const RveState before = rve.save();
+  const Mat3 stress = rve.stress();
+  const RveResponse r = rve.advance(increment);
+  ASSERT_EQ(r.outcome, RveOutcome::rejected);
+  std::printf("rejected: %s\n", r.reason.c_str());
+  for (const std::string &word : words)
+    EXPECT_THAT(r.reason, HasSubstr(word));
+  EXPECT_TRUE(same(before, rve.save()));
+  EXPECT_EQ(r.stress, stress);
+  EXPECT_EQ(r.mean_stress_change, 0);
+}
+
+TEST(RveHardCases, ALiquidStaysLiquidOverTenPerCentOfShear)
+{
+  Rve rve(test::cell_specimen(grains, 14), quick());
+  liquefy(rve, 0);
+  const Path path = shear(rve, 0.1, 50);
+  std::printf("liquid: e %.3f, p' between %.3f and %.3f kPa over 10 %% of shear\n", rve.void_ratio(),
+              path.least_p / 1e3, path.greatest_p / 1e3);
+  EXPECT_LT(path.greatest_p, 0.02 * p0);
+  EXPECT_GE(path.least_p, 0);
+}
+
+TEST(RveHardCases, ALiquidDensePackingBecomesSolidAgain)
+{
+  Rve rve(test::cell_specimen(grains, 2), quick());
+  liquefy(rve, 1e-3);
+  double gamma = 0;
+  for (; gamma < 0.08 && mean_stress(rve) < p0; gamma += 2e-3)
+    shear(rve, 2e-3, 4);
+  std::printf("dense, loosened to nothing: p' %.1f kPa at gamma %.1f %%\n", mean_stress(rve) / 1e3, 100 * gamma);
+  EXPECT_GT(mean_stress(rve), p0);
+  EXPECT_GT(rve.stress()(0, 1), 0.3 * mean_stress(rve)) << "sheared to the right, it resists to the right";
+}
+
+TEST(RveHardCases, ReversalsInsideTheLiquidState)
+{
+  Rve rve(test::cell_specimen(grains, 2), quick());
+  liquefy(rve, 1.5e-3);
+  double greatest = 0;
+  for (const double way : {2e-3, -4e-3, 4e-3, -2e-3})
+    greatest = std::max(greatest, shear(rve, way, 20).greatest_p);
+  EXPECT_LT(greatest, 0.02 * p0);
+  double gamma = 0;
+  for (; gamma > -0.08 && mean_stress(rve) < p0; gamma -= 2e-3)
+    shear(rve, -2e-3, 4);
+  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", greatest / 1e3,
+              mean_stress(rve) / 1e3, 100 * gamma);
+  EXPECT_GT(mean_stress(rve), p0);
+  EXPECT_LT(rve.stress()(0, 1), -0.3 * mean_stress(rve)) << "sheared to the left, it resists to the left";
+}
+
+TEST(RveHardCases, DenseConstantVolumeShearPassesTenMegapascals)
+{
+  Rve rve(test::cell_specimen(grains, 2), quick());
+  double gamma = 0;
+  for (; gamma < 0.05 && mean_stress(rve) < 10e6; gamma += 5e-3)
+    shear(rve, 5e-3, 10);
+  std::printf("dense: p' %.2f MPa, tau/p' %.3f at gamma %.1f %%\n", mean_stress(rve) / 1e6,
+              rve.stress()(0, 1) / mean_stress(rve), 100 * gamma);
+  EXPECT_GT(mean_stress(rve), 10e6);
+  EXPECT_GT(rve.stress()(0, 1), 0.4 * mean_stress(rve));
+}
+
+TEST(RveHardCases, GrainsOneToFiveInSize)
+{
+  test::CellRecipe recipe;
+  recipe.grading = test::small_grading(grains);
+  recipe.degrees = 3;
+  recipe.grading.curve.clear();
+  recipe.grading.table = {{1e-4, 0}, {2e-4, 40}, {5e-4, 100}};
+  const Snapshot specimen = test::prepare_in_cell(recipe);
+  Rve rve(specimen, quick());
+  const Packing &packing = rve.assembly().packing();
+  EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
+  EXPECT_NEAR(mean_stress(rve) / p0, 1, 0.01);
+  const Path path = shear(rve, 5e-3, 20);
+  std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, least %.1f kPa\n", packing.max_radius() / packing.min_radius(),
+              mean_stress(rve) / 1e3, path.least_p / 1e3);
+  EXPECT_GE(path.least_p, 0);
+  EXPECT_LT(path.greatest_p, 10e6);
+}
+
+TEST(RveHardCases, GrainsTenTimesStiffer)
+{
+  const auto element = [](double young) {
+    test::CellRecipe recipe{.grading = test::small_grading(300), .degrees = 4};
+    recipe.law.young = young;
+    return Rve(test::prepare_in_cell(recipe), quick());
+  };
+  Rve stiff = element(1e11), normal = element(1e10);
+  EXPECT_NEAR(mean_stress(stiff) / p0, 1, 0.01);
+  EXPECT_NEAR(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05);
+  const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
+  std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
+  EXPECT_GT(ratio, 7) << "fewer contacts, but not by much";
+  EXPECT_LT(ratio, 11);
+  EXPECT_GE(shear(stiff, 2e-4, 10).least_p, 0);
+  EXPECT_GE(shear(normal, 2e-4, 10).least_p, 0);
+}
+
+TEST(RveHardCases, WithoutFrictionItLosesItsStress)
+{
+  test::CellRecipe recipe{.grading = test::small_grading(grains), .degrees = 2};
+  recipe.law.features.friction = false;
+  Rve rve(test::prepare_in_cell(recipe), quick());
+  EXPECT_NEAR(mean_stress(rve) / p0, 1, 0.01);
+  const Mat6 c = rve.stiffness();
+  EXPECT_GT(c(0, 0), 0);
+  EXPECT_EQ(c, rve.stiffness(Sliding::released)) << "no contact can yield";
+  const Path path = shear(rve, 0.02, 40);
+  std::printf("no friction: E_oed %.0f MPa, G %.1f MPa; p' between %.2f and %.1f kPa over 2 %% of shear\n",
+              c(0, 0) / 1e6, c(5, 5) / 1e6, path.least_p / 1e3, path.greatest_p / 1e3);
+  EXPECT_LT(path.least_p, 0.5 * p0);
+  EXPECT_TRUE(rve.stiffness().allFinite());
+}
+
+/// A specimen blown up in one go: no grain touches another one.
+Snapshot rattlers(double linear)
+{
+  Snapshot s = test::cell_specimen(grains, 10);
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    {
+      s.grains.set_centre(i, (1 + linear) * s.grains.centre(i));
+      s.grains.set_linear_velocity(i, Vec3::Zero());
+      s.grains.set_angular_velocity(i, Vec3::Zero());
+    }
+  *s.cell = PeriodicCell::with_edges((1 + linear) * s.cell->edges.diagonal());
+  s.contacts.clear();
+  return s;
+}
+
+TEST(RveHardCases, RattlersOnlyCarryNoStress)
+{
+  Rve rve(rattlers(0.1), {});
+  EXPECT_EQ(rve.stress(), Mat3::Zero());
+  EXPECT_EQ(rve.stiffness(), Mat6::Zero());
+  shear(rve, 1e-3, 5);
+  EXPECT_EQ(rve.stress(), Mat3::Zero());
+  EXPECT_EQ(rve.kinetic_stress(), Mat3::Zero()) << "the mean strain is no fluctuation";
+  EXPECT_EQ(rve.stiffness(), Mat6::Zero());
+  EXPECT_TRUE(rve.snapshot().contacts.empty());
+}
+
+TEST(RveHardCases, RattlersOnlyAreCompressedToAStressThatIsAskedFor)
+{
+  Rve rve(rattlers(0.02), {});
+  MixedIncrement compression;
+  compression.stress = -50e3 * Mat3::Identity();
+  compression.controlled.diagonal().setConstant(true);
+  const RveResponse r = rve.advance(compression);
+  ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  EXPECT_NEAR(mean_stress(rve) / 50e3, 1, 0.01);
+  EXPECT_TRUE(std::isfinite(r.indicator));
+}
+
+TEST(RveHardCases, AnIncrementAThousandTimesTooLargeIsRefused)
+{
+  Rve rve(test::cell_specimen(grains, 10), {}), twin(test::cell_specimen(grains, 10), {});
+  expect_rejected(rve, Mat3(10 * Mat3::Identity()), {"17.3", "0.01"});
+  expect_rejected(rve, simple_shear(10), {"10", "0.01"});
+  EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
+  EXPECT_TRUE(same(rve.save(), twin.save()));
+}
+
+TEST(RveHardCases, WhatIsNotANumberIsRefused)
+{
+  Rve rve(test::cell_specimen(grains, 10), {}), twin(test::cell_specimen(grains, 10), {});
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    expect_rejected(rve, simple_shear(bad), {"not a number"});
+  MixedIncrement stress;
+  stress.controlled(1, 1) = true;
+  stress.stress(1, 1) = std::nan("");
+  expect_rejected(rve, stress, {"not a number"});
+  EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
+}
+
+/// A tension that no sand bears: the servo would pull for ever.
+TEST(RveHardCases, AStressOutOfReachIsRefused)
+{
+  RveSettings settings;
+  settings.greatest_steps = 5000;
+  Rve rve(test::cell_specimen(grains, 10), settings), twin(test::cell_specimen(grains, 10), settings);
+  MixedIncrement pull;
+  pull.stress(1, 1) = 50e3;
+  pull.controlled(1, 1) = true;
+  expect_rejected(rve, pull, {"off its target after 5000 steps"});
+  EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
+}
+
+/// Four columns of three equal grains that touch along y, in a cell two grains and a half wide.
+Snapshot columns(double gap)
+{
+  constexpr double radius = 1.5e-4, overlap = 1e-4 * radius;
+  const Vec3 spacing(2 * radius + gap, 2 * radius - overlap, 2.5 * radius);
+  std::vector<Vec3> centres;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 2; ++k)
+        centres.push_back(Vec3(i + 0.5, j + 0.5, k + 0.5).cwiseProduct(spacing));
+  Snapshot s;
+  s.grains = make_packing(centres, std::vector<double>(centres.size(), radius), 2650);
+  s.cell = PeriodicCell::with_edges(spacing.cwiseProduct(Vec3(2, 3, 2)));
+  s.law = test::paper_law();
+  return s;
+}
+
+TEST(RveHardCases, ACellTooNarrowForItsGrainsIsRefused)
+{
+  EXPECT_GT(mean_stress(Rve(columns(3e-7), {})), 0);
+  try
+    {
+      (void)Rve(columns(-3e-7), {});
+      FAIL() << "accepted";
+    }
+  catch (const RunFailure &failure)
+    {
+      EXPECT_THAT(failure.what(), HasSubstr("less than twice the largest diameter"));
+      EXPECT_THAT(failure.what(), HasSubstr("Take more grains"));
+    }
+}
+
+/// Refused when a grain could touch another one through two faces; it then goes on as one that was never asked, with
+/// all its contacts.
+TEST(RveHardCases, ACellThatBecomesTooNarrowIsRefusedAndWidenedAgain)
+{
+  RveSettings settings;
+  settings.motion.strain_rate = 20;
+  Rve rve(columns(3e-6), settings), twin(columns(3e-6), settings);
+  const Mat3 narrow = Vec3(std::expm1(-1e-3), 0, std::expm1(1e-3)).asDiagonal(),
+             wide = Vec3(std::expm1(1e-3), 0, std::expm1(-1e-3)).asDiagonal();
+  for (Rve *each : {&rve, &twin})
+    for (int k = 0; k < 9; ++k)
+      ASSERT_EQ(each->advance(narrow).outcome, RveOutcome::accepted) << "1 % of the width is free";
+  expect_rejected(rve, narrow, {"less than twice the largest diameter"});
+  for (int k = 0; k < 5; ++k)
+    {
+      ASSERT_EQ(rve.advance(wide).outcome, RveOutcome::accepted);
+      ASSERT_EQ(twin.advance(wide).outcome, RveOutcome::accepted);
+      ASSERT_TRUE(same(rve.save(), twin.save())) << "the list of neighbours has lost contacts";
+    }
+}
+
+/// Nothing touches when the element is made, so that no step is too long; the failure comes with the first contacts.
+TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
+{
+  RveSettings settings;
+  Rve reference(test::cell_specimen(grains, 10), settings);
+  settings.motion.time_step = 20 * reference.assembly().time_step;
+  EXPECT_THROW(Rve(test::cell_specimen(grains, 10), settings), RunFailure);
+  Rve rve(rattlers(3e-3), settings);
+  const Mat3 squeeze = -2e-3 * Mat3::Identity();
+  for (int k = 0; k < 2; ++k)
+    {
+      const RveState before = rve.save();
+      const RveResponse r = rve.advance(squeeze);
+      if (r.outcome == RveOutcome::accepted)
+        continue;
+      std::printf("rejected: %s\n", r.reason.c_str());
+      EXPECT_TRUE(same(before, rve.save()));
+      EXPECT_TRUE(r.stress.allFinite());
+      return;
+    }
+  FAIL() << "an unstable step went unnoticed";
+}
+
+TEST(RveHardCases, AGrainThatIsShotThroughThePackingIsRefused)
+{
+  Snapshot s = test::cell_specimen(grains, 10);
+  s.grains.set_linear_velocity(7, Vec3(1e3, 0, 0));
+  Rve rve(s, {});
+  const std::string id = "grain " + std::to_string(s.grains.id[7]) + " moves";
+  expect_rejected(rve, simple_shear(1e-4), {id, "explodes"});
+  expect_rejected(rve, simple_shear(1e-4), {id});
+}
+} // namespace
+} // namespace isostat
