@@ -43,7 +43,7 @@ enum class Sliding
 /// cost a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6 and 0.9 s at 6.8;
 ///      9 s (130 MB) and 46 s (270 MB) for 4,000: fill-in makes it a measure for RVEs
 /// tested: tests/dem/measure/stiffness_test.cpp (lattices, column in series, dense pseudo-inverse, bounds, rotation,
-/// rattlers, yielding)
+/// rattlers, yielding), tests/verification/rve_stiffness_test.cpp (strain probes of 1e-7)
 Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
 
 /// The same without fluctuations, C = K_ee/V: Voigt bound, from above, with the contacts of all grains (Walton 1987, J.
