@@ -55,7 +55,7 @@ public:
 
   void compute_forces();
   /// @param next_box  walls after this step
-  /// @throws RunFailure naming step and grain when a grain is not a number or moves more than 1 % of the smallest
+  /// @throws RunFailure naming step and grain when a grain is not a number or moves more than 5 % of the smallest
   ///         radius in one step
   void move(const RigidBox &next_box);
   /// @param displacement_gradient  L dt of this step, laboratory frame; constant volume where its trace is 0

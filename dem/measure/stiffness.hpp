@@ -44,7 +44,7 @@ enum class Sliding
 ///      and 0.9 s at 6.8; above, where fill-in takes over (4,000 grains: 9 to 46 s), conjugate gradients: 0.8 s for
 ///      4,000 at Z = 4.5; LDL^T again should they not converge
 /// tested: tests/dem/measure/stiffness_test.cpp (lattices, column in series, dense pseudo-inverse, bounds, rotation,
-/// rattlers, yielding)
+/// rattlers, yielding), tests/verification/rve_stiffness_test.cpp (strain probes of 1e-7)
 Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
 
 /// The same without fluctuations, C = K_ee/V: Voigt bound, from above, with the contacts of all grains (Walton 1987, J.

@@ -369,6 +369,18 @@ TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
   FAIL() << "an unstable step went unnoticed";
 }
 
+/// As fast as a grain that comes free at 10 MPa: no explosion.
+TEST(RveHardCases, AGrainThatSnapsOffIsTaken)
+{
+  Snapshot s = rattlers(0.1);
+  const double time_step = Rve(s, {}).assembly().time_step;
+  s.grains.set_linear_velocity(7, Vec3(0.02 * s.grains.min_radius() / time_step, 0, 0));
+  Rve rve(s, {});
+  const RveResponse r = rve.advance(simple_shear(1e-5));
+  EXPECT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  EXPECT_LT(rve.kinetic_stress()(0, 0), 0) << "tension positive";
+}
+
 TEST(RveHardCases, AGrainThatIsShotThroughThePackingIsRefused)
 {
   Snapshot s = test::cell_specimen(grains, 10);
