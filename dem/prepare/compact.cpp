@@ -29,6 +29,16 @@ Snapshot run_stages(const Snapshot &initial, const std::vector<Stage> &stages, d
   return end;
 }
 
+/// Free grains fly on for ever, local damping only acts on forces: they would knock on an element that ought to rest.
+void stop_grains(Packing &grains)
+{
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    {
+      grains.set_linear_velocity(i, Vec3::Zero());
+      grains.set_angular_velocity(i, Vec3::Zero());
+    }
+}
+
 Stage servo_stage(StageKind kind, double pressure, double balance)
 {
   Stage stage;
@@ -61,6 +71,10 @@ Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const Specim
   const StageKind kind = specimen.consolidation == "k0" ? StageKind::k0_compress : StageKind::rebalance;
   const Snapshot balanced =
       run_stages(start, {servo_stage(kind, specimen.pressure, rebalanced)}, specimen.damping, specimen, observer);
-  return run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+  Snapshot rest =
+      run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+  if (rest.cell)
+    stop_grains(rest.grains);
+  return rest;
 }
 } // namespace isostat

@@ -16,7 +16,8 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
                  RunObserver &observer);
 
 /// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
-/// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5.
+/// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5. A periodic packing is then stopped:
+/// it starts as an element at rest.
 /// @param law  with the friction of shearing
 Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
                    RunObserver &observer);
