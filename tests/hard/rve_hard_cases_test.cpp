@@ -230,7 +230,10 @@ Snapshot rattlers(double linear)
       s.grains.set_linear_velocity(i, Vec3::Zero());
       s.grains.set_angular_velocity(i, Vec3::Zero());
     }
-  *s.cell = PeriodicCell::with_edges((1 + linear) * s.cell->edges.diagonal());
+  const Mat3 edges = (1 + linear) * s.cell->edges;
+  *s.cell = PeriodicCell();
+  s.cell->edges = edges;
+  s.cell->reference_volume = edges.determinant();
   s.contacts.clear();
   return s;
 }
