@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <utility>
 
 namespace isostat
 {
@@ -15,6 +16,15 @@ namespace
 constexpr double bracket = 2e-3; // of tan phi, 0.1 deg: finer differences drown in the noise of a packing
 
 double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+
+/// The next friction on the way to the end of what is possible, 0 or the loosest. A box goes there at once. A cell goes
+/// by halves or doubles: without friction it has no wall to lean on and creeps for a million steps before it rests.
+double further(double friction, double end, bool at_once)
+{
+  const double next = end == 0 ? 0.5 * friction : 2 * friction;
+  const bool arrived = end == 0 ? next < 0.01 : next > end;
+  return at_once || arrived ? end : next;
+}
 
 /// Void ratio error as a function of preparation friction; keeps the best compression.
 class Search
@@ -63,17 +73,24 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &l
   const double at_guess = search(guess);
   if (at_guess == 0)
     return search.best;
-  const double other = at_guess > 0 ? 0.0 : loosest;
-  const double at_other = search(other);
+  const double end = at_guess > 0 ? 0.0 : loosest;
+  const bool at_once = specimen.domain != "periodic-cell";
+  double near = guess, at_near = at_guess;
+  double other = further(near, end, at_once), at_other = search(other);
+  while (at_other * at_near > 0 && other != end)
+    {
+      near = std::exchange(other, further(other, end, at_once));
+      at_near = std::exchange(at_other, search(other));
+    }
   if (at_other == 0)
     return search.best;
-  if (at_guess * at_other > 0)
+  if (at_near * at_other > 0)
     throw InputError(fmt::format("specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
                                  "compression {} gives {:.4f}. Choose a {} density, or another grading or pressure.",
                                  target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
                                  other == 0 ? "lower" : "higher"));
-  const double low = std::min(guess, other), high = std::max(guess, other);
-  const double at_low = low == guess ? at_guess : at_other, at_high = low == guess ? at_other : at_guess;
+  const double low = std::min(near, other), high = std::max(near, other);
+  const double at_low = low == near ? at_near : at_other, at_high = low == near ? at_other : at_near;
   std::uintmax_t evaluations = 12;
   boost::math::tools::toms748_solve([&](double friction) { return search(friction); }, low, high, at_low, at_high,
                                     [](double a, double b) { return std::abs(b - a) < bracket; }, evaluations);
