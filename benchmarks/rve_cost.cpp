@@ -73,7 +73,7 @@ private:
 
 void compare_steps(std::uint64_t grains, int rounds, int steps)
 {
-  Sheared cell(test::cell_specimen(grains, 10)), box(test::specimen(grains, 10));
+  Sheared cell(test::periodic_specimen(grains, 10)), box(test::specimen(grains, 10));
   cell.run(500), box.run(500);
   std::vector<double> in_cell, in_box, ratio;
   for (int r = 0; r < rounds; ++r)
@@ -93,7 +93,7 @@ void compare_steps(std::uint64_t grains, int rounds, int steps)
 
 void measure_element(std::uint64_t grains, int rounds)
 {
-  const Snapshot &specimen = test::cell_specimen(grains, 10);
+  const Snapshot &specimen = test::periodic_specimen(grains, 10);
   Rve rve(specimen, {});
   Mat3 shear = Mat3::Zero();
   shear(0, 1) = 1e-5;

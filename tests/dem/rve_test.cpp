@@ -17,7 +17,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-const Snapshot &specimen() { return test::cell_specimen(300, 8); }
+const Snapshot &specimen() { return test::periodic_specimen(300, 8); }
 
 Mat3 simple_shear(double gamma)
 {
@@ -190,7 +190,7 @@ TEST(Rve, ARotatedFrameGivesTheRotatedStress)
   const Mat3 q = Eigen::AngleAxisd(0.7, Vec3(1, 2, -3).normalized()).toRotationMatrix();
   RveSettings settings;
   settings.frame = q;
-  const Snapshot &dense = test::cell_specimen(500, 4);
+  const Snapshot &dense = test::periodic_specimen(500, 4);
   Rve framed(dense, settings);       // axes turned
   Rve rotated(turned(dense, q), {}); // every grain, contact and edge turned
   Rve plain(dense, {});

@@ -117,7 +117,7 @@ void expect_rejected(Rve &rve, const Increment &increment, const std::vector<std
 
 TEST(RveHardCases, ALiquidStaysLiquidOverTenPerCentOfShear)
 {
-  Rve rve(test::cell_specimen(grains, 14), quick());
+  Rve rve(test::periodic_specimen(grains, 14), quick());
   liquefy(rve, 0);
   const Path path = shear(rve, 0.1, 50);
   std::printf("liquid: e %.3f, p' between %.3f and %.3f kPa over 10 %% of shear\n", rve.void_ratio(),
@@ -128,7 +128,7 @@ TEST(RveHardCases, ALiquidStaysLiquidOverTenPerCentOfShear)
 
 TEST(RveHardCases, ALiquidDensePackingBecomesSolidAgain)
 {
-  Rve rve(test::cell_specimen(grains, 2), quick());
+  Rve rve(test::periodic_specimen(grains, 2), quick());
   liquefy(rve, 1e-3);
   double gamma = 0;
   for (; gamma < 0.08 && mean_stress(rve) < p0; gamma += 2e-3)
@@ -140,7 +140,7 @@ TEST(RveHardCases, ALiquidDensePackingBecomesSolidAgain)
 
 TEST(RveHardCases, ReversalsInsideTheLiquidState)
 {
-  Rve rve(test::cell_specimen(grains, 2), quick());
+  Rve rve(test::periodic_specimen(grains, 2), quick());
   liquefy(rve, 1.5e-3);
   double greatest = 0;
   for (const double way : {2e-3, -4e-3, 4e-3, -2e-3})
@@ -157,7 +157,7 @@ TEST(RveHardCases, ReversalsInsideTheLiquidState)
 
 TEST(RveHardCases, DenseConstantVolumeShearPassesTenMegapascals)
 {
-  Rve rve(test::cell_specimen(grains, 2), quick());
+  Rve rve(test::periodic_specimen(grains, 2), quick());
   double gamma = 0;
   for (; gamma < 0.05 && mean_stress(rve) < 10e6; gamma += 5e-3)
     shear(rve, 5e-3, 10);
@@ -223,7 +223,7 @@ TEST(RveHardCases, WithoutFrictionItLosesItsStress)
 /// A specimen blown up in one go: no grain touches another one.
 Snapshot rattlers(double linear)
 {
-  Snapshot s = test::cell_specimen(grains, 10);
+  Snapshot s = test::periodic_specimen(grains, 10);
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
     {
       s.grains.set_centre(i, (1 + linear) * s.grains.centre(i));
@@ -264,7 +264,7 @@ TEST(RveHardCases, RattlersOnlyAreCompressedToAStressThatIsAskedFor)
 
 TEST(RveHardCases, AnIncrementAThousandTimesTooLargeIsRefused)
 {
-  Rve rve(test::cell_specimen(grains, 10), {}), twin(test::cell_specimen(grains, 10), {});
+  Rve rve(test::periodic_specimen(grains, 10), {}), twin(test::periodic_specimen(grains, 10), {});
   expect_rejected(rve, Mat3(10 * Mat3::Identity()), {"17.3", "0.01"});
   expect_rejected(rve, simple_shear(10), {"10", "0.01"});
   EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
@@ -273,7 +273,7 @@ TEST(RveHardCases, AnIncrementAThousandTimesTooLargeIsRefused)
 
 TEST(RveHardCases, WhatIsNotANumberIsRefused)
 {
-  Rve rve(test::cell_specimen(grains, 10), {}), twin(test::cell_specimen(grains, 10), {});
+  Rve rve(test::periodic_specimen(grains, 10), {}), twin(test::periodic_specimen(grains, 10), {});
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL})
     expect_rejected(rve, simple_shear(bad), {"not a number"});
   MixedIncrement stress;
@@ -288,7 +288,7 @@ TEST(RveHardCases, AStressOutOfReachIsRefused)
 {
   RveSettings settings;
   settings.greatest_steps = 5000;
-  Rve rve(test::cell_specimen(grains, 10), settings), twin(test::cell_specimen(grains, 10), settings);
+  Rve rve(test::periodic_specimen(grains, 10), settings), twin(test::periodic_specimen(grains, 10), settings);
   MixedIncrement pull;
   pull.stress(1, 1) = 50e3;
   pull.controlled(1, 1) = true;
@@ -353,9 +353,9 @@ TEST(RveHardCases, ACellThatBecomesTooNarrowIsRefusedAndWidenedAgain)
 TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
 {
   RveSettings settings;
-  Rve reference(test::cell_specimen(grains, 10), settings);
+  Rve reference(test::periodic_specimen(grains, 10), settings);
   settings.motion.time_step = 20 * reference.assembly().time_step;
-  EXPECT_THROW(Rve(test::cell_specimen(grains, 10), settings), RunFailure);
+  EXPECT_THROW(Rve(test::periodic_specimen(grains, 10), settings), RunFailure);
   Rve rve(rattlers(3e-3), settings);
   const Mat3 squeeze = -2e-3 * Mat3::Identity();
   for (int k = 0; k < 2; ++k)
@@ -386,7 +386,7 @@ TEST(RveHardCases, AGrainThatSnapsOffIsTaken)
 
 TEST(RveHardCases, AGrainThatIsShotThroughThePackingIsRefused)
 {
-  Snapshot s = test::cell_specimen(grains, 10);
+  Snapshot s = test::periodic_specimen(grains, 10);
   s.grains.set_linear_velocity(7, Vec3(1e3, 0, 0));
   Rve rve(s, {});
   const std::string id = "grain " + std::to_string(s.grains.id[7]) + " moves";

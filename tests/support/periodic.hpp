@@ -26,14 +26,4 @@ inline Snapshot prepare_in_cell(const CellRecipe &recipe)
   const Snapshot compacted = compact(make_cloud(recipe.grading), recipe.law, friction, spec, nobody);
   return rebalance(compacted, recipe.law, spec, nobody);
 }
-
-/// The same, made once in a program for each number of grains and preparation friction.
-inline const Snapshot &cell_specimen(std::uint64_t grains, double degrees)
-{
-  static std::map<std::pair<std::uint64_t, double>, Snapshot> made;
-  const auto [at, fresh] = made.try_emplace({grains, degrees});
-  if (fresh)
-    at->second = prepare_in_cell({.grading = small_grading(grains), .degrees = degrees});
-  return at->second;
-}
 } // namespace isostat::test

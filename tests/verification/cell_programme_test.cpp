@@ -66,7 +66,7 @@ Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 
   return result;
 }
 
-const Snapshot &medium() { return test::cell_specimen(500, 8); }
+const Snapshot &medium() { return test::periodic_specimen(500, 8); }
 } // namespace
 
 TEST(CellSpecimen, IsAtItsPressureAndInBalance)
@@ -145,7 +145,7 @@ TEST(CellConstantP, MeanStressStays)
 
 TEST(CellSimpleShear, OnlyGammaMoves)
 {
-  const Snapshot &dense = test::cell_specimen(500, 4);
+  const Snapshot &dense = test::periodic_specimen(500, 4);
   const Result result = run(stage_of(StageKind::undrained_simple_shear, 5e-3), dense);
   EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
   const PeriodicCell &cell = *result.end.cell;

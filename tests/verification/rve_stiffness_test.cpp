@@ -49,7 +49,7 @@ Snapshot stopped(Snapshot snapshot)
 /// 500 dense grains at 200 kPa, forces in balance to 1e-9: 2e-4 Pa, where the probes change stresses by 30 Pa.
 Assembly relaxed(double degrees)
 {
-  Assembly assembly(stopped(test::cell_specimen(500, degrees)));
+  Assembly assembly(stopped(test::periodic_specimen(500, degrees)));
   assembly.time_step = 0.8 * critical_step_bound(assembly.law(), assembly.packing(), nullptr, assembly.contacts());
   relax(assembly, 1e-9);
   return assembly;
@@ -129,7 +129,7 @@ TEST(RveStiffness, IsSymmetricAndPositiveDefinite)
   for (const double degrees : {2.0, 6.0, 18.0})
     for (const Sliding sliding : {Sliding::elastic, Sliding::released})
       {
-        const Mat6 c = Rve(test::cell_specimen(500, degrees), {}).stiffness(sliding);
+        const Mat6 c = Rve(test::periodic_specimen(500, degrees), {}).stiffness(sliding);
         EXPECT_EQ(c, c.transpose());
         const Eigen::Matrix<double, 6, 1> modes = Eigen::SelfAdjointEigenSolver<Mat6>(c).eigenvalues();
         EXPECT_GT(modes[0], 0.02 * modes[5]) << "prepared at " << degrees << " deg";
