@@ -152,6 +152,10 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
 Scene checked_scene(const Options &options)
 {
   Scene scene = read_scene(options.scene, options.set);
+  if (scene.specimen.domain != "rigid-box")
+    throw InputError(fmt::format("{}: specimen.domain is \"{}\", but e_max is that of a deposit on a floor. Use "
+                                 "\"rigid-box\".",
+                                 options.scene, scene.specimen.domain));
   if (!scene.specimen.preparation_friction || *scene.specimen.preparation_friction != 0)
     throw InputError(fmt::format("{}: specimen.preparation_friction must be 0 deg here because e_min is the state that "
                                  "isotropic compression without friction gives. Give --set "

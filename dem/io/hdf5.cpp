@@ -198,6 +198,7 @@ Handle open_dataset(const FileState &file, const std::string &item)
 template <typename T>
 Handle create_dataset(const FileState &file, const std::string &item, hid_t space, hid_t layout)
 {
+  H5Pset_obj_track_times(layout, false); // the same data are the same bytes
   return checked(H5Dcreate2(file.id, item.c_str(), type_of<T>(), space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose,
                  file, item, "creating the dataset failed (does it exist already?)");
 }
@@ -414,8 +415,9 @@ void Group::put(const std::string &name, std::span<const T> values, const std::s
 {
   assert(file_->id >= 0 && file_->writing() && n_columns > 0 && values.size() % n_columns == 0);
   const hsize_t dims[2] = {values.size() / n_columns, n_columns};
-  const Handle space(H5Screate_simple(n_columns == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-  const Handle dataset = create_dataset<T>(*file_, child(name), space, H5P_DEFAULT);
+  const Handle space(H5Screate_simple(n_columns == 1 ? 1 : 2, dims, nullptr), H5Sclose),
+      layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Handle dataset = create_dataset<T>(*file_, child(name), space, layout);
   const auto transfer = [id = hid_t(dataset)](hid_t type, const void *buffer) {
     return H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
   };

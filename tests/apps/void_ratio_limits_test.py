@@ -36,6 +36,7 @@ class VoidRatioLimits(AppTest):
         scene = self.write("limits.toml", LIMITS)
         for change, parts in ((["--set", "specimen.preparation_friction=5 deg"], ("preparation_friction", "0 deg")),
                               (["--set", "specimen.relative_density=0.5"], ("preparation_friction", "0 deg")),
+                              (["--set", "specimen.domain=periodic-cell"], ("periodic-cell", "rigid-box")),
                               (["--set", "grading.grain=5"], ("grading.grain", "grading.grains"))):
             self.assert_refused(self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK, *change), *parts)
             self.assertFalse((self.folder / "out").exists())
