@@ -36,6 +36,8 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Mat
   const auto follow = [&](int i, int j, double modulus, double &step) {
     if (!controlled(i, j))
       return;
+    if (!(modulus > 0) && missing(i, j) == 0) // nothing in contact, nothing wanted
+      return;
     const double towards = modulus > 0 ? missing(i, j) / modulus : std::copysign(cap, missing(i, j));
     step = 0.8 * step + 0.2 * std::clamp(towards, -cap, cap);
     strain(i, j) = strain(j, i) = step;

@@ -2,12 +2,16 @@
 #include "dem/prepare/compact.hpp"
 
 #include "dem/error.hpp"
+#include "dem/measure/stress.hpp"
+
+#include <fmt/format.h>
 
 namespace isostat
 {
 namespace
 {
 constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
+constexpr int rest_attempts = 5; // a packing on the verge can collapse while its walls are held
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
 /// Runs servo stages on a state and returns what they end with.
@@ -69,10 +73,20 @@ Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const Specim
   Snapshot start = compacted;
   start.law = law;
   const StageKind kind = specimen.consolidation == "k0" ? StageKind::k0_compress : StageKind::rebalance;
-  const Snapshot balanced =
-      run_stages(start, {servo_stage(kind, specimen.pressure, rebalanced)}, specimen.damping, specimen, observer);
-  Snapshot rest =
-      run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+  Snapshot rest;
+  for (int attempt = 0; attempt < rest_attempts; ++attempt)
+    {
+      const Snapshot balanced =
+          run_stages(start, {servo_stage(kind, specimen.pressure, rebalanced)}, specimen.damping, specimen, observer);
+      rest = run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+      if (-contact_stress(rest)(1, 1) > 0.95 * specimen.pressure)
+        break;
+      if (attempt + 1 == rest_attempts)
+        throw RunFailure(fmt::format("the specimen lost its pressure each of the {} times it was brought to rest: so "
+                                     "loose a packing is not stable. Lower the preparation friction.",
+                                     rest_attempts));
+      start = rest;
+    }
   if (rest.cell)
     stop_grains(rest.grains);
   return rest;

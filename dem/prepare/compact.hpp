@@ -18,7 +18,9 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
 /// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
 /// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5. A periodic packing is then stopped:
 /// it starts as an element at rest.
+/// A loose packing that loses its pressure while it is held is brought back to it, up to five times.
 /// @param law  with the friction of shearing
+/// @throws RunFailure  it does not keep its pressure
 Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
                    RunObserver &observer);
 } // namespace isostat

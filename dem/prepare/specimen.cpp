@@ -19,8 +19,9 @@ namespace isostat
 {
 namespace
 {
-constexpr int recipe_version = 1;      // raise when preparation itself changes
-constexpr int cell_recipe_version = 3; // the same in a periodic cell; 3: shear stresses are brought to zero
+constexpr int recipe_version = 1; // raise when preparation itself changes
+// The same in a periodic cell; 3: shear stresses are brought to zero; 4: but not where nothing is in contact.
+constexpr int cell_recipe_version = 4;
 constexpr int density_attempts = 3;
 
 std::mutex hdf5_access; // HDF5 serves one thread at a time

@@ -114,7 +114,7 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
 
 TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 {
-  const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), medium());
+  const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), test::periodic_specimen(500, 4));
   EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
   EXPECT_NEAR(result.watcher.rows.back().seen.axial, 5e-3, 1e-6);
   EXPECT_GT(result.watcher.rows.back().seen.q, 20e3);
