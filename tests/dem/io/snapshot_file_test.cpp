@@ -33,6 +33,26 @@ bool same_bits(const T &a, const T &b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0;
 }
 
+TEST_F(SnapshotFile, APeriodicCellComesBackToTheBit)
+{
+  Snapshot s = small_snapshot();
+  EXPECT_FALSE(round_trip(s).cell.has_value());
+  s.cell = PeriodicCell::with_edges({1.0 / 3, 2.0 / 3, 0.7});
+  Mat3 gradient = Mat3::Zero();
+  gradient(0, 1) = 1e-3;
+  gradient(2, 2) = -3e-4;
+  s.cell->deform(gradient);
+  s.cell->flips = 3;
+  const Snapshot r = round_trip(s);
+  ASSERT_TRUE(r.cell.has_value());
+  for (auto m : {&PeriodicCell::edges, &PeriodicCell::deformation, &PeriodicCell::rotation, &PeriodicCell::strain_step})
+    EXPECT_TRUE(same_bits((*s.cell).*m, (*r.cell).*m));
+  EXPECT_EQ(s.cell->volume_strain, r.cell->volume_strain);
+  EXPECT_EQ(s.cell->reference_volume, r.cell->reference_volume);
+  EXPECT_EQ(s.cell->flips, r.cell->flips);
+  EXPECT_EQ(s.volume(), r.volume());
+}
+
 TEST_F(SnapshotFile, RoundTripToTheBit)
 {
   const Snapshot s = small_snapshot(), r = round_trip(s);
