@@ -16,9 +16,12 @@ EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
 
 
 class Resume(AppTest):
+    def scene_text(self):
+        return tiny_scene(stages=STAGES, output="energy = true", motion="rate_floor = \"0.5 1/s\"")
+
     def setUp(self):
         super().setUp()
-        text = tiny_scene(stages=STAGES, output="energy = true", motion="rate_floor = \"0.5 1/s\"")
+        text = self.scene_text()
         self.scene = self.write("scene.toml", text)
         self.assert_done(self.run_test(self.scene, "-o", "prepare", "--set", "stage.0.max_steps=1", "--set",
                                        "stage.1.max_steps=1", "--set", "stage.2.max_steps=1"))  # fills the cache
@@ -75,6 +78,17 @@ class Resume(AppTest):
         self.assertEqual(before["history.csv"], after["history.csv"])
         self.assertEqual(sorted(n for n in before if n.startswith("snapshots")),
                          sorted(n for n in after if n.startswith("snapshots")))
+
+
+class ResumeInACell(Resume):
+    """The same in a periodic cell, in simple shear."""
+
+    def scene_text(self):
+        stage = '[[stage]]\nkind = "{}"\nmax_steps = 8000\n'
+        stages = (REBALANCE.format(steps=2500) + stage.format("undrained-simple-shear") + "strain = 0.02\n" +
+                  stage.format("undrained-cyclic-simple-shear") + "stress_ratio = 0.1\n")
+        return tiny_scene(specimen='domain = "periodic-cell"\npreparation_friction = "8 deg"', stages=stages,
+                          output="energy = true", motion="rate_floor = \"0.5 1/s\"")
 
 
 class Output(AppTest):
