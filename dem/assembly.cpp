@@ -2,7 +2,7 @@
 // Stepping: forces, motion, and how threads share them. What others see of the state is in assembly_views.cpp.
 #include "dem/assembly.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/motion/leapfrog.hpp"
 
 #include <chrono>

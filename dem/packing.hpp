@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/types.hpp"
+#include "base/types.hpp"
 
 namespace isostat
 {

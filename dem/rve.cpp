@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/rve.hpp"
 
+#include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
-#include "dem/error.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <Eigen/Eigenvalues>

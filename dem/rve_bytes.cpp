@@ -5,7 +5,7 @@
 //     cell | driver's numbers | cost
 #include "dem/rve.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <cstring>
 #include <fmt/format.h>

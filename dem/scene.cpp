@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/scene.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/io/scene_reader.hpp"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what Isostat's grains need on Debian 12. Run it as often as you like: nothing happens, and the network is not
+# Installs what Isostat needs on Debian 12. Run it as often as you like: nothing happens, and the network is not
 # touched, when every package is there.
 set -euo pipefail
 
@@ -8,6 +8,7 @@ packages=(
   git g++ cmake ninja-build pkg-config clang-format
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev libhwy-dev librandom123-dev
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev
+  libdeal.ii-dev libpetsc-real-dev openmpi-bin
   python3 python3-matplotlib python3-numpy python3-h5py
 )
 

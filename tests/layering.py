@@ -4,7 +4,7 @@
 
     layering.py [--root REPOSITORY] [EXECUTABLE or LIBRARY ...]
 
-Dependencies run one way: apps -> coupling -> {fem, dem}. Inside dem they follow the time step. Prints every violation
+Dependencies run one way: apps -> coupling -> {fem, dem} -> base. Inside dem they follow the time step. Prints every violation
 as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as arguments must
 not need deal.II or PETSc.
 """
@@ -17,43 +17,40 @@ import sys
 CODE = {".cpp", ".hpp", ".h", ".cc"}
 MAX_LINES = 500
 
-# Top folder -> top folders it may include. Tests and benchmarks may look everywhere.
+# Top folder -> top folders it may include; base is what all share. Tests and benchmarks may look everywhere.
 TOP = {
-    "dem": {"dem"},
-    "fem": {"fem"},
-    "coupling": {"coupling", "fem", "dem"},
-    "apps": {"apps", "coupling", "fem", "dem"},
+    "base": {"base"},
+    "dem": {"dem", "base"},
+    "fem": {"fem", "base"},
+    "coupling": {"coupling", "fem", "dem", "base"},
+    "apps": {"apps", "coupling", "fem", "dem", "base"},
 }
 
 # Reading and writing scenes is one part with dem/scene.hpp, though its files lie in dem/io.
 SCENE_FILES = "io/scene_"
 
 # Part of dem -> parts it may include besides itself. A part is a file or a folder below dem/; a file goes to the
-# longest name that matches it, so that io/units can stand lower than io.
-BASE = {"types", "error"}
-GRAINS = BASE | {"packing", "domain", "contact"}
+# longest name that matches it.
+GRAINS = {"packing", "domain", "contact"}
 DEM = {
-    "types": set(),
-    "error": set(),
-    "io/units": BASE,
-    "packing": BASE,
-    "domain": BASE | {"packing"},
-    "contact": BASE | {"packing", "domain"},
-    "scene": BASE | {"contact", "io/units"},
+    "packing": set(),
+    "domain": {"packing"},
+    "contact": {"packing", "domain"},
+    "scene": {"contact"},
     "neighbours": GRAINS,
     "motion": GRAINS,
     "assembly": GRAINS | {"neighbours", "motion", "measure"},
     "assembly_views": GRAINS | {"neighbours", "motion", "measure", "assembly"},
     "measure": GRAINS,
-    "io": GRAINS | {"io/units", "measure", "scene"},
-    "drive": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io"},
-    "prepare": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+    "io": GRAINS | {"measure", "scene"},
+    "drive": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io"},
+    "prepare": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
     "rve_bytes": GRAINS | {"rve"},
-    "rve": GRAINS | {"io/units", "scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+    "rve": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
 }
 
 # What coupling sees of dem: the RVE is the only door; io stores and reads its state.
-COUPLING_SEES = BASE | {"rve", "scene", "io", "io/units"}
+COUPLING_SEES = {"rve", "scene", "io"}
 
 # External headers that a top folder must not see, with the reason.
 FOREIGN = {
@@ -63,7 +60,7 @@ FOREIGN = {
     ],
 }
 HDF5 = re.compile(r"^(hdf5|H5\w*|hdf5_hl)\.(h|hpp)$")
-HDF5_HOME = "dem/io/hdf5.cpp"
+HDF5_HOME = "base/hdf5.cpp"
 
 FORBIDDEN_LIBRARIES = ("libdeal", "libpetsc")
 FORBIDDEN_SYMBOLS = ("dealii::", "PetscInitialize", "MatCreate", "VecCreate", "KSPCreate")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/recorder.hpp"
 #include "dem/drive/programme.hpp"
-#include "dem/io/recorder.hpp"
 #include "dem/measure/summary.hpp"
 
 namespace isostat

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/result_folder.hpp"
 
+#include "base/error.hpp"
+#include "base/replace_file.hpp"
 #include "dem/contact/kernel.hpp"
-#include "dem/error.hpp"
-#include "dem/io/replace_file.hpp"
 
 #include <cstdlib>
 #include <ctime>

@@ -2,8 +2,8 @@
 #include "apps/common/run_output.hpp"
 
 #include "apps/common/interrupt.hpp"
-#include "dem/error.hpp"
-#include "dem/io/hdf5.hpp"
+#include "base/error.hpp"
+#include "base/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <cstdio>

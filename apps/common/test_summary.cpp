@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/test_summary.hpp"
 
+#include "base/csv_table.hpp"
 #include "dem/drive/programme.hpp"
-#include "dem/io/csv_table.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -16,7 +16,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
 #include "apps/common/test_summary.hpp"
-#include "dem/io/replace_file.hpp"
+#include "base/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <fmt/format.h>

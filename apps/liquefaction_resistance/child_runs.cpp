@@ -2,7 +2,7 @@
 #include "apps/liquefaction_resistance/child_runs.hpp"
 
 #include "apps/common/interrupt.hpp"
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <chrono>
 #include <csignal>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/folder_lock.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/micromechanics/snapshot_series.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/hdf5.hpp"
+#include "base/error.hpp"
+#include "base/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_file.hpp"
 

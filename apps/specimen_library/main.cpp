@@ -14,9 +14,9 @@
 #include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/specimen_library/prepare.hpp"
+#include "base/units.hpp"
 #include "dem/assembly.hpp"
 #include "dem/io/specimen_library.hpp"
-#include "dem/io/units.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <charconv>

@@ -2,7 +2,7 @@
 #include "apps/specimen_library/prepare.hpp"
 
 #include "apps/common/interrupt.hpp"
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <algorithm>

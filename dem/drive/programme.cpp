@@ -7,7 +7,7 @@
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

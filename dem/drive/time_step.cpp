@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/time_step.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/motion/critical_step.hpp"
 
 #include <fmt/format.h>

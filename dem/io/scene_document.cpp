@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/scene_document.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/io/scene_schema.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/io/units.hpp"
+#include "base/units.hpp"
 #include "dem/scene.hpp"
 
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One value of a scene file: its form, unit and range.
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/io/scene_reader.hpp"
 
 #include <fmt/format.h>

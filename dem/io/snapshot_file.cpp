@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/snapshot_file.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 #include <cassert>

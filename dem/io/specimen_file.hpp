@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/io/hdf5.hpp"
+#include "base/hdf5.hpp"
 #include "dem/measure/snapshot.hpp"
 
 #include <filesystem>

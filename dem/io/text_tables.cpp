@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/text_tables.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/csv_table.hpp"
+#include "base/csv_table.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/vtp.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/replace_file.hpp"
+#include "base/vtk_xml.hpp"
 
 #include <cstring>
 #include <fmt/format.h>
 #include <numbers>
 #include <numeric>
-#include <pugixml.hpp>
 #include <span>
-#include <sstream>
 
 namespace isostat
 {
@@ -58,23 +55,6 @@ void add_array(pugi::xml_node parent, const char *name, const std::vector<T> &va
   array.append_attribute("NumberOfComponents") = n_components;
   array.append_attribute("format") = "binary";
   array.text() = base64(bytes).c_str();
-}
-
-pugi::xml_node vtk_file(pugi::xml_document &document, const char *type)
-{
-  pugi::xml_node root = document.append_child("VTKFile");
-  root.append_attribute("type") = type;
-  root.append_attribute("version") = "1.0";
-  root.append_attribute("byte_order") = "LittleEndian";
-  root.append_attribute("header_type") = "UInt64";
-  return root;
-}
-
-void save(const pugi::xml_document &document, const std::filesystem::path &path)
-{
-  std::ostringstream text;
-  document.save(text, " ");
-  write_replacing(path, text.str());
 }
 
 /// The first three of each four-wide record.
@@ -158,7 +138,7 @@ void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapsho
   add_array(data, "spin", vectors(grains.spin, n), 3);
   add_array(data, "coordination", coordination(snapshot));
   add_array(data, "pressure", grain_pressure(snapshot));
-  save(document, path);
+  save_xml(document, path);
 }
 
 void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &snapshot)
@@ -189,39 +169,6 @@ void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &s
   add_array(data, "shear_force", shear_force);
   add_array(data, "sliding", sliding);
   add_array(data, "rolling", rolling);
-  save(document, path);
-}
-
-PvdCollection::PvdCollection(std::filesystem::path path, std::size_t resume_entries) : path_(std::move(path))
-{
-  if (resume_entries == 0)
-    return;
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_file(path_.c_str());
-  if (!parsed)
-    throw InputError(fmt::format("{}: cannot be resumed: {}; restore the file or start the run anew", path_.string(),
-                                 parsed.description()));
-  for (pugi::xml_node entry : document.child("VTKFile").child("Collection").children("DataSet"))
-    if (entries_.size() < resume_entries)
-      entries_.emplace_back(entry.attribute("timestep").value(), entry.attribute("file").value());
-  if (entries_.size() < resume_entries)
-    throw InputError(fmt::format("{}: {} entries, expected at least {}; restore the file or resume from an earlier "
-                                 "checkpoint",
-                                 path_.string(), entries_.size(), resume_entries));
-}
-
-void PvdCollection::append(double time, const std::string &file)
-{
-  entries_.emplace_back(fmt::format("{}", time), file);
-  pugi::xml_document document;
-  pugi::xml_node collection = vtk_file(document, "Collection").append_child("Collection");
-  for (const auto &[timestep, name] : entries_)
-    {
-      pugi::xml_node entry = collection.append_child("DataSet");
-      entry.append_attribute("timestep") = timestep.c_str();
-      entry.append_attribute("part") = "0";
-      entry.append_attribute("file") = name.c_str();
-    }
-  save(document, path_);
+  save_xml(document, path);
 }
 } // namespace isostat

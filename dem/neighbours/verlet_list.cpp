@@ -4,7 +4,7 @@
 #include "dem/neighbours/cell_grid.hpp"
 #include "dem/neighbours/periodic_grid.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

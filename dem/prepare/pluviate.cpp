@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/pluviate.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/measure/energy.hpp"
 #include "dem/motion/critical_step.hpp"
 

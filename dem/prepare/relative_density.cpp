@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/relative_density.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>

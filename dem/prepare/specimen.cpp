@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/specimen.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"

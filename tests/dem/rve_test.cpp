@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/rve.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "tests/support/periodic.hpp"
 

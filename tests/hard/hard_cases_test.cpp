@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The states in which codes break: liquefied, very dense, reversed while liquid, no friction, nothing in contact. Each
 // test asserts what must come out, not only that it ran.
+#include "base/error.hpp"
 #include "dem/drive/strain_path.hpp"
-#include "dem/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/motion/critical_step.hpp"

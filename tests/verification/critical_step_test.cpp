@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The critical step from contact stiffness: the bound is a bound, how tight it is, and what happens on either side.
+#include "base/error.hpp"
 #include "dem/drive/time_step.hpp"
-#include "dem/error.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "tests/support/specimens.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drivers on real packings: stresses that are to be kept are kept, loads turn where they should, runs repeat to the
 // bit.
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/relative_density.hpp"
 #include "tests/support/specimens.hpp"

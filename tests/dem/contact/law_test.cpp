@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contact law against recorded pair paths of YADE (tests/reference/README.md): two driven spheres, or a sphere and
 // a wall. Every row holds positions, half-step velocities and the forces that belong to them.
+#include "base/csv_table.hpp"
 #include "dem/contact/kernel.hpp"
-#include "dem/io/csv_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/checkpoint.hpp"
 
-#include "dem/error.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <fstream>
 #include <gtest/gtest.h>

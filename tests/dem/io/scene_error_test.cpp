@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a scene file or an override can have wrong, and what the user is told: place, value, allowed range, remedy.
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/scene.hpp"
 
 #include <filesystem>

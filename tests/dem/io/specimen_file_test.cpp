@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/specimen_file.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/hdf5.hpp"
+#include "base/error.hpp"
+#include "base/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

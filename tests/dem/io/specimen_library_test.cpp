@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/specimen_library.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/scene.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/pvd.hpp"
 #include "dem/io/vtp.hpp"
 
-#include "dem/error.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cstring>
 #include <gmock/gmock.h>

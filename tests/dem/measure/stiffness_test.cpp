@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/measure/stiffness.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <gtest/gtest.h>
 

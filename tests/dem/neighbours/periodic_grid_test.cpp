@@ -2,7 +2,7 @@
 // Pairs of a periodic packing, and the list that follows them, against brute force over images.
 #include "dem/neighbours/periodic_grid.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/neighbours/verlet_list.hpp"
 
 #include <gtest/gtest.h>

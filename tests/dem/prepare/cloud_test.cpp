@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/cloud.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/random.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/units.hpp"
+#include "base/units.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <bit>
 #include <cmath>

@@ -27,13 +27,13 @@ struct Quantity
 /// "10 mm", "200kPa", "0.5 1/s" -> number. A power-of-ten unit only moves the decimal point of the text before it is
 /// rounded once, so "0.1 mm" is the double nearest to 1e-4, the same as the literal.
 /// @throws InputError saying what is wrong, to follow "scene.toml:14: key = text; " (the caller knows the place)
-/// tested: tests/dem/io/units_test.cpp
+/// tested: tests/base/units_test.cpp
 Quantity parse_quantity(std::string_view text, Dimension dimension);
 
 /// The reverse, in the given unit: parse_quantity(format_quantity(v, d, unit), d).value == v to the bit. Angles use the
 /// fewest decimals of degrees that come back, or "0.3 tan" if none does.
 /// @pre value finite, angles >= 0, unit a name of the table with a power of ten (or deg, min)
-/// tested: tests/dem/io/units_test.cpp (random bit patterns)
+/// tested: tests/base/units_test.cpp (random bit patterns)
 std::string format_quantity(double value, Dimension dimension, std::string_view unit);
 
 /// A number on the scale of ranges with its unit: 90 -> "90 deg", 0.01 -> "10 mm".

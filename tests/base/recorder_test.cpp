@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/recorder.hpp"
+#include "base/recorder.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/hdf5.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "base/error.hpp"
+#include "base/hdf5.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
 #include <array>

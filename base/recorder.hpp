@@ -26,7 +26,7 @@ struct RecordColumn
 /// before a checkpoint is written and store n_rows() in it: a resumed run then continues both files as if never
 /// interrupted. history.h5 is also renewed whenever the waiting rows outnumber a quarter of the written ones (at least
 /// 4096), so that memory stays bounded and the total copying linear. Failure to write is a RunFailure; the CSV keeps
-/// its whole lines and the rows still waiting are tried again later. tested: tests/dem/io/recorder_test.cpp
+/// its whole lines and the rows still waiting are tried again later. tested: tests/base/recorder_test.cpp
 class Recorder
 {
 public:

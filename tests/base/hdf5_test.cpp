@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/hdf5.hpp"
+#include "base/hdf5.hpp"
 
-#include "dem/error.hpp"
-#include "tests/dem/io/temporary_folder.hpp"
+#include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
 #include <csignal>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/recorder.hpp"
+#include "base/recorder.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/hdf5.hpp"
-#include "dem/io/replace_file.hpp"
+#include "base/error.hpp"
+#include "base/hdf5.hpp"
+#include "base/replace_file.hpp"
 
 #include <algorithm>
 #include <cassert>

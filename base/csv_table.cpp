@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/csv_table.hpp"
+#include "base/csv_table.hpp"
 
-#include "dem/error.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 #include <array>

@@ -20,7 +20,7 @@ struct FileState;
 /// dataset of another kind is refused rather than converted (integers read as double are exact up to 2^53 and allowed).
 /// Errors name file, item and remedy: InputError on a file that is read, RunFailure on a file that is written.
 /// HDF5 is not thread-safe: one thread at a time. No call here is collective; nothing uses MPI.
-/// tested: tests/dem/io/hdf5_test.cpp
+/// tested: tests/base/hdf5_test.cpp
 class Group
 {
 public:

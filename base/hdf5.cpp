@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/hdf5.hpp"
+#include "base/hdf5.hpp"
 
-#include "dem/error.hpp"
-#include "dem/io/replace_file.hpp"
+#include "base/error.hpp"
+#include "base/replace_file.hpp"
 
 #include <algorithm>
 #include <cassert>

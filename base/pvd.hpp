@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isostat
+{
+/// The list of (time, file) that ParaView opens as one animation (.pvd). Rewritten, aside and renamed, at each append.
+class PvdCollection
+{
+public:
+  /// @param path  of the .pvd; it appears with the first append
+  /// @param resume_entries  how many of the entries in an existing file to keep; 0: start anew. InputError if there are
+  ///                        fewer, or the file is not a .pvd
+  explicit PvdCollection(std::filesystem::path path, std::size_t resume_entries = 0);
+
+  /// @param time  s   @param file  path of the .vtp as seen from the folder of the .pvd
+  void append(double time, const std::string &file);
+  std::size_t n_entries() const { return entries_.size(); }
+
+private:
+  std::filesystem::path path_;
+  std::vector<std::pair<std::string, std::string>> entries_; ///< time as text, file
+};
+} // namespace isostat

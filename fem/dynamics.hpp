@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/biot.hpp"
+#include "fem/discretisation.hpp"
+#include "fem/motion_input.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+
+namespace isostat
+{
+/// What the pore water does.
+enum class Drainage
+{
+  dry,       ///< no water: total stress is effective stress
+  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0, pressure from vertical equilibrium
+  coupled    ///< u-p: displacement and pore pressure
+};
+
+/// What lies under the mesh.
+struct Base
+{
+  bool compliant = false;       ///< false: the base has the given motion. true: elastic rock behind a dashpot
+  double density = 2300;        ///< rho_r, kg/m3
+  double shear_velocity = 800;  ///< V_r, m/s
+  double p_velocity = 1600;     ///< m/s
+  std::array<Motion, 3> motion; ///< along x, y, z: of the base, or of the rock's outcrop if compliant
+};
+
+/// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
+using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
+
+struct DynamicsSettings
+{
+  double time_step = 0;    ///< s; 0: safety times the stable step at the start
+  double safety = 0.8;     ///< of the stable step that may be used
+  double mass_damping = 0; ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
+  Drainage drainage = Drainage::dry;
+  bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
+  Base base;
+  SurfaceTraction surface_traction; ///< none: free
+};
+
+/// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
+struct DynamicsState
+{
+  std::uint64_t step = 0;
+  std::map<std::string, std::vector<double>> vectors;
+  std::map<std::string, double> numbers;
+  std::vector<std::byte> material;
+};
+
+/// Energy since the start, J (per m2 of a column).
+struct DynamicsEnergy
+{
+  double kinetic = 0;  ///< v(n-1/2) M v(n+1/2) / 2: with it the balance of central differences is exact
+  double internal = 0; ///< work of effective and pore stress on strains
+  double external = 0; ///< of inertia of the moving base, tractions, dashpot and mass damping
+
+  double residual() const { return kinetic + internal - external; }
+};
+
+/// Waves in a block of saturated soil: central differences in the displacement, effective stress explicit, pore
+/// pressure implicit. One evaluation of the material per step; the system for the pressure is constant and is
+/// factorised once.
+///
+///     M (v+ - v-)/dt + C (v+ + v-)/2 = f - F(sigma') + G^T p                      momentum of the mixture at t_n
+///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt = 0        water, second order backward (BDF2)
+///
+/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. The skeleton alone limits dt; water of any stiffness and permeability
+/// does not (roots of the amplification polynomial on or inside the unit circle for omega dt <= 2). Displacements count
+/// from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969). The state at the start is taken
+/// as in equilibrium: a frozen column stays still to the bit.
+/// tested: tests/fem/dynamics_test.cpp, tests/fem/biot_test.cpp
+template <int dim>
+class Dynamics
+{
+public:
+  /// @pre material.n_points() == space.n_points(), initial stress set
+  /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
+  Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings);
+  ~Dynamics();
+
+  /// One time step.
+  /// @throws RunFailure  the stiffness has risen so that the step is no longer stable, or the motion explodes
+  void step();
+
+  std::uint64_t n_steps() const { return step_; }
+  double time() const { return static_cast<double>(step_) * time_step_; }
+  double time_step() const { return time_step_; }
+  double stable_step() const; ///< of the present stiffness, s
+
+  const Vector &displacement() const { return u_; } ///< at time()
+  const Vector &velocity() const { return v_; }     ///< at time() - dt/2
+  const Vector &acceleration() const { return a_; } ///< at time() - dt, as the unknown counts it
+  const Vector &pressure() const { return p_; }     ///< excess, at time() - dt; u-p only
+  /// Excess pore pressure at the points, compression positive, Pa: of u-p, or from vertical equilibrium if undrained.
+  std::span<const double> point_pressure() const { return point_pressure_; }
+  std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time()
+  DynamicsEnergy energy() const { return energy_; }
+  double base_acceleration(unsigned axis) const; ///< of a rigid base at time() - dt
+
+  /// To the bit.   @pre of the same space, material and settings
+  DynamicsState save() const;
+  void restore(const DynamicsState &state);
+
+private:
+  struct Impl;
+};
+} // namespace isostat
