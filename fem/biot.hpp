@@ -40,6 +40,9 @@ public:
 
 private:
   struct Matrices;
+  void hold(const Discretisation<dim> &space, void *matrix);
+  void make_base_flow(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers);
+
   std::unique_ptr<Matrices> matrices_;
 };
 } // namespace isostat

@@ -3,13 +3,14 @@
 #include "fem/material.hpp"
 #include "fem/soil.hpp"
 
-#include <deal.II/base/index_set.h>
+#include <deal.II/base/partitioner.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <mpi.h>
+#include <map>
+#include <memory>
 
 namespace isostat
 {
@@ -77,53 +78,72 @@ public:
 
   // tables
   std::vector<unsigned> cell_dofs;             ///< [cell][node][3], local displacement unknown, ties resolved
-  std::vector<unsigned> cell_pressures;        ///< [cell][corner], local pressure unknown
+  std::vector<unsigned> cell_pressures;        ///< [cell][corner], local pressure unknown, ties resolved
   std::vector<double> shape;                   ///< [point of a cell][node], the same in every cell
   std::vector<double> gradient;                ///< [point][node][dim], 1/m
   std::vector<double> pressure_shape;          ///< [point of a cell][corner]
   std::vector<double> pressure_gradient;       ///< [point][corner][dim], 1/m
-  std::vector<double> weight;                  ///< volume of a point, m^dim (times 1 m along axes not meshed)
+  std::vector<double> weight;                  ///< volume of a point; axes that are not meshed count 1 m. m3
+  std::vector<double> nodal_share;             ///< [cell][node] Gauss-Lobatto volume of a node, m3
   std::vector<std::array<double, 3>> position; ///< of a point, m
-  std::vector<std::size_t> point_id;           ///< the point's number in the whole mesh
-  std::vector<unsigned> cell_layer;            ///< layer of a cell
-  std::vector<double> lumping;      ///< [point-free][node] share of a cell's volume by Gauss-Lobatto, [cell][node]
-  std::vector<unsigned> fixed_dofs; ///< local, owned or not
-  std::vector<unsigned> drained_pressures; ///< local
+  std::vector<std::size_t> point_id;           ///< number of a point in the whole mesh, for any partition
+  std::vector<unsigned> cell_layer;            ///< layer of a cell, counted from the base
+  std::vector<unsigned> fixed_dofs;            ///< local unknowns of Supports::fixed, owned or not
+  std::vector<unsigned> drained_pressures;     ///< local unknowns of Supports::drained, owned or not
 
   /// A zero vector of displacements / of pressures.
-  Vector displacement_vector() const;
-  Vector pressure_vector() const;
+  Vector displacement_vector() const { return Vector(displacement_partition_); }
+  Vector pressure_vector() const { return Vector(pressure_partition_); }
 
-  /// Diagonal mass, kg: Gauss-Lobatto at the nodes. @param density  of each layer
+  /// Diagonal mass by Gauss-Lobatto at the nodes, kg; 0 at unknowns that a tie has removed.
   Vector lumped_mass() const;
-  /// Area of a face that belongs to each displacement unknown (three times per node), m^(dim-1). Sums ties.
+  /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2.
   Vector face_area(Face face) const;
-  /// Lowest and highest node etc.: the local unknown of `component` at the node nearest to a place, if this rank owns
-  /// it.
-  /// @return local index, or -1
+  /// The local displacement unknown of `component` at the node nearest to a place, -1 if another rank owns it.
   long find_dof(const std::array<double, 3> &place, unsigned component) const;
+  /// The local pressure unknown nearest to a place, -1 if another rank owns it.
   long find_pressure(const std::array<double, 3> &place) const;
 
-  /// Gradients at all points.   @pre ghost entries of u are up to date
+  /// Displacement gradients at all points.   @pre ghost entries of u are up to date   Cost: in the loop.
   void gradients(const Vector &u, std::span<Gradient> out) const;
-  /// f += int B^T sigma; entries of other ranks are brought home.
+  /// f += int B^T sigma; what belongs to other ranks is brought home.   Cost: in the loop.
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
-  /// Largest omega^2 of any cell for given moduli, (rad/s)^2: bound of that of the mesh (Irons & Treharne 1971).
+  /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
+  /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held.   Cost: in the loop.
   double greatest_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const;
 
   const MeshSpec &mesh() const { return mesh_; }
   const Supports &supports() const { return supports_; }
   MPI_Comm communicator() const { return communicator_; }
+  bool shared_out() const { return shared_out_; }                 ///< over several ranks
   const dealii::DoFHandler<dim> &nodes() const { return nodes_; } ///< one unknown per displacement node
   const dealii::DoFHandler<dim> &pressure_nodes() const { return pressures_; }
+  /// Local displacement unknown of a node of nodes(), ties resolved.   @pre one of this rank's cells has the node
+  unsigned dof_of_node(dealii::types::global_dof_index node, unsigned component) const;
+  unsigned pressure_of_node(dealii::types::global_dof_index node) const;
 
 private:
+  using Partition = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
+  using Index = dealii::types::global_dof_index;
+
+  void make_mesh();
+  void make_unknowns();
+  void make_tables();
+  void make_supports();
+  void make_frequencies();
+  void tie_faces();
+
   MeshSpec mesh_;
   Supports supports_;
   MPI_Comm communicator_;
+  bool shared_out_; ///< over several ranks
   std::unique_ptr<dealii::Triangulation<dim>> triangulation_;
   dealii::FE_Q<dim> displacement_element_, pressure_element_;
   dealii::DoFHandler<dim> nodes_, pressures_;
-  std::size_t nodes_per_cell_, points_per_cell_;
+  std::size_t nodes_per_cell_ = 0, points_per_cell_ = 0;
+  std::array<std::map<Index, Index>, 3> masters_; ///< of displacement nodes that a tie removes, for each component
+  std::map<Index, Index> pressure_masters_;
+  Partition displacement_partition_, pressure_partition_;
+  std::vector<double> cell_frequency_; ///< omega^2 per Pa of wave modulus, without the layer's density
 };
 } // namespace isostat

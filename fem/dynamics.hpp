@@ -91,21 +91,64 @@ public:
   double time_step() const { return time_step_; }
   double stable_step() const; ///< of the present stiffness, s
 
-  const Vector &displacement() const { return u_; } ///< at time()
-  const Vector &velocity() const { return v_; }     ///< at time() - dt/2
-  const Vector &acceleration() const { return a_; } ///< at time() - dt, as the unknown counts it
-  const Vector &pressure() const { return p_; }     ///< excess, at time() - dt; u-p only
-  /// Excess pore pressure at the points, compression positive, Pa: of u-p, or from vertical equilibrium if undrained.
-  std::span<const double> point_pressure() const { return point_pressure_; }
-  std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time()
-  DynamicsEnergy energy() const { return energy_; }
-  double base_acceleration(unsigned axis) const; ///< of a rigid base at time() - dt
+  const Vector &displacement() const { return u_; }              ///< at time()
+  const Vector &velocity() const { return v_; }                  ///< at time() - dt/2
+  const Vector &acceleration() const { return a_; }              ///< at time() - dt, as the unknown counts it
+  const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
+  std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
+  /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
+  /// vertical equilibrium at time(), 0 if dry.
+  std::vector<double> point_pressure() const;
+  /// Sum over all ranks.
+  DynamicsEnergy energy() const;
+  const DynamicsSettings &settings() const { return settings_; }
 
-  /// To the bit.   @pre of the same space, material and settings
+  /// To the bit.
+  /// @throws InputError  restore() of another mesh, material or step; save() of a mesh shared out over ranks
   DynamicsState save() const;
   void restore(const DynamicsState &state);
 
 private:
-  struct Impl;
+  void check_settings() const;
+  void make_coefficients();
+  void find_loads();
+  void start();
+  void update_velocity();
+  void strain_points();
+  void add_lagged_compression();
+  void follow_energy();
+  void check_motion();
+  double water_compliance(std::size_t point) const; ///< 1/Q, 1/Pa
+
+  const Discretisation<dim> &space_;
+  Material &material_;
+  DynamicsSettings settings_;
+  double time_step_ = 0;
+  std::uint64_t step_ = 0;
+
+  // state
+  Vector u_, v_, a_, p_, p_before_, p_next_; ///< p_next_ is scratch
+  std::vector<Stress> stresses_;
+  std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
+  DynamicsEnergy half_way_;             ///< of this rank, at time() - dt/2
+  DynamicsEnergy energy_;               ///< of this rank at time() - dt
+  double exchanged_ = 0;                ///< sum of |external work|, what an explosion is measured by
+
+  // constant
+  Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
+  Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
+  Vector reference_force_;                ///< F of the initial stress
+  std::vector<Stress> initial_stresses_;
+  std::unique_ptr<PressureSystem<dim>> pressure_system_;
+
+  // of one step
+  Vector load_, force_, star_, pore_force_;
+  std::vector<Gradient> increments_;
+  mutable std::vector<WaveModuli> moduli_;
 };
+
+/// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
+/// in an undrained column vertically), tied sides, drained surface.
+template <int dim>
+Supports shaken_supports(bool compliant_base);
 } // namespace isostat
