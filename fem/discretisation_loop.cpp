@@ -122,39 +122,47 @@ void Discretisation<dim>::add_internal_force(std::span<const Stress> stresses, V
     f.compress(dealii::VectorOperation::add);
 }
 
-/// The eigenvalue is convex in V_s^2/V_p^2, so the larger of its values at the ends 0 and 3/4 (no bulk modulus) bounds
-/// it. Cells of the same shape, found by their first gradients, share one computation.
+namespace
+{
+/// Largest omega^2 of a cell for rho V_p^2 = 1 Pa and a density of 1 kg/m3. It is convex in V_s^2/V_p^2, so the larger
+/// of its values at the ends 0 and 3/4 (no bulk modulus) bounds it.
+template <int dim>
+double cell_frequency_squared(const Tables<dim> &t, const double *nodal_share, std::size_t n_nodes)
+{
+  double largest = 0;
+  for (double shear : {0.0, 0.75})
+    {
+      const Eigen::MatrixXd k = scaled_stiffness<dim>(t, nodal_share, n_nodes, shear);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, Eigen::EigenvaluesOnly);
+      largest = std::max(largest, solver.eigenvalues().maxCoeff());
+    }
+  return largest;
+}
+} // namespace
+
+/// Cells with the same gradients share one computation.
 template <int dim>
 void Discretisation<dim>::make_frequencies()
 {
   const std::size_t per_cell = points_per_cell_ * nodes_per_cell_ * dim;
-  std::vector<std::pair<std::size_t, double>> known;
+  std::vector<std::pair<std::size_t, double>> known; // first cell of a shape, its frequency
   for (std::size_t cell = 0; cell < n_cells(); ++cell)
     {
+      const double *own = &gradient[cell * per_cell];
       const auto same = [&](const auto &entry) {
-        for (std::size_t k = 0; k < per_cell; ++k)
-          if (std::abs(gradient[entry.first * per_cell + k] - gradient[cell * per_cell + k]) >
-              1e-9 * std::abs(gradient[cell * per_cell]))
-            return false;
-        return true;
+        const double *other = &gradient[entry.first * per_cell];
+        return std::equal(own, own + per_cell, other,
+                          [&](double a, double b) { return std::abs(a - b) < 1e-9 * std::abs(*own); });
       };
-      const auto found = std::find_if(known.begin(), known.end(), same);
+      auto found = std::find_if(known.begin(), known.end(), same);
       if (found == known.end())
         {
-          const Tables<dim> t{nullptr, &gradient[cell * per_cell], &weight[cell * points_per_cell_], 1,
-                              points_per_cell_};
-          double largest = 0;
-          for (double shear : {0.0, 0.75})
-            largest = std::max(
-                largest, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-                             scaled_stiffness<dim>(t, &nodal_share[cell * nodes_per_cell_], nodes_per_cell_, shear),
-                             Eigen::EigenvaluesOnly)
-                             .eigenvalues()
-                             .maxCoeff());
-          known.emplace_back(cell, largest);
+          const Tables<dim> t{nullptr, own, &weight[cell * points_per_cell_], 1, points_per_cell_};
+          known.emplace_back(cell,
+                             cell_frequency_squared<dim>(t, &nodal_share[cell * nodes_per_cell_], nodes_per_cell_));
+          found = known.end() - 1;
         }
-      const double per_density = found == known.end() ? known.back().second : found->second;
-      cell_frequency_.push_back(per_density / mesh_.soil.layers[cell_layer[cell]].density);
+      cell_frequency_.push_back(found->second / mesh_.soil.layers[cell_layer[cell]].density);
     }
 }
 

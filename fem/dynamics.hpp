@@ -38,8 +38,8 @@ struct DynamicsSettings
   double mass_damping = 0; ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
   Drainage drainage = Drainage::dry;
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
-  Base base;
-  SurfaceTraction surface_traction; ///< none: free
+  Base base = {};
+  SurfaceTraction surface_traction = {}; ///< none: free
 };
 
 /// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
@@ -80,7 +80,6 @@ public:
   /// @pre material.n_points() == space.n_points(), initial stress set
   /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
   Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings);
-  ~Dynamics();
 
   /// One time step.
   /// @throws RunFailure  the stiffness has risen so that the step is no longer stable, or the motion explodes

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The main of tests that use deal.II: MPI and PETSc are up while they run.
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
 #include <deal.II/base/mpi.h>
-#include <gmock/gmock.h>
 
 int main(int argc, char **argv)
 {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Waves in saturated soil against exact solutions, and the limit in which no water moves.
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
+#include "fem/dynamics.hpp"
+#include "tests/support/columns.hpp"
+
+#include <cstdio>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+/// A column under harmonic surface traction (after Zienkiewicz, Chang & Bettess 1980): amplitudes of the displacement
+/// of the top and of the pressure at the base over the traction, for L = 10 m, D = 1e8 Pa, rho = 2000 kg/m3, n = 0.33,
+/// K_f = 2.2e9 Pa, q = 1 kPa.
+struct Regime
+{
+  double permeability, frequency;          ///< m/s, Hz
+  double u_top, p_base;                    ///< m, [-]: exact
+  std::size_t periods;                     ///< until the start is forgotten
+  std::vector<std::array<double, 2>> mesh; ///< from the base up: thickness (m), cells; fine where the water drains
+};
+
+/// Amplitude of a periodic signal's first harmonic over its last period.
+double amplitude(const std::vector<double> &signal, std::size_t per_period)
+{
+  double c = 0, s = 0;
+  for (std::size_t k = 0; k < per_period; ++k)
+    {
+      const double angle = 2 * std::numbers::pi * k / per_period, x = signal[signal.size() - per_period + k];
+      c += x * std::cos(angle);
+      s += x * std::sin(angle);
+    }
+  return 2 * std::hypot(c, s) / per_period;
+}
+
+std::array<double, 2> response(const Regime &regime)
+{
+  SoilProfile soil;
+  for (const auto &[thickness, cells] : regime.mesh)
+    soil.layers.push_back({.name = "soil",
+                           .thickness = thickness,
+                           .density = 2000,
+                           .porosity = 0.33,
+                           .permeability = regime.permeability,
+                           .cells = static_cast<unsigned>(cells)});
+  const Discretisation<1> space({.soil = soil}, shaken_supports<1>(false));
+  Elastic material({.shear_modulus = 0.375e8, .poisson_ratio = 0.2}, space.n_points()); // D = K + 4G/3 = 1e8
+  DynamicsSettings settings{.drainage = Drainage::coupled};
+  const double omega = 2 * std::numbers::pi * regime.frequency;
+  settings.surface_traction = [=](double t) {
+    return std::array<double, 3>{0, 0, 1e3 * std::sin(omega * t) * std::min(1.0, t * regime.frequency / 4)};
+  };
+  const double wanted = Dynamics<1>(space, material, settings).time_step();
+  const auto per_period = static_cast<std::size_t>(std::ceil(1 / (regime.frequency * wanted)));
+  settings.time_step = 1 / (regime.frequency * per_period);
+  Dynamics<1> run(space, material, settings);
+  const long top = space.find_dof({0, 0, 10}, 2), base = space.find_pressure({0, 0, 0});
+  std::vector<double> u, p;
+  for (std::size_t k = 0; k < per_period * regime.periods; ++k)
+    {
+      run.step();
+      u.push_back(run.displacement().local_element(top));
+      p.push_back(run.pressure().local_element(base));
+    }
+  return {amplitude(u, per_period), amplitude(p, per_period) / 1e3};
+}
+} // namespace
+
+TEST(Biot, HarmonicTractionInThreeRegimes)
+{
+  const Regime regimes[] = {{1e-2, 1, 4.262605e-05, 1.112934, 20, {{10, 20}}},
+                            {1e-4, 1, 5.092882e-06, 0.985797, 20, {{8, 16}, {2, 20}}},
+                            {1e-6, 10, 1.628590e-06, 1.045636, 30, {{8, 16}, {1.8, 18}, {0.2, 20}}}};
+  for (const Regime &regime : regimes)
+    {
+      const auto [u, p] = response(regime);
+      std::printf("  k = %.0e m/s, %g Hz: |u_top| %.6e (%+.2e), |p_base|/q %.6f (%+.2e)\n", regime.permeability,
+                  regime.frequency, u, u / regime.u_top - 1, p, p / regime.p_base - 1);
+      EXPECT_NEAR(u / regime.u_top, 1, 2e-3);
+      EXPECT_NEAR(p / regime.p_base, 1, 2e-3);
+    }
+}
+} // namespace isostat
