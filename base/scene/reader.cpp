@@ -50,6 +50,11 @@ void check_known(const SceneDocument &document, const toml::table &table, const 
     }
 }
 
+const char *article(std::string_view noun)
+{
+  return std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a" : "an";
+}
+
 /// Keys of a table belong to its kind.
 void check_kind(const SceneDocument &document, const Section &section, std::size_t kind, const std::string &prefix)
 {
@@ -62,10 +67,11 @@ void check_kind(const SceneDocument &document, const Section &section, std::size
       const unsigned kinds = schema.kinds_of(key.path);
       const bool belongs = kinds == 0 || ((kinds >> kind) & 1u);
       if (!belongs && document.find(path))
-        document.refuse(path, fmt::format("does not belong to a {} of {} \"{}\", only to {}. Remove it or change "
+        document.refuse(path, fmt::format("does not belong to {} {} of {} \"{}\", only to {}. Remove it or change "
                                           "the {}.",
-                                          section.name, section.kind_key, schema.kind_key(section)->choices[kind],
-                                          schema.kinds_text(section, kinds), section.kind_key));
+                                          article(section.name), section.name, section.kind_key,
+                                          schema.kind_key(section)->choices[kind], schema.kinds_text(section, kinds),
+                                          section.kind_key));
     }
 }
 

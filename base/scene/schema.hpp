@@ -62,7 +62,7 @@ struct Key
 
   std::string_view section() const; ///< "motion"; "" at the top of the file
   std::string_view name() const;    ///< path within the section, "rolling.limit"
-  /// @param stage  number or enumerator of a kind
+  /// @param number  or enumerator of a kind
   template <class KindNumber>
   bool belongs_to(KindNumber number) const
   {
@@ -82,7 +82,7 @@ struct Section
 {
   const char *name;
   const char *text;
-  const char *kind_key = ""; ///< its word says which keys belong here ("kind", "material"); "": all do
+  const char *kind_key = ""; ///< its word says which keys belong here ("kind", "material"); "": all do. An EnumField
   ItemAccess items = {};     ///< set: an array of tables
   // of an array of tables
   bool needed = false;           ///< at least one is

@@ -37,7 +37,8 @@ struct WriteValue
   }
   std::string count(std::uint64_t value) const
   {
-    return value == 0 && key.presence == Presence::optional ? "" : fmt::format("{}", value);
+    const bool unset = value == 0 && (key.presence == Presence::optional || key.presence == Presence::experiment);
+    return unset ? "" : fmt::format("{}", value);
   }
   std::string operator()(const std::uint64_t *value) const { return count(*value); }
   std::string operator()(const unsigned *value) const { return count(*value); }
@@ -205,10 +206,16 @@ std::string default_section(const SceneSchema &schema, const Section &section)
   while (kind_key && std::string_view(kind_key->choices[kind]) != kind_key->value)
     ++kind;
   std::string text = default_table(schema, section, kind);
+  unsigned kinds = 0; // of the key before
   for (const Key &key : schema.keys)
-    if (kind_key && key.section() == section.name && !takes_key(key, kind))
-      text += fmt::format("# For {} {}:\n", kind_key->name(), schema.kinds_text(section, key.kinds)) +
-              commented(default_entry(key));
+    {
+      if (!kind_key || key.section() != section.name || takes_key(key, kind))
+        continue;
+      if (key.kinds != kinds)
+        text += fmt::format("# For {} {}:\n", kind_key->name(), schema.kinds_text(section, key.kinds));
+      kinds = key.kinds;
+      text += commented(default_entry(key));
+    }
   return text;
 }
 } // namespace
