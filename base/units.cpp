@@ -53,6 +53,23 @@ constexpr std::array units{
     Unit{"min", Dimension::interval, 0},
     Unit{"s", Dimension::interval, 0, 1.0 / 60.0},
     Unit{"h", Dimension::interval, 0, 60},
+    Unit{"m/s", Dimension::velocity, 0},
+    Unit{"cm/s", Dimension::velocity, -2},
+    Unit{"mm/s", Dimension::velocity, -3},
+    Unit{"m/s2", Dimension::acceleration, 0},
+    Unit{"m/s^2", Dimension::acceleration, 0, 1, false},
+    Unit{"cm/s2", Dimension::acceleration, -2},
+    Unit{"cm/s^2", Dimension::acceleration, -2, 1, false},
+    Unit{"gal", Dimension::acceleration, -2, 1, false},
+    Unit{"Gal", Dimension::acceleration, -2, 1, false},
+    Unit{"g", Dimension::acceleration, 0, 9.80665}, // standard gravity, CGPM 1901
+    Unit{"Hz", Dimension::frequency, 0},
+    Unit{"kHz", Dimension::frequency, 3},
+    Unit{"s", Dimension::duration, 0},
+    Unit{"ms", Dimension::duration, -3},
+    Unit{"min", Dimension::duration, 0, 60},
+    Unit{"h", Dimension::duration, 0, 3600},
+    Unit{"d", Dimension::duration, 0, 86400},
 };
 
 constexpr double degree = std::numbers::pi / 180;
@@ -189,6 +206,14 @@ std::string_view dimension_name(Dimension dimension)
       return "a density";
     case Dimension::interval:
       return "a time interval";
+    case Dimension::velocity:
+      return "a velocity";
+    case Dimension::acceleration:
+      return "an acceleration";
+    case Dimension::frequency:
+      return "a frequency";
+    case Dimension::duration:
+      return "a duration";
     }
   return "";
 }

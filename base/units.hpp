@@ -8,13 +8,17 @@ namespace isostat
 /// What a quantity measures. Each has its own units; a unit of another one is an error.
 enum class Dimension
 {
-  length,   ///< m, cm, mm, um            kept in m
-  pressure, ///< Pa, kPa, MPa, GPa        kept in Pa
-  angle,    ///< deg, rad, tan            kept as the tangent [-]; friction is an angle in files, tan(phi) inside
-  rate,     ///< 1/s                      kept in 1/s
-  time,     ///< s, ms, us, ns            kept in s
-  density,  ///< kg/m3, g/cm3             kept in kg/m3
-  interval  ///< min, s, h                kept in minutes of wall-clock time
+  length,       ///< m, cm, mm, um            kept in m
+  pressure,     ///< Pa, kPa, MPa, GPa        kept in Pa
+  angle,        ///< deg, rad, tan            kept as the tangent [-]; friction is an angle in files, tan(phi) inside
+  rate,         ///< 1/s                      kept in 1/s
+  time,         ///< s, ms, us, ns            kept in s
+  density,      ///< kg/m3, g/cm3             kept in kg/m3
+  interval,     ///< min, s, h                kept in minutes of wall-clock time
+  velocity,     ///< m/s, cm/s, mm/s          kept in m/s; of waves, and of water in soil (permeability)
+  acceleration, ///< m/s2, cm/s2 (gal), g     kept in m/s2; g is 9.80665 m/s2
+  frequency,    ///< Hz, kHz                  kept in Hz
+  duration      ///< s, ms, min, h, d         kept in s; times from a time step to the years of consolidation
 };
 
 /// A quantity read from text.

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/scene.hpp"
 
-#include "base/error.hpp"
-#include "dem/io/scene_reader.hpp"
+#include "base/scene/reader.hpp"
+#include "base/scene/writer.hpp"
+#include "dem/io/scene_schema.hpp"
 
 #include <filesystem>
-#include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 
 namespace isostat
 {
@@ -20,20 +18,15 @@ bool equal(const LawParams &a, const LawParams &b)
          a.twisting_stiffness == b.twisting_stiffness && a.features == b.features;
 }
 
-std::string read_text(const std::string &path)
-{
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path, ignored))
-    throw InputError(fmt::format("{}: cannot be read; must be a scene file (TOML) open to you.", path));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 Scene checked_scene(const SceneDocument &document)
 {
-  Scene scene = fill_scene(document);
+  Scene scene;
+  fill_scene(document, &scene);
+  if (!document.find("contact.friction"))
+    scene.contact.friction = 0;
+  scene.contact.features.friction = scene.contact.friction > 0;
+  if (document.find("grading.table"))
+    scene.grading.curve.clear();
   check_scene(document, scene);
   return scene;
 }
@@ -54,12 +47,12 @@ bool Scene::operator==(const Scene &other) const
 
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)
 {
-  return checked_scene(SceneDocument(text, name, overrides));
+  return checked_scene(SceneDocument(scene_schema(), text, name, overrides));
 }
 
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
-  const SceneDocument document(read_text(path), path, overrides);
+  const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
   Scene scene = checked_scene(document);
   std::error_code ignored;
   const std::string file = specimen_place(scene.specimen.file).path;
@@ -70,4 +63,10 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
     scene.output.folder = "results/" + std::filesystem::path(path).stem().string();
   return scene;
 }
+
+std::string to_toml(const Scene &scene) { return write_scene(scene_schema(), &scene); }
+
+std::string default_scene() { return write_defaults(scene_schema()); }
+
+std::string scene_manual() { return write_manual(scene_schema()); }
 } // namespace isostat

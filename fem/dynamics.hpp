@@ -10,14 +10,6 @@
 
 namespace isostat
 {
-/// What the pore water does.
-enum class Drainage
-{
-  dry,       ///< no water: total stress is effective stress
-  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0, pressure from vertical equilibrium
-  coupled    ///< u-p: displacement and pore pressure
-};
-
 /// What lies under the mesh.
 struct Base
 {

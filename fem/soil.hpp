@@ -18,6 +18,14 @@ struct Layer
   unsigned cells = 1;      ///< elements through its thickness
 };
 
+/// What the pore water does.
+enum class Drainage
+{
+  dry,       ///< no water: total stress is effective stress
+  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0, pressure from vertical equilibrium
+  coupled    ///< u-p: displacement and pore pressure
+};
+
 /// Pore water.
 struct Water
 {

@@ -26,7 +26,7 @@ TOP = {
     "apps": {"apps", "coupling", "fem", "dem", "base"},
 }
 
-# Reading and writing scenes is one part with dem/scene.hpp, though its files lie in dem/io.
+# The keys of a scene are one part with dem/scene.hpp, though their files lie in dem/io.
 SCENE_FILES = "io/scene_"
 
 # Part of dem -> parts it may include besides itself. A part is a file or a folder below dem/; a file goes to the

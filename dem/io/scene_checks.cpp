@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a scene.
-#include "dem/io/scene_reader.hpp"
+#include "base/scene/reader.hpp"
+#include "dem/io/scene_schema.hpp"
 
 #include <fmt/format.h>
 
@@ -8,30 +9,6 @@ namespace isostat
 {
 namespace
 {
-/// The keys of a group exclude each other.
-void check_group(const SceneDocument &document, Group group, bool one_needed)
-{
-  const Key *given = nullptr;
-  std::string names;
-  std::string_view section;
-  for (const Key &key : scene_schema())
-    {
-      if (key.group != group)
-        continue;
-      section = key.section();
-      names += (names.empty() ? "" : ", ") + std::string(key.name());
-      if (!document.find(key.path))
-        continue;
-      if (given)
-        document.refuse(key.path,
-                        fmt::format("excludes {} ({}). Keep one of them.", given->path, document.where(given->path)));
-      given = &key;
-    }
-  if (one_needed && !given)
-    document.refuse(section,
-                    fmt::format("must have exactly one of {}. Give for example relative_density = 0.64.", names));
-}
-
 /// Throws for what a rigid box cannot do.
 void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, const std::string &path,
                std::string_view otherwise)
@@ -97,11 +74,9 @@ void check_motion(const SceneDocument &document, const MotionSpec &motion)
 }
 } // namespace
 
-void check_scene(const SceneDocument &document, const Scene &scene)
+void check_scene(const SceneDocument &document, Scene &scene)
 {
-  check_group(document, Group::size_curve, false);
-  check_group(document, Group::preparation, true);
-  check_group(document, Group::rate, false);
+  check_groups(document, &scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_stages(document, scene);

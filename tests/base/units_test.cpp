@@ -46,6 +46,26 @@ TEST(Units, TextEqualsTheLiteral)
   EXPECT_EQ(parse_quantity("2 h", Dimension::interval).value, 120);
 }
 
+TEST(Units, OfTheColumn)
+{
+  EXPECT_EQ(parse_quantity("200 m/s", Dimension::velocity).value, 200);
+  EXPECT_EQ(parse_quantity("1e-3 cm/s", Dimension::velocity).value, 1e-5);
+  EXPECT_EQ(parse_quantity("0.35 mm/s", Dimension::velocity).value, 0.35e-3);
+  EXPECT_EQ(parse_quantity("9.81 m/s2", Dimension::acceleration).value, 9.81);
+  EXPECT_EQ(parse_quantity("981 gal", Dimension::acceleration).value, 9.81);
+  EXPECT_EQ(parse_quantity("-12.5 cm/s^2", Dimension::acceleration).value, -0.125);
+  EXPECT_EQ(parse_quantity("0.2 g", Dimension::acceleration).value, 0.2 * 9.80665);
+  EXPECT_EQ(parse_quantity("2.5 Hz", Dimension::frequency).value, 2.5);
+  EXPECT_EQ(parse_quantity("5 ms", Dimension::duration).value, 5e-3);
+  EXPECT_EQ(parse_quantity("1.5 d", Dimension::duration).value, 129600);
+  EXPECT_EQ(format_quantity(1e-5, Dimension::velocity, "m/s"), "1e-5 m/s");
+  EXPECT_EQ(complaint("2 m", Dimension::velocity), "must be a velocity in m/s, cm/s or mm/s, but m is the unit of a "
+                                                   "length");
+  EXPECT_EQ(complaint("2 Hz", Dimension::acceleration),
+            "must be an acceleration in m/s2, cm/s2 or g, but Hz is the unit of a frequency");
+  EXPECT_EQ(complaint("2 s", Dimension::frequency), "must be a frequency in Hz or kHz, but s is the unit of a time");
+}
+
 TEST(Units, FrictionIsKeptAsTangentAndCheckedInDegrees)
 {
   const Quantity degrees = parse_quantity("18 deg", Dimension::angle);

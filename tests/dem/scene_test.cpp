@@ -126,7 +126,7 @@ TEST(Scene, EveryStageKindParsesWithEachOfItsKeys)
     {
       const auto kind = static_cast<StageKind>(i);
       std::string text = cell + fmt::format("[contact]\nfriction = \"18 deg\"\n[[stage]]\nkind = \"{}\"\n", names[i]);
-      for (const Key &key : scene_schema())
+      for (const Key &key : scene_schema().keys)
         if (key.belongs_to(kind) && key.kind != Kind::table && key.name() != "kind")
           text += fmt::format("{} = {}\n", key.name(), example(key));
       EXPECT_NO_THROW(parse_scene(text, "scene.toml")) << text;
@@ -290,8 +290,8 @@ TEST(Scene, RoundTripToTheBit)
         const bool in_cell = !variant.empty() && variant[0] == "specimen.domain=periodic-cell";
         Scene scene = parse_scene(in_cell ? box + cell_only : box, "scene.toml", variant);
         Stage unused;
-        for (const Key &key : scene_schema())
-          if (key.stages == 0 && key.name() != "quasi_static_tolerance")
+        for (const Key &key : scene_schema().keys)
+          if (key.kinds == 0 && key.name() != "quasi_static_tolerance")
             scramble(key, key.field(scene, unused), random);
           else
             for (Stage &stage : scene.stages)
@@ -325,22 +325,22 @@ TEST(Scene, PrintedDefaultsAreAScene)
   expected.stages[0].kind = StageKind::undrained_cyclic;
   EXPECT_EQ(scene, expected);
 
-  for (const Key &key : scene_schema())
+  for (const Key &key : scene_schema().keys)
     EXPECT_NE(default_scene().find(std::string(key.name())), std::string::npos) << key.path;
 }
 
 TEST(Schema, EveryKeyIsDescribed)
 {
   std::map<std::string, unsigned> paths;
-  for (const Key &key : scene_schema())
+  for (const Key &key : scene_schema().keys)
     {
       const auto [seen, is_new] = paths.try_emplace(key.path, 0);
-      EXPECT_TRUE(is_new || (key.stages != 0 && (seen->second & key.stages) == 0)) << key.path << " twice";
-      seen->second |= key.stages;
+      EXPECT_TRUE(is_new || (key.kinds != 0 && (seen->second & key.kinds) == 0)) << key.path << " twice";
+      seen->second |= key.kinds;
       const std::string text = key.text;
       EXPECT_TRUE(text.ends_with('.') || text.ends_with(',')) << key.path;
       EXPECT_TRUE(key.field) << key.path;
-      EXPECT_EQ(key.stages != 0, key.section() == "stage") << key.path;
+      EXPECT_EQ(key.kinds != 0, key.section() == "stage") << key.path;
       EXPECT_TRUE(key.presence == Presence::standard || *key.value) << key.path << " needs an example";
       EXPECT_TRUE(key.kind != Kind::quantity || *key.unit) << key.path;
     }

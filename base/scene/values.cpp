@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One value of a scene file: its form, unit and range.
 #include "base/error.hpp"
-#include "dem/io/scene_reader.hpp"
+#include "base/scene/reader.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ struct Reading
     try
       {
         const Quantity quantity = parse_quantity(text->get(), key.dimension);
-        if (key.kind == Kind::quantity)
+        if (key.kind != Kind::size_curve)
           check_range(quantity.scale);
         return quantity.value;
       }
@@ -94,6 +94,18 @@ struct Reading
     refuse("must be " + choices_text(key));
   }
 
+  std::vector<double> quantity_list(const toml::node &node) const
+  {
+    const auto *array = node.as_array();
+    if (!array)
+      refuse(fmt::format("must be a list [...] whose entries are {} with its unit ({}), in quotes",
+                         dimension_name(key.dimension), unit_names(key.dimension)));
+    std::vector<double> values;
+    for (const toml::node &element : *array)
+      values.push_back(quantity(element));
+    return values;
+  }
+
   void percent_pair(const toml::node &node, const PercentPair &pair) const
   {
     const auto *array = node.as_array();
@@ -144,10 +156,17 @@ void set_choice(std::size_t choice, const Key &key, const Field &field)
 {
   if (std::string *const *word = std::get_if<std::string *>(&field))
     **word = key.choices[choice];
-  else if (StageKind *const *kind = std::get_if<StageKind *>(&field))
-    **kind = static_cast<StageKind>(choice);
+  else if (const EnumField *word_number = std::get_if<EnumField>(&field))
+    word_number->set(choice);
   else
     *std::get<bool *>(field) = choice == 1;
+}
+void set_count(std::uint64_t count, const Field &field)
+{
+  if (unsigned *const *small = std::get_if<unsigned *>(&field))
+    **small = static_cast<unsigned>(count); // the range of such a key keeps it small
+  else
+    *std::get<std::uint64_t *>(field) = count;
 }
 } // namespace
 
@@ -164,7 +183,7 @@ void read_value(const SceneDocument &document, const Key &key, const std::string
       set_number(reading.number(node), field);
       break;
     case Kind::integer:
-      *std::get<std::uint64_t *>(field) = reading.integer(node);
+      set_count(reading.integer(node), field);
       break;
     case Kind::boolean:
       if (!node.is_boolean())
@@ -179,6 +198,9 @@ void read_value(const SceneDocument &document, const Key &key, const std::string
       break;
     case Kind::table:
       break; // fill_scene looks whether it is there
+    case Kind::quantity_list:
+      *std::get<std::vector<double> *>(field) = reading.quantity_list(node);
+      break;
     case Kind::percent_pair:
       reading.percent_pair(node, std::get<PercentPair>(field));
       break;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/scene_document.hpp"
+#include "base/scene/document.hpp"
 
 #include "base/error.hpp"
-#include "dem/io/scene_schema.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -107,9 +106,9 @@ toml::table parse_override(const std::string &value)
 }
 } // namespace
 
-SceneDocument::SceneDocument(const std::string &text, const std::string &name,
+SceneDocument::SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                              const std::vector<std::string> &overrides)
-    : name_(name)
+    : schema_(schema), name_(name)
 {
   try
     {
@@ -136,7 +135,8 @@ void SceneDocument::apply(const std::string &override)
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   std::erase_if(path, is_blank);
   if (equals == std::string::npos || path.empty())
-    throw InputError(fmt::format("--set {}: must be key=value. Give for example --set motion.damping=0.3", override));
+    throw InputError(
+        fmt::format("--set {}: must be key=value. Give for example --set {}", override, schema_.set_example));
   std::string value = override.substr(equals + 1);
   while (!value.empty() && is_blank(value.front()))
     value.erase(0, 1);
@@ -150,37 +150,53 @@ void SceneDocument::apply(const std::string &override)
 /// An override of one of several keys that exclude each other takes the place of the one in the file.
 void SceneDocument::make_room(const std::string &path)
 {
-  const Key *key = find_key(path);
-  if (!key || key->group == Group::none)
+  const Key *key = schema_.find_key(schema_.schema_path(path));
+  if (!key || !*key->group)
     return;
-  toml::table *section = root_[key->section()].as_table();
-  for (const Key &other : scene_schema())
-    if (section && other.group == key->group && &other != key &&
-        std::find(overridden_.begin(), overridden_.end(), other.path) == overridden_.end())
-      section->erase(other.name());
+  const std::string prefix = path.substr(0, path.size() - key->name().size()); // "specimen." or "layer.2."
+  for (const Key &other : schema_.keys)
+    {
+      if (other.section() != key->section() || std::string_view(other.group) != key->group || other.path == key->path)
+        continue;
+      const std::string rival = prefix + std::string(other.name());
+      if (std::find(overridden_.begin(), overridden_.end(), rival) == overridden_.end())
+        erase(rival);
+    }
+}
+
+void SceneDocument::erase(const std::string &path)
+{
+  const std::size_t dot = path.rfind('.');
+  toml::node *parent = const_cast<toml::node *>(find(path.substr(0, dot)));
+  if (parent && parent->is_table())
+    parent->as_table()->erase(path.substr(dot + 1));
 }
 
 toml::table *SceneDocument::parent_of(const std::string &path)
 {
   const std::vector<std::string> words = split(path);
+  const Section *section = schema_.find_section(words[0]);
+  const bool has_items = section && section->items;
   toml::node *node = &root_;
   for (std::size_t i = 0; i + 1 < words.size(); ++i)
     {
       toml::table *table = node->as_table();
-      if (table && !table->contains(words[i]) && words[i] != "stage")
+      if (table && !table->contains(words[i]) && !(i == 0 && has_items))
         table->insert(words[i], toml::table{});
       if (const toml::array *array = node->as_array(); array && !as_index(words[i]))
-        throw InputError(fmt::format("--set {}: stages are addressed by number. Write stage.0 for the first.", path));
+        throw InputError(
+            fmt::format("--set {}: {}s are addressed by number. Write {}.0 for the first.", path, words[0], words[0]));
       if (const toml::array *array = node->as_array(); array && *as_index(words[i]) >= array->size())
-        throw InputError(fmt::format("--set {}: there is no stage {}; {} has {}, counted from 0.", path, words[i],
-                                     name_, array->size()));
+        throw InputError(fmt::format("--set {}: there is no {} {}; {} has {}, counted from 0.", path, words[0],
+                                     words[i], name_, array->size()));
       toml::node *next = const_cast<toml::node *>(child(*node, words[i]));
       if (!next)
         throw InputError(fmt::format("--set {}: {} has no {}.", path, name_, words[i]));
       node = next;
     }
-  if (node->is_array_of_tables())
-    throw InputError(fmt::format("--set {}: a stage is set key by key. Write for example stage.0.strain=0.02.", path));
+  if (node->is_array_of_tables() && has_items)
+    throw InputError(fmt::format("--set {}: a {} is set key by key. Write for example {}.0.{}.", path, words[0],
+                                 words[0], section->set_example));
   if (!node->is_table())
     throw InputError(fmt::format("--set {}: {} is a value that holds no keys. Set it as a whole.", path,
                                  path.substr(0, path.rfind('.'))));
@@ -194,6 +210,12 @@ const toml::node *SceneDocument::find(std::string_view path) const
     if (node)
       node = child(*node, word);
   return node;
+}
+
+std::size_t SceneDocument::n_items(std::string_view section) const
+{
+  const toml::node *node = find(section);
+  return node && node->is_array() ? node->as_array()->size() : 0;
 }
 
 std::string SceneDocument::where(std::string_view path) const

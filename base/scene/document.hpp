@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/scene/schema.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,8 +35,10 @@ class SceneDocument
 {
 public:
   /// @throws InputError for text that is no TOML, or an override that is none
-  SceneDocument(const std::string &text, const std::string &name, const std::vector<std::string> &overrides);
+  SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
+                const std::vector<std::string> &overrides);
 
+  const SceneSchema &schema() const { return schema_; }
   const toml::table &root() const { return root_; }
   const toml::node *find(std::string_view path) const; ///< null if nothing is there
 
@@ -44,11 +48,16 @@ public:
   /// Throws InputError "where: path = value; problem".
   [[noreturn]] void refuse(std::string_view path, std::string_view problem) const;
 
+  /// How many tables the array of a section has, 0 if it is not there.
+  std::size_t n_items(std::string_view section) const;
+
 private:
   void apply(const std::string &override);
   void make_room(const std::string &path);
+  void erase(const std::string &path);
   toml::table *parent_of(const std::string &path);
 
+  const SceneSchema &schema_;
   std::string name_;
   toml::table root_;
   std::vector<std::string> overridden_; ///< paths given by --set

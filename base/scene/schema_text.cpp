@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Look-ups in the schema and its wording.
-#include "dem/io/scene_schema.hpp"
+#include "base/scene/schema.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,8 @@ namespace
 {
 std::string bound_text(const Key &key, double bound)
 {
-  return key.kind == Kind::quantity ? format_bound(bound, key.dimension, key.unit) : number_text(bound);
+  const bool has_unit = key.kind == Kind::quantity || key.kind == Kind::quantity_list;
+  return has_unit ? format_bound(bound, key.dimension, key.unit) : number_text(bound);
 }
 
 std::string quoted(std::string_view text)
@@ -81,37 +82,51 @@ std::string_view Key::name() const
   return whole.substr(whole.find('.') + 1);
 }
 
-const Key *find_key(std::string_view path)
+const Key *SceneSchema::find_key(std::string_view path) const
 {
-  for (const Key &key : scene_schema())
+  for (const Key &key : keys)
     if (key.path == path)
       return &key;
   return nullptr;
 }
 
-unsigned stages_of(std::string_view path)
+const Section *SceneSchema::find_section(std::string_view name) const
 {
-  unsigned stages = 0;
-  for (const Key &key : scene_schema())
-    if (key.path == path)
-      stages |= key.stages;
-  return stages;
+  for (const Section &section : sections)
+    if (section.name == name)
+      return &section;
+  return nullptr;
 }
 
-std::string schema_path(std::string_view path)
+const Key *SceneSchema::kind_key(const Section &section) const
 {
-  constexpr std::string_view prefix = "stage.";
-  if (!path.starts_with(prefix))
+  return *section.kind_key ? find_key(fmt::format("{}.{}", section.name, section.kind_key)) : nullptr;
+}
+
+unsigned SceneSchema::kinds_of(std::string_view path) const
+{
+  unsigned kinds = 0;
+  for (const Key &key : keys)
+    if (key.path == path)
+      kinds |= key.kinds;
+  return kinds;
+}
+
+std::string SceneSchema::schema_path(std::string_view path) const
+{
+  const std::size_t dot = path.find('.');
+  const Section *section = find_section(path.substr(0, dot));
+  if (dot == std::string_view::npos || !section || !section->items)
     return std::string(path);
-  std::size_t end = prefix.size();
+  std::size_t end = dot + 1;
   while (end < path.size() && std::isdigit(static_cast<unsigned char>(path[end])))
     ++end;
-  if (end == prefix.size() || (end < path.size() && path[end] != '.'))
+  if (end == dot + 1 || (end < path.size() && path[end] != '.'))
     return std::string(path);
-  return "stage" + std::string(path.substr(end));
+  return std::string(path.substr(0, dot)) + std::string(path.substr(end));
 }
 
-std::string nearest_path(std::string_view unknown)
+std::string SceneSchema::nearest_path(std::string_view unknown) const
 {
   std::string best;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
@@ -128,11 +143,16 @@ std::string nearest_path(std::string_view unknown)
         best = path;
       }
   };
-  for (const Key &key : scene_schema())
+  for (const Key &key : keys)
     offer(key.path);
-  for (const Section &section : scene_sections())
+  for (const Section &section : sections)
     offer(section.name);
   return best;
+}
+
+std::string heading(const Section &section)
+{
+  return section.items ? fmt::format("[[{}]]", section.name) : fmt::format("[{}]", section.name);
 }
 
 std::string file_text(const Key &key, std::string_view value)
@@ -165,12 +185,12 @@ std::string choices_text(const Key &key)
   return enumerate(words);
 }
 
-std::string stages_text(unsigned stages)
+std::string SceneSchema::kinds_text(const Section &section, unsigned kinds) const
 {
   std::vector<std::string> words;
-  const auto names = stage_kind_names();
+  const auto names = kind_key(section)->choices;
   for (std::size_t i = 0; i < names.size(); ++i)
-    if ((stages >> i) & 1u)
+    if (kinds == 0 || ((kinds >> i) & 1u))
       words.push_back(names[i]);
   return words.size() == names.size() ? "any" : enumerate(words);
 }

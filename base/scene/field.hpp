@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the value of a key lives in the program.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace isostat
+{
+struct PercentPair
+{
+  double *low, *high;
+};
+using SizeCurve = std::vector<std::pair<double, double>>;
+
+/// A pointer to an enumeration whose values 0, 1, ... are the words of the key in their order.
+class EnumField
+{
+public:
+  template <class Enum>
+  requires std::is_enum_v<Enum> EnumField(Enum *place)
+      : place_(place), get_([](const void *p) { return static_cast<std::size_t>(*static_cast<const Enum *>(p)); }),
+        set_([](void *p, std::size_t word) { *static_cast<Enum *>(p) = static_cast<Enum>(word); })
+  {}
+
+  std::size_t get() const { return get_(place_); }
+  void set(std::size_t word) const { set_(place_, word); }
+
+private:
+  void *place_;
+  std::size_t (*get_)(const void *);
+  void (*set_)(void *, std::size_t);
+};
+
+/// monostate: nowhere (a table that only holds others).
+using Field = std::variant<std::monostate, double *, std::optional<double> *, std::uint64_t *, unsigned *, bool *,
+                           std::string *, EnumField, std::vector<double> *, PercentPair, SizeCurve *>;
+
+/// How a key finds its field: made from a lambda without captures, (Scene &) -> Field, or (Scene &, Item &) -> Field
+/// where Item is what an entry of the key's array of tables becomes. The types are forgotten, so that one machinery
+/// reads every kind of scene; who calls it must pass objects of those types.
+class FieldAccess
+{
+public:
+  constexpr FieldAccess() = default;
+  template <class Lambda>
+  requires std::is_empty_v<Lambda>
+  constexpr FieldAccess(Lambda) : call_(erased<Lambda>(&Lambda::operator())) {}
+
+  template <class Scene, class Item>
+  requires(!std::is_pointer_v<Scene> && !std::is_pointer_v<Item>) Field operator()(Scene &scene, Item &item) const
+  {
+    return call_(&scene, &item);
+  }
+  Field operator()(void *scene, void *item) const { return call_(scene, item); }
+  constexpr explicit operator bool() const { return call_ != nullptr; }
+
+private:
+  using Call = Field (*)(void *, void *);
+
+  template <class Lambda, class Scene, class Item>
+  static constexpr Call erased(Field (Lambda::*)(Scene &, Item &) const)
+  {
+    return [](void *scene, void *item) { return Lambda{}(*static_cast<Scene *>(scene), *static_cast<Item *>(item)); };
+  }
+  template <class Lambda, class Scene>
+  static constexpr Call erased(Field (Lambda::*)(Scene &) const)
+  {
+    return [](void *scene, void *) { return Lambda{}(*static_cast<Scene *>(scene)); };
+  }
+
+  Call call_ = nullptr;
+};
+
+/// How the entries of an array of tables are reached in a scene.
+struct ItemAccess
+{
+  std::size_t (*count)(const void *scene) = nullptr;
+  void *(*at)(void *scene, std::size_t i) = nullptr;
+  void *(*add)(void *scene) = nullptr; ///< one more, with the defaults of its struct
+
+  constexpr explicit operator bool() const { return count != nullptr; }
+};
+
+namespace detail
+{
+template <class Scene, class Item, std::vector<Item> Scene::*member>
+struct Items
+{
+  static constexpr ItemAccess access{
+      [](const void *scene) { return (static_cast<const Scene *>(scene)->*member).size(); },
+      [](void *scene, std::size_t i) -> void * { return &(static_cast<Scene *>(scene)->*member)[i]; },
+      [](void *scene) -> void * { return &(static_cast<Scene *>(scene)->*member).emplace_back(); }};
+};
+
+template <class Scene, class Item>
+Scene scene_of(std::vector<Item> Scene::*);
+template <class Scene, class Item>
+Item item_of(std::vector<Item> Scene::*);
+} // namespace detail
+
+/// items_of<&Scene::stages>: of a vector in the scene.
+template <auto member>
+inline constexpr ItemAccess items_of =
+    detail::Items<decltype(detail::scene_of(member)), decltype(detail::item_of(member)), member>::access;
+} // namespace isostat

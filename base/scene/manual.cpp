@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The manual of a kind of scene file, from its schema.
+#include "base/scene/writer.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+/// "length"
+std::string bare_name(Dimension dimension)
+{
+  const std::string_view name = dimension_name(dimension);
+  return std::string(name.substr(name.find(' ') + 1));
+}
+
+std::string kind_text(const Key &key)
+{
+  switch (key.kind)
+    {
+    case Kind::quantity:
+      return bare_name(key.dimension);
+    case Kind::number:
+      return "number";
+    case Kind::integer:
+      return "integer";
+    case Kind::boolean:
+      return "true or false";
+    case Kind::choice:
+      return "word";
+    case Kind::text:
+      return "text";
+    case Kind::table:
+      return "table";
+    case Kind::quantity_list:
+      return fmt::format("[{}, ...]", bare_name(key.dimension));
+    case Kind::percent_pair:
+      return "[percent, percent]";
+    case Kind::size_curve:
+      return "rows of [length, percent]";
+    }
+  return "";
+}
+
+std::string default_text(const Key &key)
+{
+  switch (key.presence)
+    {
+    case Presence::standard:
+      return fmt::format("`{}`", example(key));
+    case Presence::required:
+      return fmt::format("**required**, e.g. `{}`", example(key));
+    default:
+      return fmt::format("none, e.g. `{}`", example(key));
+    }
+}
+
+std::string allowed_text(const Key &key)
+{
+  if (key.kind == Kind::choice)
+    return choices_text(key);
+  return range_text(key);
+}
+
+/// A bar would end the cell.
+std::string cell(std::string_view text)
+{
+  std::string result;
+  for (const char c : text)
+    result += c == '|' ? std::string("\\|") : std::string(1, c);
+  return result;
+}
+
+std::string row(const SceneSchema &schema, const Section *kinds_of, const Key &key)
+{
+  const std::string kinds = kinds_of ? schema.kinds_text(*kinds_of, key.kinds) + " | " : "";
+  return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name(), kind_text(key), default_text(key),
+                     allowed_text(key), kinds, cell(key.text));
+}
+
+/// @param section  null: the top of the file
+std::string table(const SceneSchema &schema, const Section *section)
+{
+  const Section *kinds_of = section && *section->kind_key ? section : nullptr;
+  std::string text = fmt::format("| Key | Kind | Default | Allowed | {}Meaning |\n|---|---|---|---|---|{}\n",
+                                 kinds_of ? std::string(section->kinds_title) + " | " : "", kinds_of ? "---|" : "");
+  for (const Key &key : schema.keys)
+    if (key.section() == (section ? section->name : ""))
+      text += row(schema, kinds_of, key);
+  return text;
+}
+} // namespace
+
+std::string write_manual(const SceneSchema &schema)
+{
+  std::string text = std::string(schema.manual_head) + "| Dimension | Units |\n|---|---|\n";
+  for (const Dimension dimension : schema.dimensions)
+    text += fmt::format("| {} | {} |\n", dimension_name(dimension), unit_names(dimension));
+  text += "\n## Top of the file\n\n" + table(schema, nullptr);
+  for (const Section &section : schema.sections)
+    text += fmt::format("\n## {}\n\n{}\n\n", heading(section), section.text) + table(schema, &section);
+  return text;
+}
+} // namespace isostat

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/scene/reader.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+namespace isostat
+{
+namespace
+{
+std::string joined(const std::string &prefix, std::string_view word)
+{
+  return prefix.empty() ? std::string(word) : fmt::format("{}.{}", prefix, word);
+}
+
+void refuse_unknown(const SceneDocument &document, const std::string &path)
+{
+  const SceneSchema &schema = document.schema();
+  const std::string known = schema.schema_path(path);
+  document.refuse(path, fmt::format("is no key of a scene. Did you mean {}?", schema.nearest_path(known)));
+}
+
+/// Every key of the document is in the schema; tables are tables.
+void check_known(const SceneDocument &document, const toml::table &table, const std::string &prefix)
+{
+  const SceneSchema &schema = document.schema();
+  for (const auto &[word, node] : table)
+    {
+      if (word.str().find('.') != std::string_view::npos)
+        throw InputError(fmt::format("{}:{}: \"{}\" is one quoted key with a dot in it. Remove the quotes.",
+                                     document.where(""), word.source().begin.line, word.str()));
+      const std::string path = joined(prefix, word.str());
+      const Key *key = schema.find_key(schema.schema_path(path));
+      const Section *section = prefix.empty() ? schema.find_section(path) : nullptr;
+      if (!key && !section)
+        refuse_unknown(document, path);
+      if (!section && key->kind != Kind::table)
+        continue;
+      if (section && section->items)
+        continue; // each of its tables on its own
+      if (!node.is_table())
+        document.refuse(path, section ? fmt::format("must be a table. Write [{}] on a line of its own.", path)
+                                      : fmt::format("must be a table. Write for example {} = {}.", path, key->value));
+      check_known(document, *node.as_table(), path);
+    }
+}
+
+const char *article(std::string_view noun)
+{
+  return std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a" : "an";
+}
+
+/// Keys of a table belong to its kind.
+void check_kind(const SceneDocument &document, const Section &section, std::size_t kind, const std::string &prefix)
+{
+  const SceneSchema &schema = document.schema();
+  for (const Key &key : schema.keys)
+    {
+      if (key.section() != section.name)
+        continue;
+      const std::string path = joined(prefix, key.name());
+      const unsigned kinds = schema.kinds_of(key.path);
+      const bool belongs = kinds == 0 || ((kinds >> kind) & 1u);
+      if (!belongs && document.find(path))
+        document.refuse(path, fmt::format("does not belong to {} {} of {} \"{}\", only to {}. Remove it or change "
+                                          "the {}.",
+                                          article(section.name), section.name, section.kind_key,
+                                          schema.kind_key(section)->choices[kind], schema.kinds_text(section, kinds),
+                                          section.kind_key));
+    }
+}
+
+/// One key: from the document, else its default, else an error if it is required.
+void fill_key(const SceneDocument &document, const Key &key, const std::string &path, const Field &field)
+{
+  const toml::node *node = document.find(path);
+  if (key.kind == Kind::table)
+    {
+      if (bool *const *present = std::get_if<bool *>(&field))
+        **present = node != nullptr;
+    }
+  else if (node)
+    read_value(document, key, path, *node, field);
+  else if (key.presence == Presence::required)
+    document.refuse(path, fmt::format("is missing. Give for example {} = {}.", key.name(), example(key)));
+  else if (key.presence == Presence::standard)
+    read_value(document, key, path, *toml::parse("value = " + example(key)).get("value"), field);
+}
+
+/// One table: the kind first, since it says what else belongs there.
+void fill_table(const SceneDocument &document, const Section &section, const std::string &prefix, void *scene,
+                void *item)
+{
+  const SceneSchema &schema = document.schema();
+  const Key *kind_key = schema.kind_key(section);
+  std::size_t kind = 0;
+  if (kind_key)
+    {
+      fill_key(document, *kind_key, joined(prefix, kind_key->name()), kind_key->field(scene, item));
+      kind = kind_number(schema, section, scene, item);
+      check_kind(document, section, kind, prefix);
+    }
+  for (const Key &key : schema.keys)
+    if (key.section() == section.name && &key != kind_key && takes_key(key, kind))
+      fill_key(document, key, joined(prefix, key.name()), key.field(scene, item));
+}
+
+void fill_array(const SceneDocument &document, const Section &section, void *scene)
+{
+  const std::string name = section.name;
+  const toml::node *node = document.find(name);
+  if (!node && !section.needed)
+    return;
+  const toml::array *array = node ? node->as_array() : nullptr;
+  if (node && !array)
+    document.refuse(name, fmt::format("must be an array of tables. Write [[{}]] in double brackets.", name));
+  if (!array || array->empty())
+    document.refuse(name, fmt::format("must have at least one {}. {}", name, section.empty_remedy));
+  for (std::size_t i = 0; i < array->size(); ++i)
+    {
+      const std::string prefix = fmt::format("{}.{}", name, i);
+      if (!array->get(i)->is_table())
+        document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on a line of its own.", name));
+      check_known(document, *array->get(i)->as_table(), prefix);
+      fill_table(document, section, prefix, scene, section.items.add(scene));
+    }
+}
+} // namespace
+
+std::string read_scene_text(const std::string &path)
+{
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: cannot be read; must be a scene file (TOML) open to you.", path));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool takes_key(const Key &key, std::size_t kind) { return key.kinds == 0 || key.belongs_to(kind); }
+
+std::size_t kind_number(const SceneSchema &schema, const Section &section, void *scene, void *item)
+{
+  const Key *key = schema.kind_key(section);
+  return key ? std::get<EnumField>(key->field(scene, item)).get() : 0;
+}
+
+void fill_scene(const SceneDocument &document, void *scene)
+{
+  const SceneSchema &schema = document.schema();
+  check_known(document, document.root(), "");
+  for (const Key &key : schema.keys)
+    if (key.section().empty())
+      fill_key(document, key, key.path, key.field(scene, nullptr));
+  for (const Section &section : schema.sections)
+    if (!section.items)
+      fill_table(document, section, section.name, scene, nullptr);
+  for (const Section &section : schema.sections)
+    if (section.items)
+      fill_array(document, section, scene);
+}
+} // namespace isostat

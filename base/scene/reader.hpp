@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/scene/document.hpp"
+#include "base/scene/schema.hpp"
+
+namespace isostat
+{
+/// The text of a scene file.  @throws InputError if it is not there or cannot be read
+std::string read_scene_text(const std::string &path);
+
+/// Fills a scene from a document: every key of the document is known and belongs there, every value has the form, unit
+/// and range of the schema, what is left out takes its default. Rules between keys are left to check_groups and to the
+/// owner of the schema.
+/// @param scene  of the type that the schema's keys and arrays of tables were made for; with its defaults
+/// @throws InputError      tested: tests/dem/scene_test.cpp, tests/dem/io/scene_error_test.cpp
+void fill_scene(const SceneDocument &document, void *scene);
+
+/// Stores one value in its field.  @throws InputError through document.refuse(path, ...)
+void read_value(const SceneDocument &document, const Key &key, const std::string &path, const toml::node &node,
+                const Field &field);
+
+/// Keys of one group exclude each other, and of some groups one must be given. @param scene  as filled
+/// @throws InputError      tested: tests/dem/io/scene_error_test.cpp, tests/fem/column_scene_error_test.cpp
+void check_groups(const SceneDocument &document, void *scene);
+
+/// Number of the kind of a table, by its filled kind key.  @param item  entry of an array of tables, else anything
+std::size_t kind_number(const SceneSchema &schema, const Section &section, void *scene, void *item);
+/// Does the key belong to a table of this kind?
+bool takes_key(const Key &key, std::size_t kind);
+} // namespace isostat
