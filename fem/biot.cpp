@@ -305,11 +305,10 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
 }
 
 template <int dim>
-void PressureSystem<dim>::add_force(const Vector &p, Vector &f) const
+void PressureSystem<dim>::force(const Vector &p, Vector &f) const
 {
   const Matrices &m = *matrices_;
-  const Vec force = m.of_u->of(f);
-  check(MatMultAdd(m.to_force, m.of_p->of(p), force, force));
+  check(MatMult(m.to_force, m.of_p->of(p), m.of_u->of(f)));
   m.of_p->release();
   m.of_u->release();
 }

@@ -35,8 +35,8 @@ public:
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2
   void solve(const Vector &v_star, const Vector &v_before, const Vector &p_before, const Vector &p_before_that,
              const std::array<double, 3> &base_acceleration, Vector &p) const;
-  /// f += G^T p.
-  void add_force(const Vector &p, Vector &f) const;
+  /// f = G^T p.
+  void force(const Vector &p, Vector &f) const;
 
 private:
   struct Matrices;

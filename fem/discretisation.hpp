@@ -104,8 +104,9 @@ public:
   /// The local pressure unknown nearest to a place, -1 if another rank owns it.
   long find_pressure(const std::array<double, 3> &place) const;
 
-  /// Displacement gradients at all points.   @pre ghost entries of u are up to date   Cost: in the loop.
-  void gradients(const Vector &u, std::span<Gradient> out) const;
+  /// Displacement gradients of factor u at all points, along the axes that are meshed; the other entries of `out` stay
+  /// as they are (0).   @pre ghost entries of u are up to date   Cost: in the loop.
+  void gradients(const Vector &u, std::span<Gradient> out, double factor = 1) const;
   /// f += int B^T sigma; what belongs to other ranks is brought home.   Cost: in the loop.
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an

@@ -22,27 +22,25 @@ struct Tables
 };
 
 template <int dim, int n_nodes>
-void cell_gradients(const Tables<dim> &t, const double *u, Gradient *out)
+void cell_gradients(const Tables<dim> &t, const double *u, double factor, Gradient *out)
 {
   for (std::size_t cell = 0; cell < t.n_cells; ++cell)
     {
       double local[n_nodes][3];
       for (int a = 0; a < n_nodes; ++a)
         for (int c = 0; c < 3; ++c)
-          local[a][c] = u[t.dofs[(cell * n_nodes + a) * 3 + c]];
+          local[a][c] = factor * u[t.dofs[(cell * n_nodes + a) * 3 + c]];
       for (std::size_t q = cell * t.n_points; q < (cell + 1) * t.n_points; ++q)
         {
           const double *grad = t.gradient + q * n_nodes * dim;
-          Gradient h = {};
           for (int d = 0; d < dim; ++d)
             for (int c = 0; c < 3; ++c)
               {
                 double sum = 0;
                 for (int a = 0; a < n_nodes; ++a)
                   sum += local[a][c] * grad[a * dim + d];
-                h[3 * c + mesh_axes<dim>[d]] = sum;
+                out[q][3 * c + mesh_axes<dim>[d]] = sum;
               }
-          out[q] = h;
         }
     }
 }
@@ -101,13 +99,13 @@ Eigen::MatrixXd scaled_stiffness(const Tables<dim> &t, const double *nodal_share
 } // namespace
 
 template <int dim>
-void Discretisation<dim>::gradients(const Vector &u, std::span<Gradient> out) const
+void Discretisation<dim>::gradients(const Vector &u, std::span<Gradient> out, double factor) const
 {
   const Tables<dim> t{cell_dofs.data(), gradient.data(), weight.data(), n_cells(), points_per_cell_};
   if (mesh_.degree == 1)
-    cell_gradients<dim, power(2, dim)>(t, u.begin(), out.data());
+    cell_gradients<dim, power(2, dim)>(t, u.begin(), factor, out.data());
   else
-    cell_gradients<dim, power(3, dim)>(t, u.begin(), out.data());
+    cell_gradients<dim, power(3, dim)>(t, u.begin(), factor, out.data());
 }
 
 template <int dim>

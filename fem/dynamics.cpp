@@ -25,9 +25,9 @@ Supports shaken_supports(bool compliant_base)
 template <int dim>
 Dynamics<dim>::Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings)
     : space_(space), material_(material), settings_(std::move(settings)), u_(space.displacement_vector()), v_(u_),
-      a_(u_), p_(space.pressure_vector()), p_before_(p_), p_next_(p_), stresses_(space.n_points()),
+      next_(u_), p_(space.pressure_vector()), p_before_(p_), p_next_(p_), stresses_(space.n_points()),
       mass_(space.lumped_mass()), update_(u_), keep_(u_), damping_(u_), dashpot_(u_), surface_(u_),
-      reference_force_(u_), load_(u_), force_(u_), star_(u_), pore_force_(u_), increments_(space.n_points()),
+      minus_reference_(u_), load_(u_), force_(u_), pore_force_(u_), increments_(space.n_points()),
       moduli_(space.n_points())
 {
   check_settings();
@@ -35,7 +35,8 @@ Dynamics<dim>::Dynamics(const Discretisation<dim> &space, Material &material, Dy
   material_.trial(increments_, stresses_); // no strain: the stress of the start
   material_.rollback();
   initial_stresses_ = stresses_;
-  space_.add_internal_force(stresses_, reference_force_);
+  space_.add_internal_force(stresses_, minus_reference_);
+  minus_reference_ *= -1;
   const double stable = stable_step();
   time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
   if (time_step_ > stable)
@@ -91,6 +92,9 @@ void Dynamics<dim>::make_coefficients()
       update_.local_element(i) = held ? 0 : 1 / (m / time_step_ + c / 2);
       keep_.local_element(i) = held ? 0 : (m / time_step_ - c / 2) / (m / time_step_ + c / 2);
     }
+  for (unsigned i = 0; i < n; ++i)
+    if (dashpot_.local_element(i) != 0 || surface_.local_element(i) != 0)
+      loaded_.push_back(i);
   for (unsigned i : space_.fixed_dofs)
     if (i < n)
       damping_.local_element(i) = update_.local_element(i) = keep_.local_element(i) = 0;
@@ -103,28 +107,31 @@ double Dynamics<dim>::stable_step() const
   return 2 / std::sqrt(space_.greatest_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
 }
 
-/// load_: what does not come from the soil; force_: -(F - F0).
+/// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
 template <int dim>
 void Dynamics<dim>::find_loads()
 {
   const double t = time();
   const Base &base = settings_.base;
-  std::array<double, 3> shaking = {}, traction = {};
+  frame_ = {};
   for (int axis = 0; axis < 3; ++axis)
-    shaking[axis] = base.compliant ? base.motion[axis].velocity(t) : -base.motion[axis].acceleration(t);
+    if (!base.compliant)
+      frame_[axis] = -base.motion[axis].acceleration(t);
+  for (unsigned i : loaded_)
+    load_.local_element(i) = 0;
+  if (base.compliant)
+    for (unsigned i : loaded_)
+      load_.local_element(i) += dashpot_.local_element(i) * base.motion[i % 3].velocity(t);
   if (settings_.surface_traction)
-    traction = settings_.surface_traction(t);
-  const double *per_motion = base.compliant ? dashpot_.begin() : mass_.begin(), *area = surface_.begin();
-  const std::size_t n = u_.locally_owned_size();
-  double *load = load_.begin(), *force = force_.begin();
-  for (std::size_t i = 0; i < n; i += 3)
-    for (int c = 0; c < 3; ++c)
-      load[i + c] = per_motion[i + c] * shaking[c] + area[i + c] * traction[c];
-  force_ = 0;
+    {
+      const std::array<double, 3> traction = settings_.surface_traction(t);
+      for (unsigned i : loaded_)
+        load_.local_element(i) += surface_.local_element(i) * traction[i % 3];
+    }
+  std::copy(minus_reference_.begin(), minus_reference_.begin() + minus_reference_.locally_owned_size(), force_.begin());
+  if (space_.shared_out())
+    force_.zero_out_ghost_values();
   space_.add_internal_force(stresses_, force_);
-  const double *reference = reference_force_.begin();
-  for (std::size_t i = 0; i < n; ++i)
-    force[i] = reference[i] - force[i];
 }
 
 /// From the velocity at the start to the one half a step before.
@@ -135,65 +142,67 @@ void Dynamics<dim>::start()
   for (std::size_t i = 0; i < n; ++i)
     if (update_.local_element(i) > 0)
       {
-        const double v = v_.local_element(i);
-        exchanged_ += mass_.local_element(i) * v * v / 2;
-        v_.local_element(i) -= time_step_ / 2 / mass_.local_element(i) *
-                               (load_.local_element(i) + force_.local_element(i) - damping_.local_element(i) * v);
+        const double v = v_.local_element(i), m = mass_.local_element(i);
+        exchanged_ += m * v * v / 2;
+        v_.local_element(i) -=
+            time_step_ / 2 / m *
+            (m * frame_[i % 3] + load_.local_element(i) - force_.local_element(i) - damping_.local_element(i) * v);
       }
 }
 
-/// star_ becomes v+.
+/// Pore pressure of this instant, from the velocity that would follow without it.
 template <int dim>
-void Dynamics<dim>::update_velocity()
+void Dynamics<dim>::find_pressure()
 {
   const std::size_t n = u_.locally_owned_size();
   const double *load = load_.begin(), *force = force_.begin(), *update = update_.begin(), *keep = keep_.begin(),
-               *v = v_.begin();
-  double *star = star_.begin();
-  for (std::size_t i = 0; i < n; ++i)
-    star[i] = update[i] * (load[i] + force[i]) + keep[i] * v[i];
-  if (!pressure_system_)
-    return;
-  std::array<double, 3> moving_frame = {};
-  if (!settings_.base.compliant)
-    for (int axis = 0; axis < 3; ++axis)
-      moving_frame[axis] = settings_.base.motion[axis].acceleration(time());
-  pressure_system_->solve(star_, v_, p_, p_before_, moving_frame, p_next_);
+               *mass = mass_.begin(), *v = v_.begin();
+  double *next = next_.begin();
+  for (std::size_t i = 0; i < n; i += 3)
+    for (std::size_t c = 0; c < 3; ++c)
+      next[i + c] = update[i + c] * (mass[i + c] * frame_[c] + load[i + c] - force[i + c]) + keep[i + c] * v[i + c];
+  pressure_system_->solve(next_, v_, p_, p_before_, {-frame_[0], -frame_[1], -frame_[2]}, p_next_);
   p_next_.swap(p_before_);
   p_before_.swap(p_);
-  pore_force_ = 0;
-  pressure_system_->add_force(p_, pore_force_);
-  const double *pore = pore_force_.begin();
-  for (std::size_t i = 0; i < n; ++i)
-    star[i] += update[i] * pore[i];
+  pressure_system_->force(p_, pore_force_);
 }
 
-/// Work of the half intervals before and after time(), kinetic energy at time(): with these the balance of central
-/// differences is an identity, for any material.
+/// v+ and u, and the work of the half intervals before and after time(); with the kinetic energy at time() the balance
+/// of central differences is an identity, for any material. One pass; sums of x, y and z are kept apart, their order is
+/// that of the code.
 template <int dim>
-void Dynamics<dim>::follow_energy()
+template <bool coupled>
+void Dynamics<dim>::move()
 {
   const std::size_t n = u_.locally_owned_size();
   const double *load = load_.begin(), *force = force_.begin(), *pore = pore_force_.begin(), *damping = damping_.begin(),
-               *mass = mass_.begin(), *before = v_.begin(), *after = star_.begin();
-  double kinetic = 0, external_before = 0, external_after = 0, internal_before = 0, internal_after = 0, moving = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    {
-      const double external = load[i] - damping[i] * (before[i] + after[i]) / 2, internal = force[i] + pore[i];
-      kinetic += mass[i] * before[i] * after[i];
-      moving += mass[i] * after[i] * after[i];
-      external_before += external * before[i];
-      external_after += external * after[i];
-      internal_before += internal * before[i];
-      internal_after += internal * after[i];
-    }
-  energy_.kinetic = kinetic / 2;
-  energy_.external = half_way_.external + time_step_ / 2 * external_before;
-  energy_.internal = half_way_.internal - time_step_ / 2 * internal_before;
-  half_way_.external = energy_.external + time_step_ / 2 * external_after;
-  half_way_.internal = energy_.internal - time_step_ / 2 * internal_after;
-  exchanged_ += time_step_ / 2 * (std::abs(external_before) + std::abs(external_after));
-  half_way_.kinetic = moving / 2;
+               *mass = mass_.begin(), *update = update_.begin(), *keep = keep_.begin(), *before = v_.begin();
+  double *after = next_.begin(), *u = u_.begin();
+  double kinetic[3] = {}, moving[3] = {}, outer_before[3] = {}, outer_after[3] = {}, inner_before[3] = {},
+         inner_after[3] = {};
+  for (std::size_t k = 0; k < n; k += 3)
+    for (std::size_t c = 0; c < 3; ++c)
+      {
+        const std::size_t i = k + c;
+        const double outer = mass[i] * frame_[c] + load[i], inner = coupled ? pore[i] - force[i] : -force[i],
+                     v = before[i], w = update[i] * (outer + inner) + keep[i] * v;
+        after[i] = w;
+        u[i] += time_step_ * w;
+        const double external = outer - damping[i] * (0.5 * (v + w));
+        kinetic[c] += mass[i] * v * w;
+        moving[c] += mass[i] * w * w;
+        outer_before[c] += external * v;
+        outer_after[c] += external * w;
+        inner_before[c] += inner * v;
+        inner_after[c] += inner * w;
+      }
+  v_.swap(next_); // next_ keeps v-
+  const auto sum = [](const double(&x)[3]) { return x[0] + x[1] + x[2]; };
+  const double half = time_step_ / 2;
+  energy_ = {sum(kinetic) / 2, half_way_.internal - half * sum(inner_before),
+             half_way_.external + half * sum(outer_before)};
+  half_way_ = {sum(moving) / 2, energy_.internal - half * sum(inner_after), energy_.external + half * sum(outer_after)};
+  exchanged_ += half * (std::abs(sum(outer_before)) + std::abs(sum(outer_after)));
 }
 
 /// A motion that grows without anything that drives it, or that is no number.
@@ -214,23 +223,15 @@ void Dynamics<dim>::check_motion()
                                  time_step_, stable, step_, time()));
 }
 
-/// u and the strains move on by a step of v; the material follows.
+/// The strains of the step that u has made; the material follows.
 template <int dim>
 void Dynamics<dim>::strain_points()
 {
-  const std::size_t n = u_.locally_owned_size();
-  double *u = u_.begin(), *du = star_.begin();
-  const double *v = v_.begin();
-  for (std::size_t i = 0; i < n; ++i)
-    {
-      du[i] = time_step_ * v[i];
-      u[i] += du[i];
-    }
   if (space_.shared_out())
-    star_.update_ghost_values();
-  space_.gradients(star_, increments_);
+    v_.update_ghost_values();
+  space_.gradients(v_, increments_, time_step_);
   if (space_.shared_out())
-    star_.zero_out_ghost_values();
+    v_.zero_out_ghost_values();
   if (!lagged_pressure_.empty())
     add_lagged_compression();
   material_.trial(increments_, stresses_);
@@ -243,12 +244,13 @@ void Dynamics<dim>::step()
   find_loads();
   if (step_ == 0)
     start();
-  update_velocity();
-  follow_energy();
-  const double per_step = 1 / time_step_;
-  for (std::size_t i = 0; i < a_.locally_owned_size(); ++i)
-    a_.local_element(i) = (star_.local_element(i) - v_.local_element(i)) * per_step;
-  v_.swap(star_);
+  if (pressure_system_)
+    {
+      find_pressure();
+      move<true>();
+    }
+  else
+    move<false>();
   strain_points();
   ++step_;
   check_motion();

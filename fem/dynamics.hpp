@@ -84,7 +84,7 @@ public:
 
   const Vector &displacement() const { return u_; }              ///< at time()
   const Vector &velocity() const { return v_; }                  ///< at time() - dt/2
-  const Vector &acceleration() const { return a_; }              ///< at time() - dt, as the unknown counts it
+  Vector acceleration() const; ///< at time() - dt, as the unknown counts it; made anew at each call
   const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
   std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
   /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
@@ -104,10 +104,11 @@ private:
   void make_coefficients();
   void find_loads();
   void start();
-  void update_velocity();
+  void find_pressure();
+  template <bool coupled>
+  void move();
   void strain_points();
   void add_lagged_compression();
-  void follow_energy();
   void check_motion();
   double water_compliance(std::size_t point) const; ///< 1/Q, 1/Pa
 
@@ -118,7 +119,8 @@ private:
   std::uint64_t step_ = 0;
 
   // state
-  Vector u_, v_, a_, p_, p_before_, p_next_; ///< p_next_ is scratch
+  Vector u_, v_, next_;          ///< next_: v half a step before v_
+  Vector p_, p_before_, p_next_; ///< p_next_ is scratch
   std::vector<Stress> stresses_;
   std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
   DynamicsEnergy half_way_;             ///< of this rank, at time() - dt/2
@@ -128,12 +130,14 @@ private:
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
   Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
-  Vector reference_force_;                ///< F of the initial stress
+  std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
+  Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;
   std::unique_ptr<PressureSystem<dim>> pressure_system_;
 
   // of one step
-  Vector load_, force_, star_, pore_force_;
+  std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base
+  Vector load_, force_, pore_force_;
   std::vector<Gradient> increments_;
   mutable std::vector<WaveModuli> moduli_;
 };

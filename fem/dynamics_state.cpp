@@ -78,6 +78,15 @@ void Dynamics<dim>::add_lagged_compression()
 }
 
 template <int dim>
+Vector Dynamics<dim>::acceleration() const
+{
+  Vector a = v_;
+  a -= next_;
+  a /= time_step_;
+  return a;
+}
+
+template <int dim>
 DynamicsEnergy Dynamics<dim>::energy() const
 {
   double sums[3] = {energy_.kinetic, energy_.internal, energy_.external};
@@ -95,12 +104,12 @@ DynamicsState Dynamics<dim>::save() const
   state.step = step_;
   state.vectors = {{"displacement", values_of(u_)},
                    {"velocity", values_of(v_)},
-                   {"acceleration", values_of(a_)},
+                   {"velocity_before", values_of(next_)},
                    {"pressure", values_of(p_)},
                    {"pressure_before", values_of(p_before_)},
                    {"stress", flattened(stresses_)},
                    {"initial_stress", flattened(initial_stresses_)},
-                   {"reference_force", values_of(reference_force_)},
+                   {"minus_reference_force", values_of(minus_reference_)},
                    {"lagged_pressure", lagged_pressure_}};
   state.numbers = {{"time_step", time_step_},
                    {"kinetic", energy_.kinetic},
@@ -138,10 +147,10 @@ void Dynamics<dim>::restore(const DynamicsState &state)
   };
   vector("displacement", u_);
   vector("velocity", v_);
-  vector("acceleration", a_);
+  vector("velocity_before", next_);
   vector("pressure", p_);
   vector("pressure_before", p_before_);
-  vector("reference_force", reference_force_);
+  vector("minus_reference_force", minus_reference_);
   tensors("stress", stresses_);
   tensors("initial_stress", initial_stresses_);
   lagged_pressure_ = stored(state, "lagged_pressure", lagged_pressure_.size());
