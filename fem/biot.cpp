@@ -233,18 +233,22 @@ PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double tim
 template <int dim>
 PressureSystem<dim>::~PressureSystem() = default;
 
-/// Rows of pressures that are 0 become identities.
+/// Rows of pressures that are 0 become identities. Soil without permeability does not feel that its surface is drained.
 template <int dim>
 void PressureSystem<dim>::hold(const Discretisation<dim> &space, void *matrix)
 {
   Matrices &m = *matrices_;
-  std::vector<bool> is_held(m.work.locally_owned_size(), true);
-  for (unsigned p : space.cell_pressures)
-    if (p < is_held.size())
-      is_held[p] = false;
+  std::vector<bool> is_held(m.work.locally_owned_size(), true), can_flow(is_held.size(), false);
+  const std::size_t n_i = space.pressure_nodes_per_cell();
+  for (std::size_t k = 0; k < space.cell_pressures.size(); ++k)
+    if (const unsigned p = space.cell_pressures[k]; p < is_held.size())
+      {
+        is_held[p] = false;
+        can_flow[p] = can_flow[p] || space.mesh().soil.layers[space.cell_layer[k / n_i]].permeability > 0;
+      }
   for (unsigned p : space.drained_pressures)
     if (p < is_held.size())
-      is_held[p] = true;
+      is_held[p] = is_held[p] || can_flow[p];
   std::vector<PetscInt> rows;
   for (unsigned p = 0; p < is_held.size(); ++p)
     if (is_held[p])

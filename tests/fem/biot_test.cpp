@@ -3,8 +3,10 @@
 #include <gmock/gmock.h> // before deal.II, which has a macro Assert
 
 #include "fem/dynamics.hpp"
+#include "fem/iwan.hpp"
 #include "tests/support/columns.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <numbers>
 
@@ -82,5 +84,90 @@ TEST(Biot, HarmonicTractionInThreeRegimes)
       EXPECT_NEAR(u / regime.u_top, 1, 2e-3);
       EXPECT_NEAR(p / regime.p_base, 1, 2e-3);
     }
+}
+
+namespace
+{
+/// Loose sand, 10 m, shaken at its rigid base.
+struct Shaken
+{
+  std::vector<double> surface;  ///< displacement, m
+  std::vector<double> pressure; ///< at the points at the end, Pa
+};
+
+Shaken shake(Drainage drainage, double permeability, double water_modulus, bool lagged)
+{
+  SoilProfile soil = one_layer(10, 1900, 20);
+  soil.layers[0].permeability = permeability;
+  soil.water.bulk_modulus = water_modulus;
+  const Discretisation<1> space({.soil = soil}, shaken_supports<1>(false));
+  Iwan material({}, space.n_points());
+  std::vector<Stress> initial;
+  for (const auto &at : space.position)
+    {
+      const double s = -soil.vertical_effective_stress(at[2], 10e3);
+      initial.push_back({s, s, s, 0, 0, 0});
+    }
+  material.set_initial_stress(initial);
+  DynamicsSettings settings{.time_step = 2e-4, .drainage = drainage, .lagged_compressibility = lagged};
+  settings.base.motion[0] = harmonic_motion(0.5, 2, 3, 1, 1e-3);
+  Dynamics<1> run(space, material, settings);
+  const long top = space.find_dof({0, 0, 10}, 0);
+  Shaken found;
+  while (run.time() < 3)
+    {
+      run.step();
+      found.surface.push_back(run.displacement().local_element(top));
+    }
+  found.pressure = run.point_pressure();
+  return found;
+}
+
+double largest_difference(const std::vector<double> &a, const std::vector<double> &b)
+{
+  double difference = 0, largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    {
+      difference = std::max(difference, std::abs(a[k] - b[k]));
+      largest = std::max(largest, std::abs(b[k]));
+    }
+  return difference / largest;
+}
+} // namespace
+
+TEST(Biot, ImpermeableLimitIsTheUndrainedColumn)
+{
+  const Shaken undrained = shake(Drainage::undrained, 0, 2.2e9, false);
+  const Shaken stiff_water = shake(Drainage::coupled, 0, 2.2e12, false);
+  std::printf("  u-p, k = 0, stiff water, against constant volume: surface %.1e, pore pressure %.1e\n",
+              largest_difference(stiff_water.surface, undrained.surface),
+              largest_difference(stiff_water.pressure, undrained.pressure));
+  EXPECT_LT(largest_difference(stiff_water.surface, undrained.surface), 5e-3);
+  EXPECT_LT(largest_difference(stiff_water.pressure, undrained.pressure), 5e-3);
+  EXPECT_GT(*std::max_element(undrained.pressure.begin(), undrained.pressure.end()), 20e3); // it has built up
+
+  const Shaken water = shake(Drainage::coupled, 0, 2.2e9, false);
+  const Shaken lagged = shake(Drainage::undrained, 0, 2.2e9, true);
+  const double without = largest_difference(undrained.pressure, water.pressure),
+               with = largest_difference(lagged.pressure, water.pressure);
+  std::printf(
+      "  water of 2.2 GPa: constant volume misses its pore pressure by %.1e, with lagged compressibility %.1e\n",
+      without, with);
+  EXPECT_LT(with, 5e-3);
+  EXPECT_LT(with, without);
+}
+
+TEST(Biot, PressureDoesNotOscillateInThatLimit)
+{
+  // Hardly permeable, drained at the surface: the layer in which the pressure falls to 0 is far thinner than an
+  // element.
+  const Shaken undrained = shake(Drainage::undrained, 0, 2.2e9, false);
+  Shaken found = shake(Drainage::coupled, 1e-12, 2.2e12, false);
+  std::vector<double> below = undrained.pressure;
+  below.resize(below.size() - 2); // without the uppermost element's points
+  found.pressure.resize(below.size());
+  const double error = largest_difference(found.pressure, below);
+  std::printf("  k = 1e-12 m/s, drained surface: pressure below the uppermost element differs by %.1e\n", error);
+  EXPECT_LT(error, 5e-3);
 }
 } // namespace isostat
