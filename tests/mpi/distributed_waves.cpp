@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A block of saturated soil of two layers, shaken, on one mesh over all ranks: prints what must not depend on their
+// number. Run by tests/mpi/ranks_test.py.
+#include "fem/dynamics.hpp"
+#include "tests/support/columns.hpp"
+
+#include <cstdio>
+#include <deal.II/base/mpi.h>
+
+namespace
+{
+using namespace isostat;
+
+/// A value that one rank has, on all of them.
+double shared(double value, bool mine) { return dealii::Utilities::MPI::sum(mine ? value : 0.0, MPI_COMM_WORLD); }
+
+template <int dim>
+void run(Drainage drainage)
+{
+  MeshSpec mesh{.soil = {.layers = {{.name = "stiff", .thickness = 6, .permeability = 1e-4, .cells = 3},
+                                    {.name = "soft", .thickness = 4, .permeability = 1e-3, .cells = 3}},
+                         .water = {}},
+                .width = {4, 3},
+                .cells_across = {3, 2}};
+  const Discretisation<dim> space(mesh, shaken_supports<dim>(false), MPI_COMM_WORLD);
+  Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
+  DynamicsSettings settings{.time_step = 5e-4, .drainage = drainage};
+  for (int axis = 0; axis < 3; ++axis)
+    settings.base.motion[axis] = ricker_motion(1 - 0.2 * axis, 5 + axis, 0.3, 1e-3);
+  Dynamics<dim> run(space, material, settings);
+  for (int k = 0; k < 1000; ++k)
+    run.step();
+  const long top = space.find_dof({0, 0, 10}, 0), middle = space.find_pressure({0, 0, 6});
+  const auto at = [](const Vector &v, long i) { return shared(i < 0 ? 0 : v.local_element(i), i >= 0); };
+  const double u = at(run.displacement(), top), p = at(run.pressure(), middle), norm = run.displacement().l2_norm();
+  const DynamicsEnergy energy = run.energy();
+  const auto cells = dealii::Utilities::MPI::sum(space.n_cells(), MPI_COMM_WORLD);
+  const auto fewest = dealii::Utilities::MPI::min(space.n_cells(), MPI_COMM_WORLD);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    {
+      std::printf("cells %zu %zu\n", cells, fewest);
+      std::printf("%d %.17g %.17g %.17g %.17g %.17g\n", dim, u, p, norm, energy.kinetic, energy.internal);
+    }
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  run<2>(Drainage::coupled);
+  run<3>(Drainage::coupled);
+  run<3>(Drainage::dry);
+}
