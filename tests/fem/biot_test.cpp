@@ -6,6 +6,7 @@
 #include "fem/iwan.hpp"
 #include "tests/support/columns.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
@@ -169,5 +170,34 @@ TEST(Biot, PressureDoesNotOscillateInThatLimit)
   const double error = largest_difference(found.pressure, below);
   std::printf("  k = 1e-12 m/s, drained surface: pressure below the uppermost element differs by %.1e\n", error);
   EXPECT_LT(error, 5e-3);
+}
+
+/// Largest |z| of the amplification polynomial of one mode: skeleton omega^2 dt^2 = k, water (G^2/(S m)) dt^2 = w, flow
+/// H dt/S = h. From v+ - v- = g p - k u, (v+ + v-) g/2 + (3p - 4p' + p'')/2 + h p = 0 with u' = u + v+:
+///     [(z-1)^2 + k z] [(3z^2 - 4z + 1)/2 + h z^2] + w z^2 (z^2 - 1)/2 = 0 .
+static double largest_root(double k, double w, double h)
+{
+  const double a[3] = {1, k - 2, 1}, b[3] = {0.5, -2, 1.5 + h}; // powers 0, 1, 2 of z
+  double c[5] = {0, 0, -w / 2, 0, w / 2};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      c[i + j] += a[i] * b[j];
+  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
+  for (int i = 0; i < 4; ++i)
+    companion(i, 3) = -c[i] / c[4];
+  companion.diagonal(-1).setOnes();
+  return companion.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(Biot, WaterDoesNotLimitTheTimeStep)
+{
+  double worst = 0;
+  for (double k = 0.01; k < 4; k += 0.19)
+    for (double w = 1e-6; w < 1e7; w *= 3)
+      for (double h = 1e-6; h < 1e7; h *= 3)
+        worst = std::max(worst, largest_root(k, w, h));
+  std::printf("  largest amplification for omega dt < 2, any water: 1 %+.1e\n", worst - 1);
+  EXPECT_LT(worst, 1 + 1e-6);
+  EXPECT_GT(largest_root(4.1, 1, 1), 1.01); // beyond the skeleton's limit it grows
 }
 } // namespace isostat
