@@ -18,7 +18,8 @@ window w(t) gets a spectrum of mean square 1, and then the amplitude of the targ
 
 Only the amplitude of Y is prescribed. Its source term gets the phase of Brune's pulse, 1/(1 + i f/f0)^2, so that hardly
 anything moves before the window opens and the ground comes back to rest. The two components have the same Y and
-independent noise. Left out: amplification by softer rock and soil near the surface, finite fault, near-fault pulses, P waves.
+independent noise. Left out: amplification by softer rock and soil near the surface, finite fault, near-fault pulses, P
+waves.
 """
 import argparse
 import pathlib
