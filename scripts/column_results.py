@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads the results folder of a soil column: histories, profiles, the resolved scene."""
+import json
+import re
+import tomllib
+
+import h5py
+import numpy as np
+
+from plots_common import BadInput, note, read_history
+
+SI = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "1/s": 1, "kg/m3": 1,
+      "g/cm3": 1e3, "m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "m/s2": 1, "cm/s2": 1e-2, "g": 9.80665, "Hz": 1, "kHz": 1e3,
+      "s": 1, "ms": 1e-3, "min": 60, "h": 3600, "d": 86400}
+
+
+def quantity(value, default=None):
+    """A quantity of a scene in SI: "5 m" or a plain number."""
+    if value is None:
+        return default
+    if isinstance(value, (int, float)):
+        return float(value)
+    text, _, unit = value.strip().partition(" ")
+    return float(text) * SI[unit.strip()]
+
+
+def of_layer(table):
+    density = quantity(table.get("density"), 2000.0)
+    velocity = quantity(table.get("shear_velocity"))
+    if velocity is None:
+        velocity = np.sqrt(quantity(table["shear_modulus"]) / density)
+    return {"height": quantity(table["thickness"]), "density": density, "velocity": float(velocity),
+            "poisson_ratio": table.get("poisson_ratio", 0.3), "porosity": table.get("porosity", 0.4),
+            "permeability": quantity(table.get("permeability"), 0.0), "material": table["material"]}
+
+
+class Column:
+    """A run of soil_column. `moving` are the axes with motion; `points` the output depths with their column prefix."""
+
+    def __init__(self, folder):
+        self.columns = {name: values for name, values in read_history(folder / "history.csv").items()
+                        if np.isfinite(values).any()}
+        if "time" not in self.columns:
+            raise BadInput("history.csv: column `time` is missing or empty")
+        self.time = self.columns["time"]
+        if len(self.time) < 2 or not (np.diff(self.time) > 0).all():
+            raise BadInput("history.csv: needs two rows at least, and times that rise")
+        self.scene = self._read(folder / "scene.toml", tomllib.loads) or {}
+        self.profiles = self._read_profiles(folder / "profiles.h5")
+        self._read_scene()
+        summary = self._read(folder / "summary.json", json.loads) or {}
+        self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name
+        self.moving = [axis for axis in "xyz" if self.peak(f"input_a{axis}") > 0]
+        self.horizontal = [axis for axis in "xy" if axis in self.moving]
+        prefixes = sorted({match[1] for match in map(re.compile(r"(d\d+)_").match, self.columns) if match},
+                          key=lambda prefix: int(prefix[1:]))
+        depths = [quantity(depth) for depth in self.scene.get("output", {}).get("depths", [])]
+        self.points = [(depths[k] if k < len(depths) else None, prefix) for k, prefix in enumerate(prefixes)]
+
+    @staticmethod
+    def _read(path, parse):
+        try:
+            return parse(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            note(f"{path.name} cannot be read ({error}); what needs it is left out")
+            return None
+
+    @staticmethod
+    def _read_profiles(path):
+        if not path.exists():
+            return {}
+        try:
+            with h5py.File(path) as file:
+                profiles = {name: np.asarray(item) for name, item in file.items() if isinstance(item, h5py.Dataset)}
+        except OSError as error:
+            note(f"{path.name} cannot be read ({error}); figures over the depth are left out")
+            return {}
+        complete = {"depth", "time"} <= profiles.keys() and profiles["time"].size and profiles["depth"].size
+        return profiles if complete else {}
+
+    def _read_scene(self):
+        scene = self.scene
+        self.layers = [of_layer(table) for table in scene.get("layer", [])]
+        self.consolidation = scene.get("analysis", {}).get("kind") == "consolidation"
+        self.mass_damping = quantity(scene.get("analysis", {}).get("mass_damping"), 0.0)
+        self.spectrum_damping = float(scene.get("output", {}).get("spectrum_damping", 0.05))
+        base = scene.get("base", {})
+        self.base = None
+        if base.get("kind") == "compliant":
+            self.base = {"density": quantity(base["density"]), "velocity": quantity(base["shear_velocity"])}
+        water = scene.get("water", {})
+        self.water = {"density": quantity(water.get("density"), 1000.0),
+                      "gravity": quantity(water.get("gravity"), 9.81),
+                      "bulk_modulus": quantity(water.get("bulk_modulus"), 2.2e9)}
+
+    def has(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    def peak(self, name):
+        return float(np.nanmax(np.abs(self[name]))) if self.has(name) else 0.0
+
+    def profile(self, name):
+        """[time x depth] or None; rows are as many as the run has written times."""
+        values = self.profiles.get(name)
+        return values if values is not None and np.isfinite(values).any() else None
+
+    def boundaries(self):
+        """Depths between layers, m."""
+        return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
+
+    def uniform_elastic(self):
+        """The one layer if all are elastic and alike; else None."""
+        if not self.layers or any(layer["material"] != "elastic" for layer in self.layers):
+            return None
+        first = {**self.layers[0], "height": sum(layer["height"] for layer in self.layers)}
+        alike = all({**layer, "height": first["height"]} == first for layer in self.layers)
+        return first if alike else None
+
+    def step_load(self):
+        """The sudden vertical load, Pa, or None."""
+        load = self.scene.get("load", {})
+        vertical = load.get("kind") == "step" and load.get("direction", "z") == "z"
+        return quantity(load["amplitude"]) if vertical and quantity(load.get("ramp"), 0.0) == 0 else None
+
+    def motion(self, name):
+        """A history at equal intervals, the mean one of the run: values and interval."""
+        n = len(self.time)
+        even = np.linspace(self.time[0], self.time[-1], n)
+        return np.interp(even, self.time, np.nan_to_num(self[name])), (self.time[-1] - self.time[0]) / (n - 1)

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of a consolidation: isochrones of the pore pressure and settlement, beside Terzaghi's series."""
+import numpy as np
+from matplotlib.colors import LogNorm
+
+from column_analysis import Terzaghi
+from plots_column_soil import TIMES, depth_axis, time_bar
+from plots_common import BLACK, BLUE, note, plt
+
+TIME_FACTORS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5)
+LEAST_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front
+
+
+def exact_solution(column):
+    layer, load = column.uniform_elastic(), column.step_load()
+    return Terzaghi(layer, column.water, load) if layer and load and layer["permeability"] > 0 else None
+
+
+def chosen_rows(time, exact):
+    """Rows nearest to round time factors, or spread evenly over the logarithm of time."""
+    wanted = np.geomspace(time[time > 0][0], time[-1], 8) if exact is None else \
+        np.array(TIME_FACTORS) * exact.height**2 / exact.c
+    wanted = wanted[wanted <= 1.05 * time[-1]]
+    return np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+
+
+def isochrones(column):
+    """Excess pore pressure over the depth at several times."""
+    pressure = column.profile("u")
+    if not column.consolidation or pressure is None:
+        return None
+    depth, time, exact = column.profiles["depth"], column.profiles["time"], exact_solution(column)
+    rows = chosen_rows(time, exact)
+    if rows.size == 0:
+        return None
+    figure, axes = plt.subplots(figsize=(5.6, 4.4), layout="constrained")
+    norm = LogNorm(*(time[rows[[0, -1]]] if rows.size > 1 else np.array([0.5, 2]) * time[rows[0]]))
+    time_bar(figure, axes, norm, norm.vmax)
+    fine = np.linspace(0, exact.height, 400) if exact else None
+    for row in rows:
+        axes.plot(pressure[row] / 1e3, depth, color=TIMES(norm(time[row])), linewidth=2.2 if exact else 1.2,
+                  label="computed" if row == rows[-1] else None)
+        if exact:
+            axes.plot(exact.pressure(fine, time[row]) / 1e3, fine, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)),
+                      label="Terzaghi" if row == rows[-1] else None)
+    if exact:
+        report("pore pressure", [np.abs(pressure[k] - exact.pressure(depth, time[k])).max() / exact.p0
+                                 for k in range(len(time))], time, exact, "of the initial one")
+        axes.legend(loc="upper right")
+    axes.set_xlim(left=0)
+    axes.set_xlabel("Excess pore pressure $u$ (kPa)")
+    axes.set_ylabel("Depth (m)")
+    depth_axis(column, axes, depth)
+    return figure
+
+
+def report(what, differences, time, exact, unit):
+    """Largest difference from the time factor on at which it is fair to compare."""
+    late = exact.time_factor(time) >= LEAST_COMPARED
+    if late.any():
+        worst = np.where(late, differences, 0)
+        at = int(np.argmax(worst))
+        print(f"{what}: largest difference from Terzaghi's series {worst[at]:.2e} {unit}, at T = "
+              f"{exact.time_factor(time[at]):.3g} (T >= {LEAST_COMPARED})")
+
+
+def settlement(column):
+    """Settlement against the logarithm of time."""
+    if not column.consolidation or not column.has("settlement"):
+        return None
+    after = column.time > 0
+    time, values, exact = column.time[after], column["settlement"][after], exact_solution(column)
+    if len(time) < 2:
+        note("settlement: fewer than two times; not drawn")
+        return None
+    figure, axes = plt.subplots(figsize=(5.8, 3.6), layout="constrained")
+    axes.plot(time, 1e3 * values, color=BLUE, linewidth=2.4, alpha=0.75, label="computed")
+    if exact:
+        axes.plot(time, 1e3 * exact.settlement(time), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
+                  label="Terzaghi")
+        last = exact.height * exact.load / exact.modulus
+        report("settlement", np.abs(values - exact.settlement(time)) / last, time, exact, "of the last one")
+        axes.legend(loc="lower left")
+        second = axes.secondary_xaxis("top", functions=(lambda t: t * exact.c / exact.height**2,
+                                                        lambda factor: factor * exact.height**2 / exact.c))
+        second.set_xlabel("Time factor $T_v$")
+    axes.set_xscale("log")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylim(bottom=0)
+    axes.invert_yaxis()
+    axes.set_xlabel("Time (s)")
+    axes.set_ylabel("Settlement (mm)")
+    return figure

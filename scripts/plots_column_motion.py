@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of the motion of a soil column: accelerations, response spectra, transfer function."""
+import numpy as np
+
+from column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
+from plots_common import BLACK, BLUE, GREY, ORANGE, note, panel_letter, plt
+
+PERIODS = np.geomspace(0.02, 5, 160)
+COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
+
+
+def input_name(column):
+    return "outcrop" if column.base else "base"
+
+
+def peak_mark(axes, t, a, colour):
+    """The greatest value, marked and written, away from the curve."""
+    at = int(np.argmax(np.abs(a)))
+    axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
+    side = 1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1
+    axes.annotate(f"{abs(a[at]):.3g} m/s$^2$", (t[at], a[at]), xytext=(6 * side, 0), textcoords="offset points",
+                  ha="left" if side > 0 else "right", va="center", fontsize=9, color=colour, zorder=6,
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+
+
+def motions(column):
+    """A row for each direction that moves: what comes in, and the surface, on one scale."""
+    if column.consolidation or not column.moving:
+        return None
+    rows = len(column.moving)
+    figure, panels = plt.subplots(2 * rows, 1, figsize=(7.2, 3.2 * rows + 0.5), sharex=True, squeeze=False,
+                                  layout="constrained")
+    for row, axis in enumerate(column.moving):
+        pair = panels[2 * row:2 * row + 2, 0]
+        curves = ((f"input_a{axis}", f"{input_name(column)} (input)", BLACK), (f"surface_a{axis}", "surface", BLUE))
+        limit = 1.15 * max(column.peak(name) for name, _, _ in curves)
+        for axes, (name, label, colour), letter in zip(pair, curves, "abcdef"[2 * row:]):
+            if not column.has(name):
+                note(f"no column `{name}`; its curve is left out")
+                continue
+            axes.plot(column.time, column[name], color=colour, linewidth=0.8)
+            peak_mark(axes, column.time, column[name], colour)
+            axes.set_ylim(-limit, limit)
+            axes.set_ylabel(f"$a_{axis}$ (m/s$^2$)")
+            panel_letter(axes, letter)
+            axes.set_title(label, loc="right", fontsize=9, color=colour, pad=5)
+    panels[-1, 0].set_xlim(column.time[0], column.time[-1])
+    panels[-1, 0].set_xlabel("Time (s)")
+    return figure
+
+
+def spectra(column):
+    """Response spectra of input and surface, and their ratio."""
+    axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
+    if column.consolidation or not axes_moving:
+        return None
+    figure, panels = plt.subplots(2, len(axes_moving), figsize=(3.6 * max(len(axes_moving), 1.5), 5.2), sharex=True,
+                                  sharey="row", height_ratios=(1.5, 1), squeeze=False, layout="constrained")
+    for k, axis in enumerate(axes_moving):
+        top, bottom = panels[:, k]
+        of = {}
+        for where, label, colour in (("input", f"{input_name(column)} (input)", BLACK), ("surface", "surface", BLUE)):
+            a, dt = column.motion(f"{where}_a{axis}")
+            of[where] = response_spectrum(a, dt, PERIODS, column.spectrum_damping)
+            top.plot(PERIODS, of[where], color=colour, label=label)
+        bottom.plot(PERIODS, of["surface"] / of["input"], color=BLACK)
+        bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+        top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
+        panel_letter(top, "abc"[k])
+        panel_letter(bottom, "defghi"[k] if len(axes_moving) == 3 else "bcdef"[k + len(axes_moving) - 1])
+    finish_spectra(panels, column.spectrum_damping)
+    return figure
+
+
+def finish_spectra(panels, damping):
+    for axes in panels.flat:
+        axes.set_xscale("log")
+        axes.set_xlim(PERIODS[0], PERIODS[-1])
+        axes.set_ylim(bottom=0)
+        axes.grid(True, which="minor", axis="x", color="#f2f2f2", linewidth=0.4)
+    for axes in panels[-1]:
+        ticks = [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5]
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_xticks([], minor=True)
+        axes.set_xlabel("Period $T$ (s)")
+    panels[0, 0].set_ylabel(f"Spectral acceleration $S_a$ (m/s$^2$)\n{100 * damping:g} % damping")
+    panels[1, 0].set_ylabel("Surface / input")
+    panels[0, 0].legend(loc="best")
+
+
+# --- transfer function -----------------------------------------------------------------------------------------------
+
+
+def highest_frequency(column, dt):
+    """To the fourth mode of the column by its travel time, at most 25 Hz and what the rows can show."""
+    travel = sum(layer["height"] / layer["velocity"] for layer in column.layers)
+    wanted = 8 / (4 * travel) if travel else 20
+    return min(max(5.0, wanted), 25.0, 0.4 / dt)
+
+
+def report_difference(f, ratio, exact, strong, axis, column):
+    """Largest difference, of the exact curve's own value and of its peak, where the input says anything."""
+    if not strong.any():
+        return
+    relative = np.where(strong, np.abs(ratio / exact - 1), 0)
+    at = int(np.argmax(relative))
+    print(f"transfer function along {axis}: largest difference from the exact curve {relative[at]:.2e} of its value at "
+          f"{f[at]:.2f} Hz, {np.where(strong, abs(ratio - exact), 0).max() / exact[strong].max():.2e} of its peak, "
+          f"{f[strong][0]:.2f} to {f[strong][-1]:.2f} Hz")
+    surface = column[f"surface_a{axis}"]
+    tail = np.abs(surface[-max(1, len(surface) // 50):]).max() / np.abs(surface).max()
+    if tail > 1e-2:
+        note(f"the surface still moves with {100 * tail:.2g} % of its peak when the run ends; a longer one sharpens "
+             "the transfer function")
+
+
+def draw_transfer(column, axes, axis):
+    surface, dt = column.motion(f"surface_a{axis}")
+    base, _ = column.motion(f"input_a{axis}")
+    f_max = highest_frequency(column, dt)
+    layer = column.uniform_elastic()
+    f, ratio, strong = transfer_function(surface, base, dt, f_max)
+    if strong.any():
+        f_max = min(f_max, 1.05 * f[strong][-1])
+    shown = np.where(strong, ratio, np.nan)
+    if layer:
+        fine = np.linspace(f_max / 4000, f_max, 4000)
+        axes.plot(f, shown, color=COLOURS[axis], linewidth=2.2, alpha=0.75, label="computed")
+        axes.plot(fine, exact_transfer(fine, layer, column.base, column.mass_damping), color=BLACK, linewidth=0.9,
+                  linestyle=(0, (4, 2)), label="exact, elastic layer")
+        report_difference(f, ratio, exact_transfer(f, layer, column.base, column.mass_damping), strong, axis, column)
+        top = 1.12 * np.nanmax(shown)
+    else:
+        centres = np.geomspace(max(0.1, 4 * f[0]), f_max, 600)
+        smooth = smoothed_transfer(surface, base, dt, centres)
+        axes.plot(f, shown, color=GREY, linewidth=0.6, alpha=0.7, label="every frequency")
+        axes.plot(centres, smooth, color=COLOURS[axis], linewidth=1.5, label="smoothed")
+        top = 1.35 * np.nanmax(smooth)
+    axes.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    axes.set_xlim(0, f_max)
+    axes.set_ylim(0, top)
+    axes.legend(loc="lower right", bbox_to_anchor=(0.85, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def transfer(column):
+    """Fourier amplitudes of the surface over those of the input, along the horizontal."""
+    axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}")]
+    if column.consolidation or not axes_moving or len(column.time) < 8:
+        return None
+    n = len(axes_moving)
+    figure, panels = plt.subplots(n, 1, figsize=(7.2, 2.8 * n + 0.4), sharex=True, squeeze=False,
+                                  layout="constrained")
+    for axes, axis, letter in zip(panels[:, 0], axes_moving, "ab"):
+        draw_transfer(column, axes, axis)
+        axes.set_ylabel(f"|surface / {input_name(column)}|")
+        if n > 1:
+            panel_letter(axes, letter)
+            axes.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
+    panels[-1, 0].set_xlabel("Frequency (Hz)")
+    return figure

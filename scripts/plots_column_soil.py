@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of the soil in a column: profiles, pore pressure over depth and time, loops and stress paths."""
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.ticker import MaxNLocator
+
+from plots_common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
+
+TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
+SHARES = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9)  # of the squared acceleration: when profiles are drawn
+LEAST_RU = 1e-3  # below it water plays no part
+
+
+def depth_axis(column, axes, depth):
+    """Depth downwards, with the layers' boundaries."""
+    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    axes.set_ylim(bottom, 0)
+    for boundary in column.boundaries():
+        axes.axhline(boundary, color=GREY, linewidth=0.7, linestyle=(0, (1, 1.5)), zorder=1.4)
+
+
+def times_of_motion(column, shares):
+    """Times by which the surface has had these shares of its squared acceleration; evenly spread if it rests."""
+    names = [f"surface_a{axis}" for axis in "xyz" if column.peak(f"surface_a{axis}") > 0]
+    if not names:
+        return column.time[0] + np.array(shares) * (column.time[-1] - column.time[0])
+    energy = np.cumsum(sum(np.nan_to_num(column[name]) ** 2 for name in names))
+    return column.time[np.searchsorted(energy, np.array(shares) * energy[-1])]
+
+
+def time_norm(column):
+    """Colours for the motion; what follows has one colour."""
+    return Normalize(column.time[0], max(column.time[1], times_of_motion(column, [0.99])[0]))
+
+
+def time_bar(figure, panels, norm, last, aspect=40):
+    """The bar that explains the colours of time."""
+    bar = figure.colorbar(plt.cm.ScalarMappable(norm, TIMES), ax=panels, aspect=aspect, pad=0.015,
+                          extend="max" if norm.vmax < 0.98 * last else "neither", extendfrac=0.03)
+    bar.set_label("Time (s)")
+
+
+def resultant(one, other):
+    if one is None or other is None:
+        return np.abs(one) if other is None else np.abs(other)
+    return np.hypot(one, other)
+
+
+def so_far(values):
+    return np.maximum.accumulate(np.nan_to_num(np.abs(values)), axis=0)
+
+
+def vertical_ratio(column, stress):
+    """A stress over the initial effective vertical stress; at the very surface there is none."""
+    initial = column.profiles.get("sigma_v0")
+    if stress is None or initial is None:
+        return None
+    return stress / np.where(initial > 1e-3 * initial.max(), initial, np.nan)
+
+
+def pore_pressure_ratio(column):
+    ru = column.profile("ru")
+    return ru if ru is not None and np.nanmax(np.abs(ru)) > LEAST_RU else None
+
+
+def profiles(column):
+    """Greatest strain and stress ratio so far, and r_u at the moment, at several times."""
+    if column.consolidation or not column.profiles:
+        return None
+    gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
+    tau = [column.profile(name) for name in ("tau_xz", "tau_yz")]
+    specs = []
+    if any(values is not None for values in gamma):
+        specs.append((100 * so_far(resultant(*gamma)), r"Largest $|\gamma|$ so far (%)", None))
+    if pore_pressure_ratio(column) is not None:
+        specs.append((column.profile("ru"), "Pore pressure ratio $r_u$", 1.0))
+    if any(values is not None for values in tau):
+        ratio = vertical_ratio(column, so_far(resultant(*tau)))
+        if ratio is not None:
+            specs.append((ratio, r"Largest $|\tau|/\sigma_{v0}^\prime$ so far", None))
+    if not specs:
+        return None
+    depth, time = column.profiles["depth"], column.profiles["time"]
+    figure, panels = plt.subplots(1, len(specs), figsize=(2.6 * len(specs) + 1.2, 4.3), sharey=True, squeeze=False,
+                                  layout="constrained")
+    panels = panels[0]
+    norm = time_norm(column)
+    wanted = [*times_of_motion(column, SHARES), time[-1]]
+    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+    time_bar(figure, panels, norm, time[-1])
+    for axes, (values, label, level), letter in zip(panels, specs, "abc"):
+        for row in chosen:
+            axes.plot(values[row], depth, color=TIMES(norm(time[row])), linewidth=1.2)
+        if level is not None:
+            axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+        axes.set_xlim(left=min(0.0, float(np.nanmin(values))))
+        axes.set_xlabel(label)
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+        panel_letter(axes, letter)
+        depth_axis(column, axes, depth)
+    panels[0].set_ylabel("Depth (m)")
+    return figure
+
+
+def edges(middle, low, high):
+    """Borders of cells around the given points."""
+    return np.concatenate([[low], 0.5 * (middle[1:] + middle[:-1]), [high]])
+
+
+def ru_map(column):
+    """r_u over depth and time, below the motion that makes it."""
+    ru = pore_pressure_ratio(column)
+    if column.consolidation or ru is None or len(column.profiles["time"]) < 2:
+        return None
+    depth, time = column.profiles["depth"], column.profiles["time"]
+    order = np.argsort(depth)
+    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 4.9), sharex=True, height_ratios=(1, 2.6),
+                                       layout="constrained")
+    for axis in column.moving:
+        top.plot(column.time, column[f"input_a{axis}"], linewidth=0.7, label=f"${axis}$",
+                 color={"x": BLACK, "y": ORANGE, "z": BLUE}[axis])
+    if len(column.moving) > 1:
+        top.legend(loc="upper right", ncols=len(column.moving))
+    top.set_ylabel("Input (m/s$^2$)")
+    shade = axes.pcolormesh(edges(time, time[0], time[-1]), edges(depth[order], 0, bottom), ru[:, order].T,
+                            cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))), rasterized=True)
+    if np.nanmax(ru) > 0.95:
+        axes.contour(time, depth[order], ru[:, order].T, levels=[0.95], colors=[RED], linewidths=0.9)
+        axes.annotate("red: $r_u$ = 0.95", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom", fontsize=9,
+                      color=RED)
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
+    depth_axis(column, axes, depth)
+    axes.grid(False)
+    axes.set_xlim(time[0], time[-1])
+    axes.set_xlabel("Time (s)")
+    axes.set_ylabel("Depth (m)")
+    panel_letter(top, "a")
+    panel_letter(axes, "b")
+    return figure
+
+
+# --- output depths ---------------------------------------------------------------------------------------------------
+
+
+def moving_shears(column):
+    """Directions of the shear that some output depth feels."""
+    largest = {axis: max((column.peak(f"{prefix}_tau_{axis}z") for _, prefix in column.points), default=0.0)
+               for axis in "xy"}
+    return [axis for axis in "xy" if largest[axis] > 1e-6 * max(largest.values())]
+
+
+def coloured_path(axes, x, y, time, norm):
+    points = np.column_stack([x, y])[:, None, :]
+    lines = LineCollection(np.concatenate([points[:-1], points[1:]], axis=1), cmap=TIMES, norm=norm, linewidths=0.8,
+                           capstyle="round")
+    lines.set_array(0.5 * (time[1:] + time[:-1]))
+    axes.add_collection(lines)
+    axes.plot(x[0], y[0], "o", color=BLACK, markersize=3, zorder=5)
+    axes.autoscale_view()
+
+
+def path_stress(column):
+    """The stress of the paths: p' where the run has it, else sigma'_v."""
+    for name, label in (("p", r"$p^\prime$"), ("sigma_v", r"$\sigma_v^\prime$")):
+        if any(column.has(f"{prefix}_{name}") for _, prefix in column.points):
+            return name, label
+    return None, None
+
+
+def point_label(depth, prefix):
+    return f"{depth:g} m" if depth is not None else prefix
+
+
+def loops(column):
+    """A row for each output depth: shear loops and stress paths, coloured by time."""
+    axes_moving = [] if column.consolidation else moving_shears(column)
+    if not axes_moving or not column.points:
+        return None
+    stress, stress_label = path_stress(column)
+    specs = [("gamma", axis) for axis in axes_moving] + [("path", axis) for axis in axes_moving if stress]
+    n, m = len(column.points), len(specs)
+    figure, panels = plt.subplots(n, m, figsize=(7.2 if m <= 2 else 2.7 * m, 1.8 * n + 0.9), squeeze=False,
+                                  layout="constrained")
+    norm = time_norm(column)
+    for row, (depth, prefix) in zip(panels, column.points):
+        for axes, (kind, axis) in zip(row, specs):
+            name = f"{prefix}_gamma_{axis}z" if kind == "gamma" else f"{prefix}_{stress}"
+            if not (column.has(name) and column.has(f"{prefix}_tau_{axis}z")):
+                note(f"no column `{name}`; its curve is left out")
+                continue
+            factor = 100 if kind == "gamma" else 1e-3
+            coloured_path(axes, factor * column[name], column[f"{prefix}_tau_{axis}z"] / 1e3, column.time, norm)
+            axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
+            axes.set_ylabel(rf"$\tau_{{{axis}z}}$ (kPa)")
+            if kind == "path":
+                axes.set_xlim(left=min(0.0, axes.get_xlim()[0]))
+        row[0].set_title(f"depth {point_label(depth, prefix)}", loc="left", fontsize=9.5, fontweight="bold", pad=4)
+    for axes, (kind, axis) in zip(panels[-1], specs):
+        axes.set_xlabel(rf"Shear strain $\gamma_{{{axis}z}}$ (%)" if kind == "gamma"
+                        else f"{'Mean' if stress == 'p' else 'Vertical'} effective stress {stress_label} (kPa)")
+    time_bar(figure, panels, norm, column.time[-1], aspect=20 * n)
+    return figure
+
+
+def histories(column):
+    """r_u at the output depths and its greatest value anywhere; settlement."""
+    if column.consolidation:
+        return None
+    wet = column.peak("max_ru") > LEAST_RU or any(column.peak(f"{p}_ru") > LEAST_RU for _, p in column.points)
+    sinks = column.peak("settlement") > 1e-6
+    if not wet and not sinks:
+        return None
+    figure, panels = plt.subplots(wet + sinks, 1, figsize=(7.2, 2.5 * (wet + sinks) + 0.5), sharex=True,
+                                  squeeze=False, layout="constrained")
+    panels = list(panels[:, 0])
+    for axes, letter in zip(panels, "ab"):
+        panel_letter(axes, letter)
+    if wet:
+        draw_ru(column, panels[0])
+    if sinks:
+        panels[-1].plot(column.time, 1e3 * column["settlement"], color=BLACK)
+        panels[-1].invert_yaxis()
+        panels[-1].set_ylabel("Settlement (mm)")
+    panels[-1].set_xlim(column.time[0], column.time[-1])
+    panels[-1].set_xlabel("Time (s)")
+    return figure
+
+
+def draw_ru(column, axes):
+    if column.has("max_ru"):
+        axes.plot(column.time, column["max_ru"], color=BLACK, linewidth=0.9, linestyle=(0, (3, 1.5)),
+                  zorder=3, label="anywhere")
+    shades = plt.get_cmap("plasma")(np.linspace(0.0, 0.85, max(1, len(column.points))))
+    for (depth, prefix), shade in zip(column.points, shades):
+        if column.has(f"{prefix}_ru"):
+            axes.plot(column.time, column[f"{prefix}_ru"], color=shade, label=point_label(depth, prefix))
+    axes.axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
+    axes.set_ylabel("Pore pressure ratio $r_u$")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0)

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the figures of a run of soil_column from its history.csv, profiles.h5, scene.toml and summary.json.
+
+    plots_soil_column.py RESULTS_FOLDER [--out DIR]          default DIR: RESULTS_FOLDER/figures
+
+fig_motions.png       acceleration of input and surface, for each direction that moves
+fig_spectra.png       response spectra of input and surface, and their ratio
+fig_transfer.png      Fourier amplitudes, surface over input; beside the exact curve of a uniform elastic layer, from
+                      which the largest difference is printed; else smoothed (Konno and Ohmachi 1998, b = 80)
+fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far, over the depth at several times
+fig_ru_map.png        r_u over depth and time, below the input
+fig_histories.png     r_u at the output depths and its largest value anywhere; settlement
+fig_loops.png         shear loops and stress paths at the output depths, coloured by time
+fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
+fig_settlement.png    consolidation: settlement against time, likewise
+
+What the run does not have is left out: a dry soil has no r_u, a base at rest no spectra. The input is the motion of a
+rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in compression.
+"""
+import argparse
+import pathlib
+import sys
+
+from column_results import Column
+from plots_column_consolidation import isochrones, settlement
+from plots_column_motion import motions, spectra, transfer
+from plots_column_soil import histories, loops, profiles, ru_map
+from plots_common import STYLE, BadInput, note, plt
+
+FIGURES = {
+    "fig_motions": motions,
+    "fig_spectra": spectra,
+    "fig_transfer": transfer,
+    "fig_profiles": profiles,
+    "fig_ru_map": ru_map,
+    "fig_histories": histories,
+    "fig_loops": loops,
+    "fig_isochrones": isochrones,
+    "fig_settlement": settlement,
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=pathlib.Path, help="folder with history.csv, profiles.h5, scene.toml")
+    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
+    arguments = parser.parse_args()
+    out = arguments.out or arguments.results / "figures"
+    try:
+        column = Column(arguments.results)
+        out.mkdir(parents=True, exist_ok=True)
+    except KeyError as error:
+        note(f"scene.toml: {error} is missing, or is no unit")
+        return 2
+    except (BadInput, OSError, ValueError) as error:
+        note(error)
+        return 2
+    plt.rcParams.update(STYLE)
+    for name, draw in FIGURES.items():
+        figure = draw(column)
+        if figure is None:
+            continue
+        figure.suptitle(column.title, fontsize=9.5, x=0.01, ha="left")
+        figure.savefig(out / f"{name}.png")
+        plt.close(figure)
+        print(out / f"{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figures of the soil column: their analysis against closed forms, and that a run gets those it has data for."""
+import contextlib
+import io
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+sys.path[:0] = [str(SCRIPTS)]
+import column_fixture as fixture  # noqa: E402  (the path comes first)
+from column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
+from column_results import Column, quantity  # noqa: E402
+from support import main  # noqa: E402
+
+PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
+
+
+def step_peak(damping):
+    """Peak of y = 1 - exp(-xi w t)(cos wd t - (xi w/wd) sin wd t), the answer to a sudden acceleration of 1."""
+    x = np.pi - np.arctan2(2 * damping * np.sqrt(1 - damping**2), 1 - 2 * damping**2)
+    ratio = damping / np.sqrt(1 - damping**2)
+    return 1 - np.exp(-ratio * x) * (np.cos(x) - ratio * np.sin(x))
+
+
+class ResponseSpectrum(unittest.TestCase):
+    def test_sudden_acceleration(self):
+        for damping in (0.0, 0.05, 0.2):
+            spectrum = response_spectrum(np.full(3001, 2.0), 0.01, PERIODS, damping)
+            error = spectrum / (2 * step_peak(damping)) - 1
+            print(f"step, damping {damping}: error {np.abs(error).max():.1e}")
+            self.assertLess(error.max(), 1e-10)
+            self.assertGreater(error.min(), -1.3e-3)  # 1 - cos(pi/64)
+
+    def test_resonance(self):
+        """Steady state of a sine at the oscillator's own frequency: sqrt(1 + 4 xi^2)/(2 xi)."""
+        t = 0.002 * np.arange(30001)
+        value = response_spectrum(np.sin(2 * np.pi * t), 0.002, [1.0], 0.05)[0]
+        self.assertLess(abs(value * 0.1 / np.sqrt(1.01) - 1), 2e-4)
+
+    def test_stiff_oscillator(self):
+        a = fixture.ricker(0.005 * np.arange(400), 1.5, 4.0)
+        self.assertLess(abs(response_spectrum(a, 0.005, [0.01], 0.05)[0] / 1.5 - 1), 2e-3)
+
+    def test_response_after_the_motion(self):
+        """A short kick: the peak comes after it. Impulse a0 dt/2 of one step: velocity, then w v without damping."""
+        value = response_spectrum(np.array([0.0, 1.0, 0.0]), 0.001, [1.0], 0.0)[0]
+        self.assertLess(abs(value / (2 * np.pi * 0.001) - 1), 2e-3)
+
+
+class TransferFunction(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_column_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def largest_difference(self, rock):
+        column = Column(fixture.elastic(self.folder / "run", rock))
+        surface, dt = column.motion("surface_ax")
+        f, ratio, strong = transfer_function(surface, column.motion("input_ax")[0], dt, 20.0)
+        exact = exact_transfer(f, column.uniform_elastic(), column.base, column.mass_damping)
+        self.assertLess(f[strong][0], 1.0)
+        self.assertGreater(f[strong][-1], 10.0)
+        return np.abs(ratio / exact - 1)[strong].max()
+
+    def test_rigid_base(self):
+        error = self.largest_difference(None)
+        print(f"rigid base: largest difference {error:.1e}")
+        self.assertLess(error, 1e-4)  # the pulse is cut off where it is 1e-4 of its peak
+
+    def test_compliant_base(self):
+        error = self.largest_difference(fixture.ROCK)
+        print(f"compliant base: largest difference {error:.1e}")
+        self.assertLess(error, 1e-4)
+
+    def test_without_damping(self):
+        """1/cos(kH), and over rock as stiff as the soil 1."""
+        layer = {"height": 20.0, "velocity": 200.0, "density": 1900.0}
+        f = np.array([0.5, 2.0, 4.0, 6.0])
+        np.testing.assert_allclose(exact_transfer(f, layer, None, 0.0), 1 / np.abs(np.cos(2 * np.pi * f * 0.1)))
+        same = {"velocity": 200.0, "density": 1900.0}
+        np.testing.assert_allclose(exact_transfer(f, layer, same, 0.0), 1, rtol=1e-12)
+
+    def test_smoothing_keeps_a_constant(self):
+        f = np.linspace(0, 50, 2001)
+        np.testing.assert_allclose(smoothed(f, np.full(2001, 3.0), np.geomspace(0.5, 20, 50)), 3, rtol=1e-12)
+
+
+class Consolidation(unittest.TestCase):
+    def test_tabulated_degrees(self):
+        """U = 50 % at T = 0.197, 90 % at T = 0.848 (Terzaghi 1943), water much stiffer than the soil."""
+        layer = {"height": 10.0, "density": 2000.0, "velocity": 100.0, "poisson_ratio": 0.2, "porosity": 0.3,
+                 "permeability": 1e-6}
+        water = {"density": 1000.0, "gravity": 9.81, "bulk_modulus": 1e18}
+        exact = Terzaghi(layer, water, 50e3)
+        modulus = 2 * 2000 * 100**2 * 0.8 / 0.6
+        for factor, degree in ((0.197, 0.5), (0.848, 0.9)):
+            t = factor * 100 / (1e-6 / 9810 * modulus)
+            self.assertAlmostEqual(exact.settlement([t])[0] / (10 * 50e3 / modulus), degree, delta=1e-3)
+        self.assertAlmostEqual(exact.pressure(np.array([0.0]), 1.0)[0], 0)
+
+
+class Figures(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_column_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def draw(self, folder, *arguments):
+        return subprocess.run([sys.executable, str(SCRIPTS / "plots_soil_column.py"), str(folder), *arguments],
+                              capture_output=True, text=True, timeout=120, check=False)
+
+    def expect(self, folder, *names):
+        result = self.draw(folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr, "")
+        figures = sorted((folder / "figures").iterdir())
+        self.assertEqual([path.stem for path in figures], sorted("fig_" + name for name in names))
+        for path in figures:
+            self.assertGreater(path.stat().st_size, 10000)
+        return result.stdout
+
+    def test_elastic_layer(self):
+        text = self.expect(fixture.elastic(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "loops")
+        said = re.search(r"difference from the exact curve (\S+) of its value", text)
+        self.assertLess(float(said[1]), 1e-4)
+
+    def test_short_run_is_noted(self):
+        """A layer that still swings when the run ends has no clean transfer function, and the reader is told."""
+        result = self.draw(fixture.elastic(self.folder / "run", end=3.0))
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("still moves", result.stderr)
+
+    def test_consolidation(self):
+        text = self.expect(fixture.consolidation(self.folder / "run"), "isochrones", "settlement")
+        for what in ("pore pressure", "settlement"):
+            said = re.search(what + r": largest difference from Terzaghi's series (\S+)", text)
+            self.assertLess(float(said[1]), 1e-3)
+
+    def test_liquefaction(self):
+        self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "ru_map",
+                    "histories", "loops")
+
+    def test_history_alone(self):
+        """No scene, no profiles, no summary: notes, and the figures that history.csv is enough for."""
+        folder = fixture.elastic(self.folder / "run")
+        for name in ("scene.toml", "profiles.h5", "summary.json"):
+            (folder / name).unlink()
+        result = self.draw(folder, "--out", str(self.folder / "it's here"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("scene.toml", result.stderr)
+        self.assertEqual(sorted(path.stem for path in (self.folder / "it's here").iterdir()),
+                         ["fig_loops", "fig_motions", "fig_spectra", "fig_transfer"])
+
+    def test_nothing_there(self):
+        result = self.draw(self.folder)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("history.csv", result.stderr)
+
+    def test_quantities(self):
+        for text, value in (("5 m", 5), ("2.3 g/cm3", 2300), ("0.1 g", 0.980665), (7, 7), ("37.5 MPa", 37.5e6)):
+            self.assertAlmostEqual(quantity(text) / value, 1)
+
+
+class SimulatedMotion(unittest.TestCase):
+    def test_files_are_what_the_script_makes(self):
+        import make_motion
+        for component, axis in enumerate("xy"):
+            path = fixture.SCENES / f"motions/simulated_m6.5_20km_{axis}.at2"
+            lines = path.read_text(encoding="ascii").splitlines()
+            self.assertIn("SIMULATED", lines[0])
+            said = lines[1].split("make_motion.py ")[1].split()
+            p = make_motion.parameters([*said, "--check"])
+            a = make_motion.simulate(p, component, p.seed)
+            self.assertIn(f"NPTS= {len(a)}, DT= {p.interval:.4f} SEC", lines[3])
+            np.testing.assert_allclose(fixture.record(axis), a, atol=2e-5)  # 1e-6 g and the other machine's round-off
+
+    def test_check(self):
+        import make_motion
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            good = make_motion.check(make_motion.parameters(["--check"]))
+        print(said.getvalue())
+        self.assertEqual(good, 0)
+
+
+if __name__ == "__main__":
+    main()
