@@ -109,8 +109,8 @@ void DynamicRun<dim>::start()
   const auto total = static_cast<double>(last_step_ + 1);
   progress_ =
       std::make_unique<ColumnProgress>(request_.quiet, run_.n_steps(), static_cast<double>(run_.n_steps()) / total);
-  progress_->say(fmt::format("{} points; time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", space_.n_points(),
-                             1e3 * run_.time_step(), 1e3 * run_.stable_step(), last_step_ + 1,
+  progress_->say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
+                             1e3 * run_.stable_step(), last_step_ + 1,
                              resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
   material_.seconds = 0;
 }
