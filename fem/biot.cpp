@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "fem/axes.hpp"
+#include "fem/biot_integrals.hpp"
 
 #include <fmt/format.h>
 #include <petscmat.h>
@@ -109,46 +110,26 @@ template <int dim>
 BiotEntries integrate(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers, double fluid_density)
 {
   BiotEntries e;
-  const std::size_t n_a = space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
+  const std::size_t n_u = 3 * space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell();
   const auto u_part = space.displacement_vector().get_partitioner(), p_part = space.pressure_vector().get_partitioner();
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const PorousLayer &layer = layers[space.cell_layer[cell]];
+      const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], fluid_density, cell);
       for (std::size_t i = 0; i < n_i; ++i)
         {
           const PetscInt row = p_part->local_to_global(space.cell_pressures[cell * n_i + i]);
-          std::vector<double> s(n_i), h(n_i), g(3 * n_a), l(3 * n_a);
-          for (std::size_t q = 0; q < n_q; ++q)
-            {
-              const std::size_t point = cell * n_q + q;
-              const double w = space.weight[point], value = space.pressure_shape[q * n_i + i];
-              const double *slope = &space.pressure_gradient[(point * n_i + i) * dim];
-              for (std::size_t j = 0; j < n_i; ++j)
-                {
-                  s[j] += w * layer.storage * value * space.pressure_shape[q * n_i + j];
-                  for (int d = 0; d < dim; ++d)
-                    h[j] += w * layer.mobility * slope[d] * space.pressure_gradient[(point * n_i + j) * dim + d];
-                }
-              for (std::size_t a = 0; a < n_a; ++a)
-                for (int d = 0; d < dim; ++d)
-                  {
-                    g[3 * a + mesh_axes<dim>[d]] += w * value * space.gradient[(point * n_a + a) * dim + d];
-                    l[3 * a + mesh_axes<dim>[d]] +=
-                        w * layer.mobility * fluid_density * slope[d] * space.shape[q * n_a + a];
-                  }
-            }
           for (std::size_t j = 0; j < n_i; ++j)
             {
               const PetscInt column = p_part->local_to_global(space.cell_pressures[cell * n_i + j]);
-              e.s.add(row, column, s[j]);
-              e.h.add(row, column, h[j]);
+              e.s.add(row, column, c.s(i, j));
+              e.h.add(row, column, c.h(i, j));
             }
-          for (std::size_t k = 0; k < 3 * n_a; ++k)
-            if (g[k] != 0 || l[k] != 0)
+          for (std::size_t k = 0; k < n_u; ++k)
+            if (c.g(i, k) != 0 || c.l(i, k) != 0)
               {
-                const PetscInt column = u_part->local_to_global(space.cell_dofs[cell * 3 * n_a + k]);
-                e.g.add(row, column, g[k]);
-                e.l.add(row, column, l[k]);
+                const PetscInt column = u_part->local_to_global(space.cell_dofs[cell * n_u + k]);
+                e.g.add(row, column, c.g(i, k));
+                e.l.add(row, column, c.l(i, k));
               }
         }
     }

@@ -49,10 +49,10 @@ struct MeshSpec
 /// How the block is held.
 struct Supports
 {
-  bool tied_sides = false;             ///< opposite side faces move as one (laterally periodic)
-  std::vector<FaceComponent> fixed;    ///< given displacement, 0 unless the solver says otherwise
-  std::vector<FaceComponent> together; ///< all nodes of the face have the same displacement
-  std::vector<Face> drained;           ///< excess pore pressure 0
+  bool tied_sides = false;                  ///< opposite side faces move as one (laterally periodic)
+  std::vector<FaceComponent> fixed = {};    ///< given displacement, 0 unless the solver says otherwise
+  std::vector<FaceComponent> together = {}; ///< all nodes of the face have the same displacement
+  std::vector<Face> drained = {};           ///< excess pore pressure 0
 };
 
 /// A mesh with its displacement space (three components in any dimension) and its pressure space (continuous, degree
@@ -99,6 +99,8 @@ public:
   Vector lumped_mass() const;
   /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2.
   Vector face_area(Face face) const;
+  /// Where the node of each owned displacement unknown is, m; of a tie, the node that stays.
+  std::vector<std::array<double, 3>> node_places() const;
   /// The local displacement unknown of `component` at the node nearest to a place, -1 if another rank owns it.
   long find_dof(const std::array<double, 3> &place, unsigned component) const;
   /// The local pressure unknown nearest to a place, -1 if another rank owns it.

@@ -193,6 +193,25 @@ Vector Discretisation<dim>::face_area(Face face) const
   return area;
 }
 
+template <int dim>
+std::vector<std::array<double, 3>> Discretisation<dim>::node_places() const
+{
+  std::vector<std::array<double, 3>> places(displacement_partition_->locally_owned_size());
+  const auto &support = nodes_.get_fe().get_unit_support_points();
+  std::vector<Index> node(nodes_per_cell_);
+  const dealii::MappingQ1<dim> mapping;
+  for (const auto &cell : nodes_.active_cell_iterators())
+    if (cell->is_locally_owned())
+      {
+        cell->get_dof_indices(node);
+        for (unsigned a = 0; a < node.size(); ++a)
+          for (unsigned c = 0; c < 3; ++c)
+            if (const unsigned i = dof_of_node(node[a], c); i < places.size() && masters_[c].count(node[a]) == 0)
+              places[i] = place_of<dim>(mapping.transform_unit_to_real_cell(cell, support[a]));
+      }
+  return places;
+}
+
 namespace
 {
 /// The owned node nearest to a place, invalid on the ranks that do not have the nearest of all.
