@@ -38,9 +38,9 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water shall move.");
-  if (layer.material == LayerMaterial::iwan && layer.iwan.phase_transformation > layer.iwan.friction)
-    document.refuse(prefix + ".phase_transformation",
-                    "must not exceed the angle of friction, which no stress goes beyond. Correct one of them.");
+  if (layer.material == LayerMaterial::iwan && layer.iwan.phase_transformation_ratio > layer.iwan.strength_ratio)
+    document.refuse(prefix + ".phase_transformation_ratio",
+                    "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
   constexpr unsigned most = 1000000;
   if (layer.cells == 0 && !(layer.thickness / layer.cell_size <= most))
     document.refuse(prefix + ".cell_size", fmt::format("would give more than {} cells. Give a larger one.", most));
@@ -93,6 +93,12 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 
 void check_output(const SceneDocument &document, const ColumnScene &scene)
 {
+  if (scene.mesh.distributed)
+    for (const auto &[key, given] : {std::pair("output.profile_interval", scene.output.profile_interval.has_value()),
+                                     std::pair("output.paraview_interval", scene.output.paraview_interval.has_value())})
+      if (given)
+        document.refuse(key, "is not possible if mesh.distributed is true, where no rank has the whole depth. Remove "
+                             "it, or give distributed = false.");
   for (std::size_t i = 0; i < scene.output.depths.size(); ++i)
     if (scene.output.depths[i] > scene.height() * (1 + 1e-12)) // the sum of layers is rounded
       document.refuse("output.depths",

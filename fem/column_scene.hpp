@@ -40,16 +40,18 @@ enum class LayerMaterial
   iwan
 };
 
-/// Plain numbers of the nonlinear shear model; its small-strain stiffness is the layer's at `reference_pressure`.
+/// Numbers of the sand of fem/iwan.hpp (IwanParameters says what they mean); its small-strain stiffness is the layer's
+/// at `reference_pressure`. The defaults are a loose sand.
 struct IwanSpec
 {
-  double reference_pressure = 100e3; ///< p' at which the stiffness is given, Pa
-  double exponent = 0.5;             ///< G ~ (p'/reference_pressure)^exponent
-  double friction = 0;               ///< tan(phi)
-  double reference_strain = 5e-4;    ///< gamma_r at the reference pressure [-]
-  double contraction = 0.1;          ///< amount of contraction and dilation, 0: none [-]
-  double phase_transformation = 0;   ///< tan of the angle beyond which shearing dilates
-  unsigned elements = 20;            ///< slip elements in parallel
+  double reference_pressure = 100e3;       ///< Pa
+  double exponent = 0.5;                   ///< of G ~ (p'/reference_pressure)^exponent [-]
+  double strength_ratio = 0.55;            ///< sqrt(J2)/p' at most [-]
+  double phase_transformation_ratio = 0.4; ///< sqrt(J2)/p' beyond which shearing dilates [-]
+  double contraction = 0.5, dilation = 0.3;
+  double fabric_limit = 8, fabric_rate = 1000;
+  double critical_pressure = 1e6; ///< Pa
+  unsigned elements = 12;
 
   bool operator==(const IwanSpec &) const = default;
 };

@@ -36,7 +36,6 @@ constexpr Range positive{0, infinity, true};
 constexpr Range not_negative{0, infinity};
 constexpr Range fraction{0, 1, true, true}; // (0, 1)
 constexpr Range to_one{0, 1, true, false};  // (0, 1]
-constexpr Range acute{0, 90, true, true};   // degrees
 constexpr Range counts{1, 1e6};
 
 // clang-format off
@@ -146,26 +145,33 @@ constexpr Key keys[] = {
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
   {.path = "layer.reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive, .kinds = iwan,
-   .text = "Mean effective stress p_r at which stiffness and reference strain are given.",
+   .text = "Mean effective stress p_r at which the stiffness is given.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.reference_pressure; }},
   {.path = "layer.exponent", .value = "0.5", .range = {0, 1}, .kinds = iwan,
    .text = "n of the small-strain stiffness G (p'/p_r)^n.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.exponent; }},
-  {.path = "layer.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
-   .presence = Presence::required, .value = "33 deg", .range = acute, .reason = "because the strength is p' tan() of it",
-   .kinds = iwan, .text = "Angle of friction: the shear strength.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.friction; }},
-  {.path = "layer.reference_strain", .value = "5e-4", .range = fraction, .kinds = iwan,
-   .text = "Shear strain at which the secant modulus is half of G, at the reference pressure.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.reference_strain; }},
-  {.path = "layer.contraction", .value = "0.1", .range = not_negative, .kinds = iwan,
-   .text = "How much the skeleton contracts and dilates when it is sheared; 0: not at all.",
+  {.path = "layer.strength_ratio", .value = "0.55", .range = positive, .kinds = iwan,
+   .text = "M: shear strength over p', shear stress as sqrt(J2), which in simple shear is tau.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.strength_ratio; }},
+  {.path = "layer.phase_transformation_ratio", .value = "0.4", .range = positive, .kinds = iwan,
+   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.phase_transformation_ratio; }},
+  {.path = "layer.contraction", .value = "0.5", .range = not_negative, .kinds = iwan,
+   .text = "Rate of contraction per plastic shear strain; 0 here and for `dilation`: p' feels no shear.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.contraction; }},
-  {.path = "layer.phase_transformation", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
-   .presence = Presence::required, .value = "28 deg", .range = acute, .kinds = iwan,
-   .text = "Angle of mobilised friction at which contraction turns into dilation; at most `friction`.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.phase_transformation; }},
-  {.path = "layer.elements", .kind = Kind::integer, .value = "20", .range = {2, 1000}, .kinds = iwan,
+  {.path = "layer.dilation", .value = "0.3", .range = {0, 1}, .reason = "because plastic work would be negative above",
+   .kinds = iwan, .text = "Rate of dilation per plastic shear strain.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.dilation; }},
+  {.path = "layer.fabric_limit", .value = "8", .range = not_negative, .kinds = iwan,
+   .text = "After much dilation the soil contracts 1 + this times as fast.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_limit; }},
+  {.path = "layer.fabric_rate", .value = "1000", .range = not_negative, .kinds = iwan,
+   .text = "How soon that limit is reached, per volumetric strain of dilation.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_rate; }},
+  {.path = "layer.critical_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "1000 kPa", .range = positive, .kinds = iwan, .text = "Mean effective stress at which dilation ends.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.critical_pressure; }},
+  {.path = "layer.elements", .kind = Kind::integer, .value = "12", .range = {4, 32}, .kinds = iwan,
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.elements; }},
 
@@ -283,7 +289,7 @@ constexpr Key keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file.",
    .field = [](ColumnScene &s) -> Field { return &s.output.folder; }},
   {.path = "output.history_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .value = "0.01 s", .range = positive, .text = "Time between rows of the histories; a consolidation writes every step.",
+   .value = "0.01 s", .range = positive, .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step.",
    .field = [](ColumnScene &s) -> Field { return &s.output.history_interval; }},
   {.path = "output.depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
@@ -291,11 +297,11 @@ constexpr Key keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
   {.path = "output.profile_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth; left out: none but greatest values. A consolidation writes every step.",
+   .text = "Time between profiles over the depth, rounded likewise; left out: none but greatest values. A consolidation writes every step.",
    .field = [](ColumnScene &s) -> Field { return &s.output.profile_interval; }},
   {.path = "output.paraview_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.5 s", .range = positive,
-   .text = "Time between files for ParaView; left out: none.",
+   .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step.",
    .field = [](ColumnScene &s) -> Field { return &s.output.paraview_interval; }},
   {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
    .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
@@ -308,7 +314,7 @@ constexpr Key keys[] = {
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
 
 constexpr Dimension dimensions[] = {
-  Dimension::length, Dimension::pressure, Dimension::angle, Dimension::rate, Dimension::density, Dimension::velocity,
+  Dimension::length, Dimension::pressure, Dimension::rate, Dimension::density, Dimension::velocity,
   Dimension::acceleration, Dimension::frequency, Dimension::duration, Dimension::interval};
 
 constexpr const char *defaults_head =
@@ -321,9 +327,8 @@ R"(# Scene reference of the soil column
 A scene is one TOML file that says all about a run of `soil_column`. This page is generated from the table in
 `fem/column_schema.cpp` (`column_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/column`.
 
-- Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`, `"33 deg"`. A bare number, or the
+- Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
   unit of something else, is an error. What has no dimension is a plain number.
-- Friction is an angle in files (`deg`, `rad`, or its tangent as `"0.65 tan"`) and a coefficient tan(phi) inside.
 - An unknown key is an error, and so is a key twice. Compression is positive; z points up, depths count downwards.
 - `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
   `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each

@@ -79,16 +79,25 @@ void open_result_folder(const fs::path &folder, FolderUse use)
   make_writable_folder(folder);
 }
 
+void write_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
+                      const std::vector<std::pair<std::string, std::string>> &more)
+{
+  write_replacing(folder / "scene.toml", scene_text);
+  std::string text =
+      fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen "
+                  "{}.{}.{}, fmt {}\n",
+                  command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                  EIGEN_MINOR_VERSION, FMT_VERSION);
+  for (const auto &[name, value] : more)
+    text += fmt::format("{:<18}{}\n", name, value);
+  text += fmt::format("started           {:%Y-%m-%d %H:%M:%S} UTC\n", fmt::gmtime(std::time(nullptr)));
+  write_replacing(folder / "provenance.txt", text);
+}
+
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)
 {
-  write_replacing(folder / "scene.toml", to_toml(scene));
-  const std::string text = fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries    "
-                                       "     Eigen {}.{}.{}, fmt {}\ninstruction set   {}\nseed              "
-                                       "{}\nstarted           {:%Y-%m-%d %H:%M:%S} UTC\n",
-                                       command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
-                                       EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, instruction_set(),
-                                       scene.grading.seed, fmt::gmtime(std::time(nullptr)));
-  write_replacing(folder / "provenance.txt", text);
+  write_provenance(folder, to_toml(scene), command_line,
+                   {{"instruction set", instruction_set()}, {"seed", std::to_string(scene.grading.seed)}});
 }
 
 std::string draw_figures(const fs::path &folder, const std::string &script)

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace isostat
 {
@@ -27,8 +29,11 @@ void open_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// Makes a folder with those above it.     @throws InputError  it cannot be made, or not be written to
 void make_writable_folder(const std::filesystem::path &folder);
 
-/// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, instruction set, seed,
-/// time).
+/// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, time, and what `more`
+/// tells: name and value).
+void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
+                      const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
+/// The same of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
 /// Draws the figures of a results folder with a script of scripts/. @return a line for the summary; never fails a run

@@ -2,6 +2,7 @@
 #include "apps/common/run_output.hpp"
 
 #include "apps/common/interrupt.hpp"
+#include "apps/common/progress_text.hpp"
 #include "base/error.hpp"
 #include "base/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
@@ -20,13 +21,6 @@ constexpr double progress_seconds = 10;
 const std::string specimen_prefix = "specimen_";
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
-
-std::string duration_text(double s)
-{
-  return s < 90     ? fmt::format("{:.0f} s", s)
-         : s < 5400 ? fmt::format("{:.0f} min", s / 60)
-                    : fmt::format("{:.1f} h", s / 3600);
-}
 
 double &tally_field(EnergyBalance &t, int k)
 {

@@ -91,11 +91,11 @@ class AppTest(unittest.TestCase):
             self.assertIn(part, message)
         self.assertEqual(result.stdout, "")
 
-    def run_and_stop(self, wait, with_signal, started_file, *arguments):
-        """Starts element_test and sends a signal `wait` seconds after it has written `started_file` (or found it there,
+    def run_and_stop(self, wait, with_signal, started_file, *arguments, program="element_test"):
+        """Starts a program and sends a signal `wait` seconds after it has written `started_file` (or found it there,
         if it must not be newer: for a file that resuming leaves alone). Returns the exit code."""
         begin = time.time()
-        with subprocess.Popen(self.command("element_test", *arguments, "--no-figures", "--quiet"), cwd=self.folder,
+        with subprocess.Popen(self.command(program, *arguments, "--no-figures", "--quiet"), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             path, newer = started_file
             while process.poll() is None and time.time() < begin + 60:

@@ -69,17 +69,18 @@ TEST(ColumnSceneError, Materials)
 {
   EXPECT_EQ(complaint(sand + undrained + dynamic), "accepted");
   expect_complaint(
-      layer + "friction = \"30 deg\"\n" + dry + dynamic,
-      {"column.toml:6: layer.0.friction = 30 deg; does not belong to a layer of material \"elastic\", only "
+      layer + "strength_ratio = 0.6\n" + dry + dynamic,
+      {"column.toml:6: layer.0.strength_ratio = 0.6; does not belong to a layer of material \"elastic\", only "
        "to iwan. Remove it or change the material."});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
                    {"must be \"elastic\" or \"iwan\""});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
-  expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation", "angle of friction"},
-                   {"layer.1.phase_transformation=34 deg"});
-  expect_complaint(sand + undrained + dynamic, {"must be in (0 deg, 90 deg)"}, {"layer.0.friction=90 deg"});
-  expect_complaint(sand + "frction = 3\n" + undrained + dynamic,
-                   {"column.toml:8: layer.0.frction", "mean layer.friction?"});
+  expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
+                   {"layer.1.phase_transformation_ratio=0.6"});
+  expect_complaint(sand + undrained + dynamic, {"must be in [0, 1]", "plastic work"}, {"layer.0.dilation=1.5"});
+  expect_complaint(sand + undrained + dynamic, {"must be in [4, 32]"}, {"layer.0.elements=40"});
+  expect_complaint(sand + "dilatoin = 3\n" + undrained + dynamic,
+                   {"column.toml:6: layer.0.dilatoin", "mean layer.dilation?"});
 }
 
 TEST(ColumnSceneError, MeshAndWater)

@@ -3,6 +3,7 @@
 #include "fem/column_scene.hpp"
 
 #include "fem/column_schema.hpp"
+#include "fem/iwan.hpp"
 #include "tests/fem/column_scene_texts.hpp"
 
 #include <cmath>
@@ -40,8 +41,8 @@ density = "1900 kg/m3"
 permeability = "1e-2 cm/s"
 material = "iwan"
 shear_velocity = "160 m/s"
-friction = "33 deg"
-phase_transformation = "28 deg"
+strength_ratio = 0.65
+phase_transformation_ratio = 0.35
 [base]
 kind = "compliant"
 density = "2300 kg/m3"
@@ -93,7 +94,8 @@ TEST(ColumnScene, ReadsEverySection)
   EXPECT_EQ(scene.layers[1].small_strain_modulus(), 1900.0 * 160 * 160);
   EXPECT_EQ(scene.layers[1].permeability, 1e-4);
   EXPECT_EQ(scene.layers[1].material, LayerMaterial::iwan);
-  EXPECT_NEAR(scene.layers[1].iwan.friction, 0.64940759319751062, 1e-15); // tan 33 deg
+  EXPECT_EQ(scene.layers[1].iwan.strength_ratio, 0.65);
+  EXPECT_EQ(scene.layers[1].iwan.contraction, 0.5);
   EXPECT_EQ(scene.base.kind, BaseKind::compliant);
   EXPECT_EQ(scene.base.rock_p_velocity(), 1600);
   ASSERT_EQ(scene.motions.size(), 3u);
@@ -127,12 +129,26 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
 
   one.material = LayerMaterial::iwan;
   one.cells = 5;
-  one.iwan.friction = parse_quantity("33 deg", Dimension::angle).value;
-  one.iwan.phase_transformation = parse_quantity("28 deg", Dimension::angle).value;
   expected.layers = {one};
   EXPECT_EQ(parse_column_scene(sand + dry + dynamic, "s"), expected);
   EXPECT_EQ(ColumnScene().water.drainage, parse_column_scene(consolidation, "s").water.drainage);
   EXPECT_EQ(ColumnScene().analysis.steps, parse_column_scene(consolidation, "s").analysis.steps);
+}
+
+TEST(ColumnScene, DefaultSandIsThatOfTheMaterial)
+{
+  const IwanSpec ours;
+  const IwanParameters theirs;
+  EXPECT_EQ(ours.reference_pressure, theirs.reference_pressure);
+  EXPECT_EQ(ours.exponent, theirs.exponent);
+  EXPECT_EQ(ours.strength_ratio, theirs.strength_ratio);
+  EXPECT_EQ(ours.phase_transformation_ratio, theirs.phase_transformation_ratio);
+  EXPECT_EQ(ours.contraction, theirs.contraction);
+  EXPECT_EQ(ours.dilation, theirs.dilation);
+  EXPECT_EQ(ours.fabric_limit, theirs.fabric_limit);
+  EXPECT_EQ(ours.fabric_rate, theirs.fabric_rate);
+  EXPECT_EQ(ours.critical_pressure, theirs.critical_pressure);
+  EXPECT_EQ(ours.elements, theirs.elements);
 }
 
 TEST(ColumnScene, ProfileCountsFromTheBase)
@@ -236,7 +252,8 @@ TEST(ColumnScene, RoundTripToTheBit)
           {
             item.density = scene.water.density + 1 / 3.0;
             item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanSpec{};
-            item.iwan.phase_transformation = item.iwan.friction / 3;
+            if (item.material == LayerMaterial::iwan)
+              item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;
           }
         for (ColumnMotion &item : scene.motions)
           {

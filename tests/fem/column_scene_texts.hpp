@@ -12,8 +12,7 @@ inline const std::string layer_without_cells =
     "[[layer]]\nthickness = \"5 m\"\nmaterial = \"elastic\"\nshear_velocity = \"200 m/s\"\n";
 inline const std::string layer = layer_without_cells + "cells = 10\n"; // lines 1 to 5
 inline const std::string sand =
-    "[[layer]]\nthickness = \"5 m\"\nmaterial = \"iwan\"\nshear_velocity = \"200 m/s\"\ncells = 5\n"
-    "friction = \"33 deg\"\nphase_transformation = \"28 deg\"\n";
+    "[[layer]]\nthickness = \"5 m\"\nmaterial = \"iwan\"\nshear_velocity = \"200 m/s\"\ncells = 5\n"; // lines 1 to 5
 inline const std::string dry = "[water]\ndrainage = \"dry\"\n";
 inline const std::string undrained = "[water]\ndrainage = \"undrained\"\n";
 inline const std::string dynamic = "[analysis]\nduration = \"20 s\"\n";

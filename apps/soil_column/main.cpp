@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// soil_column SCENE: a column (or strip, or block) of saturated soil in layers, shaken at its base or loaded on its
+// surface, from a scene file to figures.
+//
+//      ~~~~~~~~ load   surface, free and drained      waves: central differences, pore pressure implicit
+//     |  layer 0 |                                    consolidation: Newton, the flow of the water without inertia
+//     |  layer 1 |     elastic, or sand that          leaves history.csv/.h5, profiles.h5, ParaView files, figures,
+//     |__________|     liquefies                      a printed summary
+//      base: rigid with a given motion, or rock that takes waves away
+//
+//   soil_column apps/scenes/column/uniform_layer.toml
+//   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
+//   mpirun -n 2 soil_column SCENE --resume
+#include "apps/common/interrupt.hpp"
+#include "apps/common/main_guard.hpp"
+#include "apps/common/result_folder.hpp"
+#include "apps/soil_column/column_run.hpp"
+#include "apps/soil_column/ranks.hpp"
+#include "base/replace_file.hpp"
+
+#include <deal.II/base/mpi.h>
+
+#include <fmt/format.h>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+
+struct Options
+{
+  std::string scene, output, command_line;
+  std::vector<std::string> set;
+  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
+       no_figures = false;
+};
+
+template <int dim>
+RunResult run_kind(const RunRequest &request)
+{
+  return request.scene.analysis.kind == AnalysisKind::dynamic ? run_dynamic<dim>(request)
+                                                              : run_consolidation<dim>(request);
+}
+
+RunResult run_dimension(const RunRequest &request)
+{
+  switch (request.scene.mesh.dimension)
+    {
+    case 1:
+      return run_kind<1>(request);
+    case 2:
+      return run_kind<2>(request);
+    default:
+      return run_kind<3>(request);
+    }
+}
+
+RunRequest request_of(const Options &options)
+{
+  RunRequest request;
+  request.scene = read_column_scene(options.scene, options.set);
+  request.folder = options.output.empty() ? request.scene.output.folder : options.output;
+  if (!request.folder.has_filename()) // a slash at the end
+    request.folder = request.folder.parent_path();
+  request.command_line = options.command_line;
+  request.resume = options.resume;
+  request.overwrite = options.overwrite;
+  request.quiet = options.quiet;
+  if (options.resume && request.scene.mesh.distributed)
+    throw InputError(fmt::format("{}: cannot be resumed, because a distributed run (mesh.distributed = true) keeps no "
+                                 "checkpoint. Start it anew with --overwrite.",
+                                 request.folder.string()));
+  return request;
+}
+
+void run_scene(const Options &options)
+{
+  const RunRequest request = request_of(options);
+  on_first_rank([&] {
+    check_result_folder(request.folder, request.resume      ? FolderUse::resume
+                                        : request.overwrite ? FolderUse::overwrite
+                                                            : FolderUse::fresh);
+  });
+  const RunResult result = run_dimension(request);
+  if (!ranks().first())
+    return;
+  const std::string text = to_text(result.summary, request.scene);
+  write_replacing(request.folder / "summary.json", to_json(result.summary, request.scene));
+  write_replacing(request.folder / "summary.txt", text);
+  fmt::print("{}{}", text, to_text(result.times));
+  if (!options.no_figures)
+    fmt::print("  {}\n", draw_figures(request.folder, "plots_soil_column.py"));
+}
+
+/// With MPI up. No PETSc option is read from our command line.
+int run_on_ranks(const Options &options)
+{
+  char name[] = "soil_column", *only_name[] = {name, nullptr}, **arguments = only_name;
+  int n = 1;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n, arguments, 1);
+  catch_signals(); // after PETSc, which has handlers of its own
+  return guarded([&] {
+    silence_others();
+    run_scene(options);
+  });
+}
+
+/// What needs no MPI. @return  true if that was not all
+bool print_something(const Options &options)
+{
+  if (options.print_defaults)
+    fmt::print("{}", default_column_scene());
+  else if (options.print_manual)
+    fmt::print("{}", column_scene_manual());
+  else if (options.scene.empty())
+    throw InputError("no scene given. Try soil_column apps/scenes/column/uniform_layer.toml, or --help.");
+  else if (options.validate)
+    fmt::print("{}", to_toml(read_column_scene(options.scene, options.set)));
+  else
+    return true;
+  return false;
+}
+
+int run_command(int argc, char **argv)
+{
+  CLI::App app{"A column of saturated soil in layers: shaken, loaded, consolidating"};
+  Options options;
+  app.add_option("scene", options.scene, "scene file (TOML); see docs/column_scene_reference.md");
+  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  app.add_option("--set", options.set, "override a key, e.g. --set analysis.safety=0.5 (repeatable)");
+  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
+  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
+  app.add_flag("--print-manual", options.print_manual, "print docs/column_scene_reference.md: every key of a scene");
+  auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
+  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  options.command_line = command_line(argc, argv);
+  bool ready = false; // not after --help
+  const int code = parse_and_run(app, argc, argv, [&] { ready = print_something(options); });
+  return ready ? run_on_ranks(options) : code;
+}
+} // namespace
+
+int main(int argc, char **argv) { return run_command(argc, argv); }

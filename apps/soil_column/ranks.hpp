@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <functional>
+
+namespace isostat
+{
+/// The ranks of MPI_COMM_WORLD in a program of which only the first one writes files and prints.
+struct Ranks
+{
+  int rank = 0, size = 1;
+  bool first() const { return rank == 0; }
+};
+
+Ranks ranks();
+
+/// From here on only the first rank is heard on stdout and stderr.
+void silence_others();
+
+/// `task` on the first rank; the others wait. What it throws is thrown on all ranks.   Collective.
+void on_first_rank(const std::function<void()> &task);
+
+/// True on all ranks if it is on one.   Collective.
+bool on_any_rank(bool here);
+
+/// Ends all ranks, after `message` on stderr from this rank even if it is silent: for a failure the others cannot see.
+[[noreturn]] void abort_all(const char *message);
+} // namespace isostat

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/column_scene.hpp"
+#include "fem/discretisation.hpp"
+
+#include <memory>
+
+namespace isostat
+{
+/// The materials of a scene's layers as one, for the points of this rank in their order: one part for each run of
+/// points in the same layer, so in a mesh of one rank one part per layer from the base up. Brought to the in-situ
+/// stress.
+/// @throws InputError naming the layer: a stress that its material cannot bear
+/// tested: tests/apps/soil_column_test.py
+template <int dim>
+std::unique_ptr<Material> column_material(const ColumnScene &scene, const Discretisation<dim> &space);
+
+/// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
+/// K0 times as much.
+template <int dim>
+std::vector<Stress> in_situ_stress(const ColumnScene &scene, const Discretisation<dim> &space);
+} // namespace isostat
