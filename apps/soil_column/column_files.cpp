@@ -95,12 +95,12 @@ void ColumnFiles<dim>::flush()
 }
 
 template <int dim>
-void ColumnFiles<dim>::save(DynamicsState state, const ColumnPeaks &peaks)
+void ColumnFiles<dim>::save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more)
 {
   if (!recorder_)
     return;
   flush();
-  ColumnCheckpoint checkpoint{std::move(state), {}, {}, scene_text_};
+  ColumnCheckpoint checkpoint{std::move(state), std::move(more), {}, scene_text_};
   peaks.save(checkpoint);
   history_.state.save(checkpoint);
   checkpoint.numbers["rows"] = static_cast<double>(recorder_->n_rows());

@@ -28,7 +28,8 @@ public:
   void paraview(const ColumnInstant &instant);
 
   /// Brings all files up to date, then writes a checkpoint of a state with its peaks.
-  void save(DynamicsState state, const ColumnPeaks &peaks);
+  /// @param more  numbers that the run wants back
+  void save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
   void flush();
   /// Adds the greatest values to the profiles.   @pre the last call
   void finish(const ColumnPeaks &peaks);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/column_run.hpp"
 
+#include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/soil_column/ranks.hpp"
-#include "base/error.hpp"
 
 #include <deal.II/base/config.h>
 
@@ -47,7 +47,56 @@ void open_folder(const RunRequest &request)
   });
 }
 
-template Discretisation<1> column_mesh<1>(const ColumnScene &, const Supports &);
-template Discretisation<2> column_mesh<2>(const ColumnScene &, const Supports &);
-template Discretisation<3> column_mesh<3>(const ColumnScene &, const Supports &);
+template <int dim>
+ColumnSummary summary_so_far(const Discretisation<dim> &space, ColumnFiles<dim> &files, PeakFollower<dim> &follower)
+{
+  ColumnSummary summary;
+  unsigned long counts[2] = {space.n_cells(), space.n_points()};
+  if (space.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_UNSIGNED_LONG, MPI_SUM, space.communicator());
+  summary.cells = counts[0];
+  summary.points = counts[1];
+  for (const PointAtDepth &point : files.history().points())
+    summary.point_depths.push_back(point.depth);
+  follower.gather();
+  summary.peaks = follower.peaks;
+  summary.last = files.history().state;
+  return summary;
+}
+
+template <int dim>
+void stop_if_asked(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
+                   const std::function<void()> &save)
+{
+  const bool distributed = request.scene.mesh.distributed;
+  if (!(distributed ? on_any_rank(stop_requested()) : stop_requested()))
+    return;
+  files.flush();
+  if (distributed)
+    throw Interrupted(fmt::format("interrupted at step {}; a distributed run keeps no checkpoint", step));
+  save();
+  throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", step));
+}
+
+template <int dim>
+void fail(const RunFailure &failure, std::uint64_t step, double time, const Discretisation<dim> &space,
+          ColumnFiles<dim> &files)
+{
+  const std::string what =
+      fmt::format("step {} (t = {:.6g} s): {}\n  {}", step, time, failure.what(), files.last_checkpoint());
+  if (space.shared_out())
+    abort_all(what.c_str());
+  files.flush();
+  throw RunFailure(what);
+}
+
+#define ISOSTAT_INSTANTIATE(dim) \
+  template Discretisation<dim> column_mesh<dim>(const ColumnScene &, const Supports &); \
+  template ColumnSummary summary_so_far<dim>(const Discretisation<dim> &, ColumnFiles<dim> &, PeakFollower<dim> &); \
+  template void stop_if_asked<dim>(const RunRequest &, std::uint64_t, ColumnFiles<dim> &, \
+                                   const std::function<void()> &); \
+  template void fail<dim>(const RunFailure &, std::uint64_t, double, const Discretisation<dim> &, ColumnFiles<dim> &);
+ISOSTAT_INSTANTIATE(1)
+ISOSTAT_INSTANTIATE(2)
+ISOSTAT_INSTANTIATE(3)
 } // namespace isostat

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "apps/soil_column/column_files.hpp"
 #include "apps/soil_column/column_summary.hpp"
+#include "base/error.hpp"
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 
 namespace isostat
 {
@@ -38,4 +42,21 @@ Discretisation<dim> column_mesh(const ColumnScene &scene, const Supports &suppor
 std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request);
 /// Old results go now, if they may, and provenance is written; on the first rank.
 void open_folder(const RunRequest &request);
+/// Sizes of the mesh, greatest values and the last row, over all ranks.   Collective.
+template <int dim>
+ColumnSummary summary_so_far(const Discretisation<dim> &space, ColumnFiles<dim> &files, PeakFollower<dim> &follower);
+/// After a signal: brings the files up to date, calls `save` unless the run is distributed, and throws Interrupted.
+/// Collective if the run is distributed.
+template <int dim>
+void stop_if_asked(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
+                   const std::function<void()> &save);
+/// A failed step: brings the files up to date and throws RunFailure with step, time and checkpoint; if the other ranks
+/// would wait for this one it ends them all.
+template <int dim>
+[[noreturn]] void fail(const RunFailure &failure, std::uint64_t step, double time, const Discretisation<dim> &space,
+                       ColumnFiles<dim> &files);
+inline double seconds_since(std::chrono::steady_clock::time_point begin)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 } // namespace isostat

@@ -90,7 +90,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
-  return text + fmt::format("  degree of consolidation  {:.4f}\n", s.degree);
+  return text + fmt::format("  final settlement         {:.4f} mm, drained\n  degree of consolidation  {:.4f}\n",
+                            1e3 * s.final_settlement, s.degree);
 }
 
 std::string to_text(const RunTimes &t)
@@ -135,7 +136,7 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
   add("settlement", number(s.last.settlement));
   add("energy_residual", number(s.last.residual));
   add("relative_energy_residual", number(relative_residual(s.last)));
-  add("final_settlement", number(s.final_settlement));
+  add("final_settlement", shaken(scene) ? "null" : number(s.final_settlement));
   add("degree_of_consolidation", shaken(scene) ? "null" : number(s.degree));
   return text + "\n}\n";
 }

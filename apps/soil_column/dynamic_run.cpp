@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shaking of a column from its start, or from a checkpoint, to its end.
-#include "apps/common/interrupt.hpp"
-#include "apps/soil_column/column_files.hpp"
 #include "apps/soil_column/column_progress.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/ranks.hpp"
 #include "apps/soil_column/timed_material.hpp"
-#include "base/error.hpp"
 #include "fem/column_material.hpp"
 
 #include <cmath>
@@ -17,8 +14,6 @@ namespace isostat
 namespace
 {
 using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 3> &motions)
 {
@@ -126,7 +121,7 @@ void DynamicRun<dim>::step()
     observe_step(run_, space_, instant_);
   else
     run_.step();
-  times_.solver += since(begin);
+  times_.solver += seconds_since(begin);
   ++times_.steps;
   follower_.follow(run_);
   if (row)
@@ -143,15 +138,9 @@ void DynamicRun<dim>::look_around()
 {
   const std::uint64_t n = run_.n_steps();
   progress_->tick(n, static_cast<double>(n) / static_cast<double>(last_step_ + 1), files_.history().state);
-  if (scene_.mesh.distributed ? on_any_rank(stop_requested()) : stop_requested())
-    {
-      files_.flush();
-      if (scene_.mesh.distributed)
-        throw Interrupted(fmt::format("interrupted at step {}; a distributed run keeps no checkpoint", n));
-      save();
-      throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", n));
-    }
-  if (!scene_.mesh.distributed && n % 256 == 0 && since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+  stop_if_asked<dim>(request_, n, files_, [&] { save(); });
+  if (!scene_.mesh.distributed && n % 256 == 0 &&
+      seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
     save();
 }
 
@@ -167,13 +156,7 @@ void DynamicRun<dim>::advance()
         }
       catch (const RunFailure &failure)
         {
-          const std::string what =
-              fmt::format("step {} (t = {:.6g} s): {}\n  {}", n, static_cast<double>(n) * run_.time_step(),
-                          failure.what(), files_.last_checkpoint());
-          if (space_.shared_out())
-            abort_all(what.c_str());
-          files_.flush();
-          throw RunFailure(what);
+          fail(failure, n, static_cast<double>(n) * run_.time_step(), space_, files_);
         }
       look_around();
     }
@@ -182,22 +165,12 @@ void DynamicRun<dim>::advance()
 template <int dim>
 RunResult DynamicRun<dim>::result()
 {
-  ColumnSummary summary;
-  unsigned long counts[2] = {space_.n_cells(), space_.n_points()};
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_UNSIGNED_LONG, MPI_SUM, space_.communicator());
-  summary.cells = counts[0];
-  summary.points = counts[1];
+  ColumnSummary summary = summary_so_far(space_, files_, follower_);
   summary.steps = static_cast<double>(run_.n_steps());
   summary.time_step = run_.time_step();
-  for (const PointAtDepth &point : files_.history().points())
-    summary.point_depths.push_back(point.depth);
-  follower_.gather();
-  summary.peaks = follower_.peaks;
-  summary.last = files_.history().state;
   times_.material = material_.seconds;
   times_.solver -= times_.material;
-  times_.wall = since(begin_);
+  times_.wall = seconds_since(begin_);
   return {summary, times_};
 }
 

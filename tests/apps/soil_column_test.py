@@ -150,7 +150,26 @@ class Scenes(ColumnTest):
         self.assertEqual(np.abs(rows["settlement"]).max(), 0)
 
     def test_terzaghi(self):
-        self.skipTest("no consolidation yet")
+        summary, rows, folder = self.run_scene("terzaghi", *settings(analysis__steps=200))
+        # c = kb/S, S = 1/D + n/K_f; degree of consolidation as settlement, pressure at the base (fem_references A.4)
+        compliance, storage = 1 / 100e6, 0.33 / 2.2e9
+        t_v = rows["time"] * 1e-6 / 9810 / (compliance + storage) / 10**2
+        b = (np.arange(400)[:, None] + 0.5) * np.pi
+        degree = 1 - (2 / b**2 * np.exp(-b**2 * t_v)).sum(axis=0)
+        p0 = 100e3 * compliance / (compliance + storage)
+        final, at_once = 100e3 * 10 * compliance, (100e3 - p0) * 10 * compliance
+        self.assertEqual(rows["time"][0], 0)
+        self.assertAlmostEqual(rows["settlement"][0], at_once, 9)
+        late = t_v > 0.01
+        self.assert_close(rows["settlement"][late], (at_once + degree * (final - at_once))[late], 1e-3)
+        self.assertAlmostEqual(summary["final_settlement"], final, 9)
+        self.assertAlmostEqual(summary["degree_of_consolidation"], degree[-1], 3)
+        depth = summary["depths"][1]
+        base = p0 * (2 / b * np.sin(b * depth / 10) * np.exp(-b**2 * t_v)).sum(axis=0)
+        self.assert_close(rows["d1_u"][late], base[late], 1e-3)
+        with h5py.File(folder / "profiles.h5") as file:
+            self.assertEqual(file["u"].shape, (201, 80))
+            self.assertEqual(file["time"][()].tobytes(), rows["time"].tobytes())
 
 
 class Mistakes(ColumnTest):
@@ -258,6 +277,15 @@ class Resume(ColumnTest):
             if (checkpoints / name).exists():
                 (checkpoints / name).write_bytes((checkpoints / name).read_bytes()[:3000])
         self.finish(arguments)
+
+
+    def test_consolidation(self):
+        options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]
+        self.assert_done(self.run_column(*options, "-o", "whole"))
+        started = (self.folder / "parts/checkpoint/last.h5", True)
+        code = self.run_and_stop(0.02, signal.SIGTERM, started, *options, "-o", "parts", program="soil_column")
+        self.assertIn(code, {0, 130})
+        self.finish(options)
 
 
 class MPIRanks(ColumnTest):

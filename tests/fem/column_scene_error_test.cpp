@@ -85,6 +85,9 @@ TEST(ColumnSceneError, Materials)
 
 TEST(ColumnSceneError, MeshAndWater)
 {
+  expect_complaint(layer + "permeability = \"0 m/s\"\n" + dynamic + "[output]\nprofile_interval = \"1 s\"\n",
+                   {"column.toml:10: output.profile_interval", "mesh.distributed"},
+                   {"mesh.dimension=2", "mesh.distributed=true"});
   expect_complaint(consolidation, {"--set mesh.degree: mesh.degree = 1; must be 2", "oscillate"}, {"mesh.degree=1"});
   expect_complaint(consolidation, {"mesh.degree = 3; must be in [1, 2]"}, {"mesh.degree=3"});
   expect_complaint(layer + undrained + dynamic + "[mesh]\ndimension = 2\n",
