@@ -288,6 +288,8 @@ void RveMaterial::balance()
 const Rve *RveMaterial::element(std::size_t point, std::size_t realisation) const
 {
   const auto &element = elements_.at(point * settings_.realisations + realisation);
+  if (element && !has_trial_)
+    element->rollback();
   return element ? &element->rve() : nullptr;
 }
 } // namespace isostat

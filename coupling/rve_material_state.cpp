@@ -65,6 +65,8 @@ void RveMaterial::place(const Owners &owners)
 {
   if (owners.size() != n_elements())
     throw RunFailure(fmt::format("rve: owners of {} elements, but it has {}", owners.size(), n_elements()));
+  if (has_trial_)
+    throw RunFailure("rve: elements cannot move while a trial is pending; commit it or roll it back first");
   for (int rank : owners)
     if (rank < 0 || rank >= exchange_.size())
       throw RunFailure(fmt::format("rve: an element for rank {}, but there are {} ranks", rank, exchange_.size()));

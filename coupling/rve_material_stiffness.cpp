@@ -3,6 +3,7 @@
 #include "coupling/rve_material.hpp"
 #include "coupling/wave_moduli.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace isostat
@@ -108,8 +109,11 @@ void RveMaterial::wave_moduli(std::span<WaveModuli> moduli) const
         rows.insert(rows.end(), {found[2 * id], found[2 * id + 1]});
       exchange_.share(due, owners_, 2, rows);
       for (std::size_t k = 0; k < due.size(); ++k)
-        waves_[due[k]] = {rows[2 * k], rows[2 * k + 1], pressure(committed_[due[k]]), static_cast<double>(commits_),
-                          false};
+        {
+          Wave &w = waves_[due[k]];
+          const double p = std::max(pressure(committed_[due[k]]), 0.01 * w.pressure); // never zero: no endless refresh
+          w = {rows[2 * k], rows[2 * k + 1], p, static_cast<double>(commits_), false};
+        }
       cost_.stiffnesses += due.size();
     }
   const std::size_t n = settings_.realisations;

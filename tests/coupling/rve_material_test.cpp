@@ -121,6 +121,11 @@ TEST(RveMaterial, RollbackLeavesNoTrace)
       EXPECT_EQ(run(material, k, k + 3), run(straight, k, k + 3));
     }
   EXPECT_EQ(material.pack(), straight.pack());
+  material.trial(column_increments(3, 7), stresses);
+  EXPECT_NE(material.element(0)->stress(), straight.element(0)->stress());
+  EXPECT_THROW(material.place(material.owners()), RunFailure);
+  material.rollback();
+  EXPECT_EQ(material.element(0)->stress(), straight.element(0)->stress());
 }
 
 TEST(RveMaterial, BytesGoOnToTheSameBits)
