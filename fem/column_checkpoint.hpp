@@ -21,6 +21,6 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
 
 /// The newest that can be read.
 /// @throws InputError when there is none, naming what is wrong with each
-/// tested: tests/apps/soil_column_test.py
+/// tested: tests/apps/soil_column_resume_test.py
 ColumnCheckpoint read_column_checkpoint(const std::filesystem::path &folder);
 } // namespace isostat

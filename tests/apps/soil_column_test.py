@@ -1,93 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""soil_column as a user runs it: its scenes, what a row holds, mistakes, kills, ranks."""
+"""soil_column as a user runs it: its scenes, what a row holds, mistakes."""
 import json
-import os
-import pathlib
-import random
-import re
-import shutil
-import signal
-import subprocess
 
 import h5py
 import numpy as np
 
-from support import AppTest, BIN, contents, main
-
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
-                  OMP_NUM_THREADS="1")
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/column"
-
-SOIL = """title = "sand over clay"
-[water]
-drainage = "coupled"
-[[layer]]
-name = "sand"
-thickness = "3 m"
-cells = 3
-permeability = "1e-4 m/s"
-material = "iwan"
-shear_velocity = "150 m/s"
-[[layer]]
-thickness = "4 m"
-cells = 4
-permeability = "1e-6 m/s"
-material = "elastic"
-shear_velocity = "200 m/s"
-[[motion]]
-axis = "x"
-kind = "harmonic"
-amplitude = "0.1 g"
-frequency = "3 Hz"
-duration = "60 s"
-ramp = "1 s"
-[[motion]]
-axis = "y"
-kind = "ricker"
-amplitude = "0.05 g"
-frequency = "4 Hz"
-[analysis]
-duration = "1 s"
-[output]
-depths = ["1 m", "5 m"]
-"""
-NO_FILES = {"provenance.txt"}  # time of the run, number of ranks
-
-
-def settings(**values):
-    """--set section__key=value ..., with a dot for two underscores."""
-    return [part for key, value in values.items() for part in ("--set", f"{key.replace('__', '.')}={value}")]
-
-
-def history(folder):
-    with h5py.File(folder / "history.h5") as file:
-        return {name: np.asarray(values) for name, values in file["history"].items()}
-
-
-class ColumnTest(AppTest):
-    def setUp(self):
-        super().setUp()
-        self.scene = self.write("soil.toml", SOIL)
-
-    def run_column(self, *arguments):
-        return self.run_app("soil_column", *arguments, "--no-figures")
-
-    def run_on_ranks(self, n, *arguments):
-        command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120, check=False)
-
-    def assert_same_files(self, one, other):
-        """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""
-        def names(folder):
-            return {n for n in contents(self.folder / folder) if n not in NO_FILES and not n.startswith("checkpoint")}
-        self.assertEqual(names(one), names(other))
-        for name in names(one):
-            a, b = self.folder / one / name, self.folder / other / name
-            if name.endswith(".h5"):
-                self.assert_same_h5(a, b)
-            else:
-                self.assertEqual(a.read_bytes(), b.read_bytes(), name)
+from column_support import ColumnTest, SCENES, SOIL, settings, history
+from support import contents, main
 
 
 class Scenes(ColumnTest):
@@ -241,83 +161,6 @@ class Mistakes(ColumnTest):
             output__checkpoint="1e-9 min"))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertRegex(result.stderr, r"step \d+ \(t = [\d.]+ s\): unstable: .*\n.*last good checkpoint: out/check")
-
-
-class Resume(ColumnTest):
-    """A run that is killed and resumed leaves the same files."""
-
-    OPTIONS = settings(analysis__duration="50 s", output__profile_interval="0.1 s", output__paraview_interval="2 s",
-                       output__checkpoint="1e-9 min")
-
-    def interrupt(self, with_signal, wanted, *more):
-        arguments = [self.scene, *self.OPTIONS, *more]
-        begin = os.times().elapsed
-        self.assert_done(self.run_column(*arguments, "-o", "whole"))
-        seconds = os.times().elapsed - begin
-        moments, codes = random.Random(20240229), []
-        started = (self.folder / "parts/checkpoint/last.h5", True)
-        for resume in ([], ["--resume"], ["--resume"]):
-            codes.append(self.run_and_stop(moments.uniform(0.02, 0.25) * seconds, with_signal, started, *arguments,
-                                           "-o", "parts", *resume, program="soil_column"))
-        self.assertEqual(codes[0], wanted)
-        return arguments
-
-    def finish(self, arguments):
-        self.assert_done(self.run_column(*arguments, "-o", "parts", "--resume"))
-        self.assert_same_files("whole", "parts")
-
-    def test_sigterm(self):
-        self.finish(self.interrupt(signal.SIGTERM, 130, *settings(water__drainage="undrained",
-                                                                  water__lagged_compressibility="true")))
-
-    def test_sigkill_and_a_damaged_checkpoint(self):
-        arguments = self.interrupt(signal.SIGKILL, -signal.SIGKILL)
-        checkpoints = self.folder / "parts/checkpoint"
-        for name in ("fresh.h5", "last.h5"):
-            if (checkpoints / name).exists():
-                (checkpoints / name).write_bytes((checkpoints / name).read_bytes()[:3000])
-        self.finish(arguments)
-
-
-    def test_consolidation(self):
-        options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]
-        self.assert_done(self.run_column(*options, "-o", "whole"))
-        started = (self.folder / "parts/checkpoint/last.h5", True)
-        code = self.run_and_stop(0.02, signal.SIGTERM, started, *options, "-o", "parts", program="soil_column")
-        self.assertIn(code, {0, 130})
-        self.finish(options)
-
-
-class MPIRanks(ColumnTest):
-    def test_replicated_to_the_bit(self):
-        options = settings(output__profile_interval="0.05 s", output__paraview_interval="0.5 s")
-        results = [self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options) for n in (1, 2, 3)]
-        for n, result in enumerate(results, 1):
-            self.assert_done(result)
-            self.assertEqual(result.stdout.count("peak shear strain"), 1)
-            self.assert_same_files("on1", f"on{n}")
-            self.assertEqual(len(re.findall("time step .* stable up to", result.stderr)), 1)
-
-    def test_distributed(self):
-        options = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=3,
-                           analysis__duration="0.5 s")
-        rows = {}
-        for n in (1, 2, 3):
-            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
-            rows[n] = history(self.folder / f"on{n}")
-            self.assertFalse((self.folder / f"on{n}/profiles.h5").exists())
-            for name in ("surface_ax", "surface_ay", "surface_vx", "surface_ux", "surface_uz", "d0_tau_xz", "d0_u",
-                         "max_ru", "min_p_ratio", "external"):
-                scale = np.abs(rows[1][name]).max()
-                self.assertGreater(scale, 0, name)
-                self.assertLess(np.abs(rows[n][name] - rows[1][name]).max(), 1e-10 * scale, name)
-
-    def test_failure_on_all_ranks(self):
-        shutil.copy(self.scene, self.folder / "out")  # a file
-        result = self.run_on_ranks(2, self.scene, "-o", "out")
-        self.assertEqual(result.stderr.count("error: "), 1)
-        self.assertIn("not a folder", result.stderr)
-        self.assertEqual(result.returncode, 2)
 
 
 if __name__ == "__main__":

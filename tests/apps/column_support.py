@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of soil_column share: a small scene, running the program, comparing what it leaves behind."""
+import os
+import pathlib
+import subprocess
+
+import h5py
+import numpy as np
+
+from support import AppTest, contents
+
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
+                  OMP_NUM_THREADS="1")
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/column"
+
+SOIL = """title = "sand over clay"
+[water]
+drainage = "coupled"
+[[layer]]
+name = "sand"
+thickness = "3 m"
+cells = 3
+permeability = "1e-4 m/s"
+material = "iwan"
+shear_velocity = "150 m/s"
+[[layer]]
+thickness = "4 m"
+cells = 4
+permeability = "1e-6 m/s"
+material = "elastic"
+shear_velocity = "200 m/s"
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.1 g"
+frequency = "3 Hz"
+duration = "60 s"
+ramp = "1 s"
+[[motion]]
+axis = "y"
+kind = "ricker"
+amplitude = "0.05 g"
+frequency = "4 Hz"
+[analysis]
+duration = "1 s"
+[output]
+depths = ["1 m", "5 m"]
+"""
+NO_FILES = {"provenance.txt"}  # time of the run, number of ranks
+
+
+def settings(**values):
+    """--set section__key=value ..., with a dot for two underscores."""
+    return [part for key, value in values.items() for part in ("--set", f"{key.replace('__', '.')}={value}")]
+
+
+def history(folder):
+    with h5py.File(folder / "history.h5") as file:
+        return {name: np.asarray(values) for name, values in file["history"].items()}
+
+
+class ColumnTest(AppTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("soil.toml", SOIL)
+
+    def run_column(self, *arguments):
+        return self.run_app("soil_column", *arguments, "--no-figures")
+
+    def run_on_ranks(self, n, *arguments):
+        command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120, check=False)
+
+    def assert_same_files(self, one, other):
+        """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""
+        def names(folder):
+            return {n for n in contents(self.folder / folder) if n not in NO_FILES and not n.startswith("checkpoint")}
+        self.assertEqual(names(one), names(other))
+        for name in names(one):
+            a, b = self.folder / one / name, self.folder / other / name
+            if name.endswith(".h5"):
+                self.assert_same_h5(a, b)
+            else:
+                self.assertEqual(a.read_bytes(), b.read_bytes(), name)
