@@ -91,6 +91,25 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
                                                       number_text(scene.analysis.first_time)));
 }
 
+void check_grains(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (!scene.has_grains())
+    {
+      if (document.find("grains"))
+        document.refuse("grains", "has no effect: no layer has material = \"grains\". Remove it.");
+      return;
+    }
+  if (scene.grains.library.empty())
+    document.refuse("grains.library", "is missing; layers of grains are made of its specimens. Give library = "
+                                      "\"library.h5\", made by specimen_library.");
+  if (scene.grains.rate_floor > scene.grains.rate_ceiling)
+    document.refuse("grains.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
+  for (double depth : scene.grains.snapshot_depths)
+    if (depth > scene.height() * (1 + 1e-12))
+      document.refuse("grains.snapshot_depths", fmt::format("must lie in the soil, in [0 m, {} m], but {} m does not.",
+                                                            number_text(scene.height()), number_text(depth)));
+}
+
 void check_output(const SceneDocument &document, const ColumnScene &scene)
 {
   if (scene.mesh.distributed)
@@ -115,6 +134,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
     check_layer(document, scene, i);
   check_base(document, scene.base);
   check_motions(document, scene);
+  check_grains(document, scene);
   check_analysis(document, scene);
   check_output(document, scene);
 }

@@ -30,16 +30,16 @@ IwanParameters sand_of(const ColumnLayer &layer)
   return sand;
 }
 
-std::unique_ptr<Material> material_of(const ColumnLayer &layer, std::size_t n_points)
+} // namespace
+
+std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
 {
   if (layer.material == LayerMaterial::iwan)
     return std::make_unique<Iwan>(sand_of(layer), n_points);
   return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
 }
 
-/// Layer k of the profile as the scene has it, which counts from the surface down.
-std::size_t number_in_scene(const ColumnScene &scene, std::size_t k) { return scene.layers.size() - 1 - k; }
-} // namespace
+std::size_t number_in_scene(const ColumnScene &scene, std::size_t layer) { return scene.layers.size() - 1 - layer; }
 
 template <int dim>
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const Discretisation<dim> &space)
@@ -68,7 +68,7 @@ std::unique_ptr<Material> column_material(const ColumnScene &scene, const Discre
       const std::size_t k = number_in_scene(scene, space.cell_layer[cell]);
       try
         {
-          parts.push_back(material_of(scene.layers[k], (end - cell) * n_q));
+          parts.push_back(formula_material(scene.layers[k], (end - cell) * n_q));
           parts.back()->set_initial_stress(std::span(stresses).subspan(cell * n_q, (end - cell) * n_q));
         }
       catch (const InputError &error)

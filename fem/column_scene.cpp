@@ -25,23 +25,24 @@ ColumnScene checked_scene(const SceneDocument &document)
   return scene;
 }
 
-/// Motion files count from the folder of the scene file.
+/// The absolute path of a file that counts from the folder of the scene file, and must be there.
+std::string found_file(const SceneDocument &document, const std::string &key, const fs::path &folder,
+                       const std::string &file)
+{
+  const fs::path path = fs::absolute(folder / file).lexically_normal();
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored))
+    document.refuse(key, fmt::format("is not there ({}). A relative path counts from the folder of the scene file; "
+                                     "correct it.",
+                                     path.string()));
+  return path.string();
+}
+
 void find_motion_files(const SceneDocument &document, const fs::path &folder, ColumnScene &scene)
 {
   for (std::size_t i = 0; i < scene.motions.size(); ++i)
-    {
-      std::string &file = scene.motions[i].file;
-      if (scene.motions[i].kind != MotionKind::record)
-        continue;
-      const fs::path path = fs::absolute(folder / file).lexically_normal();
-      std::error_code ignored;
-      if (!fs::is_regular_file(path, ignored))
-        document.refuse(fmt::format("motion.{}.file", i),
-                        fmt::format("is not there ({}). A relative path counts from the folder of the scene file; "
-                                    "correct it.",
-                                    path.string()));
-      file = path.string();
-    }
+    if (scene.motions[i].kind == MotionKind::record)
+      scene.motions[i].file = found_file(document, fmt::format("motion.{}.file", i), folder, scene.motions[i].file);
 }
 } // namespace
 
@@ -82,6 +83,12 @@ double ColumnScene::height() const
   return sum;
 }
 
+bool ColumnScene::has_grains() const
+{
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const ColumnLayer &layer) { return layer.material == LayerMaterial::grains; });
+}
+
 SoilProfile soil_profile(const ColumnScene &scene)
 {
   SoilProfile profile;
@@ -112,7 +119,10 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
 {
   const SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
   ColumnScene scene = checked_scene(document);
-  find_motion_files(document, fs::path(path).parent_path(), scene);
+  const fs::path folder = fs::path(path).parent_path();
+  find_motion_files(document, folder, scene);
+  if (scene.has_grains())
+    scene.grains.library = found_file(document, "grains.library", folder, scene.grains.library);
   if (scene.output.folder.empty())
     scene.output.folder = "results/" + fs::path(path).stem().string();
   return scene;

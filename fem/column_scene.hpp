@@ -37,7 +37,8 @@ struct ColumnWater
 enum class LayerMaterial
 {
   elastic,
-  iwan
+  iwan,
+  grains ///< a packing at every Gauss point (coupling/rve_material.hpp)
 };
 
 /// Numbers of the sand of fem/iwan.hpp (IwanParameters says what they mean); its small-strain stiffness is the layer's
@@ -56,6 +57,15 @@ struct IwanSpec
   bool operator==(const IwanSpec &) const = default;
 };
 
+/// Which specimens of the library a layer of grains is made of.
+struct GrainsSpec
+{
+  std::optional<double> relative_density; ///< D_r; left out: the library has one density only
+  std::uint64_t realisation = 0;          ///< the first of the layer's seeds
+
+  bool operator==(const GrainsSpec &) const = default;
+};
+
 /// A layer with its material; from the surface down in a ColumnScene.
 struct ColumnLayer
 {
@@ -71,6 +81,7 @@ struct ColumnLayer
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
   IwanSpec iwan;                                       ///< of no meaning to other materials
+  GrainsSpec grains;                                   ///< of no meaning to other materials
 
   double small_strain_modulus() const; ///< G, Pa, whichever of the two was given (rho V_s^2)
   unsigned n_cells() const;            ///< whichever of the two was given
@@ -188,6 +199,28 @@ struct ColumnOutput
   bool operator==(const ColumnOutput &) const = default;
 };
 
+enum class GrainsInSitu
+{
+  all_stresses,     ///< vertical and horizontal stress as the layer's weight and k0 say
+  no_lateral_strain ///< the horizontal stress is what the packing gives
+};
+
+/// How packings of grains are run.
+struct ColumnGrains
+{
+  std::string library; ///< of specimens; after read_column_scene an absolute path
+  std::string cache;   ///< file of in-situ states for the next start; empty: none
+  GrainsInSitu in_situ = GrainsInSitu::all_stresses;
+  std::uint64_t realisations = 1;            ///< packings of a point
+  double quasi_static_tolerance = 0.01;      ///< as in the element tests [-]
+  double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s
+  double damping = 0.2;                      ///< [-]
+  std::vector<double> snapshot_depths;       ///< below the surface; whole packings are stored there, m
+  double snapshot_interval = 1;              ///< s
+
+  bool operator==(const ColumnGrains &) const = default;
+};
+
 /// A whole run: what a scene file says after defaults, overrides and checks.
 struct ColumnScene
 {
@@ -198,10 +231,12 @@ struct ColumnScene
   ColumnBase base;
   std::vector<ColumnMotion> motions; ///< at most one per axis
   ColumnLoad load;
+  ColumnGrains grains; ///< of no meaning without a layer of grains
   ColumnAnalysis analysis;
   ColumnOutput output;
 
   double height() const;
+  bool has_grains() const;
 
   bool operator==(const ColumnScene &) const = default; ///< bit for bit, every field
 };

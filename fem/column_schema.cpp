@@ -8,7 +8,8 @@ namespace isostat
 namespace
 {
 constexpr const char *drainage_choices[] = {"dry", "undrained", "coupled"};
-constexpr const char *material_choices[] = {"elastic", "iwan"};
+constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
+constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *axis_choices[] = {"x", "y", "z"};
 constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
@@ -23,6 +24,8 @@ constexpr unsigned bit(Kind kind)
   return 1u << static_cast<unsigned>(kind);
 }
 constexpr unsigned iwan = bit(LayerMaterial::iwan);
+constexpr unsigned formula = bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned grains = bit(LayerMaterial::grains);
 constexpr unsigned compliant = bit(BaseKind::compliant);
 constexpr unsigned record = bit(MotionKind::record);
 constexpr unsigned harmonic = bit(MotionKind::harmonic);
@@ -44,8 +47,8 @@ constexpr Section sections[] = {
   {.name = "water", .text = "Pore water; the water table is at the surface, which drains freely."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and exactly one of "
-           "`shear_velocity` and `shear_modulus`, is to be given.",
+           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, but for grains, "
+           "exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -57,6 +60,9 @@ constexpr Section sections[] = {
    .empty_remedy = "Leave it out if the base is at rest.", .default_kind = "ricker",
    .set_example = "amplitude=\"0.1 g\"", .kinds_title = "Motion kinds"},
   {.name = "load", .text = "Traction on the surface.", .kind_key = "kind", .kinds_title = "Load kinds"},
+  {.name = "grains",
+   .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\"; the element tests' own law "
+           "and rate control."},
   {.name = "analysis",
    .text = "Waves (dynamic), or the slow flow of water out of loaded soil without inertia (consolidation).",
    .kind_key = "kind", .kinds_title = "Analysis kinds"},
@@ -129,19 +135,19 @@ constexpr Key keys[] = {
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.k0; }},
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = material_choices,
-   .text = "Law of the soil skeleton: linear elastic, or parallel slip elements (Iwan) whose stiffness and strength follow "
-           "the mean effective stress.",
+   .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
+           "the mean effective stress, or a packing of grains at every Gauss point, see [grains].",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::experiment, .value = "200 m/s", .range = positive, .group = "stiffness",
+   .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",
    .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
   {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
-   .presence = Presence::optional, .value = "80 MPa", .range = positive, .group = "stiffness",
+   .presence = Presence::optional, .value = "80 MPa", .range = positive, .kinds = formula, .group = "stiffness",
    .text = "Shear modulus G of small strain. Of iwan, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
   {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
-   .reason = "because the skeleton is compressible without its water", .text = "Poisson's ratio of the drained skeleton.",
+   .reason = "because the skeleton is compressible without its water", .kinds = formula, .text = "Poisson's ratio of the drained skeleton.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
   {.path = "layer.reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive, .kinds = iwan,
@@ -174,6 +180,13 @@ constexpr Key keys[] = {
   {.path = "layer.elements", .kind = Kind::integer, .value = "12", .range = {4, 32}, .kinds = iwan,
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.elements; }},
+
+  {.path = "layer.relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2}, .kinds = grains,
+   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.relative_density; }},
+  {.path = "layer.realisation", .kind = Kind::integer, .value = "0", .kinds = grains,
+   .text = "Which seed of the library, counted from 0; with `grains.realisations` the first of them.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.realisation; }},
 
   {.path = "base.kind", .kind = Kind::choice, .value = "rigid", .choices = base_choices,
    .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion is "
@@ -256,6 +269,40 @@ constexpr Key keys[] = {
   {.path = "load.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
    .range = not_negative, .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing.",
    .field = [](ColumnScene &s) -> Field { return &s.load.ramp; }},
+
+  {.path = "grains.library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
+   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file. Needed by layers of "
+           "grains.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.library; }},
+  {.path = "grains.cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
+   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
+           "directory. Left out: none are kept.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.cache; }},
+  {.path = "grains.in_situ", .kind = Kind::choice, .value = "all-stresses", .choices = in_situ_choices,
+   .text = "Packings start at the vertical and horizontal stress that weight and `layer.k0` say, or, without lateral "
+           "strain, at the horizontal stress that they give themselves.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.in_situ; }},
+  {.path = "grains.realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
+   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.realisations; }},
+  {.path = "grains.quasi_static_tolerance", .value = "0.01", .range = fraction,
+   .text = "Error that inertia of grains may add, as in element tests.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.quasi_static_tolerance; }},
+  {.path = "grains.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
+   .range = positive, .text = "Least strain rate inside a packing.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_floor; }},
+  {.path = "grains.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
+   .range = positive, .text = "Greatest strain rate inside a packing.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_ceiling; }},
+  {.path = "grains.damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.damping; }},
+  {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
+   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_depths; }},
+  {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .value = "1 s", .range = positive, .text = "Time between them.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_interval; }},
 
   {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_choices,
    .text = "What is solved.",

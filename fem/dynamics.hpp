@@ -82,10 +82,10 @@ public:
   double time_step() const { return time_step_; }
   double stable_step() const; ///< of the present stiffness, s
 
-  const Vector &displacement() const { return u_; }              ///< at time()
-  const Vector &velocity() const { return v_; }                  ///< at time() - dt/2
-  Vector acceleration() const; ///< at time() - dt, as the unknown counts it; made anew at each call
-  const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
+  const Vector &displacement() const { return u_; } ///< at time()
+  const Vector &velocity() const { return v_; }     ///< at time() - dt/2
+  Vector acceleration() const;                  ///< at time() - dt, as the unknown counts it; made anew at each call
+  const Vector &pressure() const { return p_; } ///< excess, at time() - dt; zero unless coupled
   std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
   /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
   /// vertical equilibrium at time(), 0 if dry.
@@ -130,6 +130,7 @@ private:
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
   Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
+  double least_energy_ = 0;               ///< J, that no explosion is judged below
   std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
   Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;

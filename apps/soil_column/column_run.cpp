@@ -68,8 +68,8 @@ template <int dim>
 void stop_if_asked(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
                    const std::function<void()> &save)
 {
-  const bool distributed = request.scene.mesh.distributed;
-  if (!(distributed ? on_any_rank(stop_requested()) : stop_requested()))
+  const bool distributed = request.scene.mesh.distributed, together = distributed || request.scene.has_grains();
+  if (!(together ? on_any_rank(stop_requested()) : stop_requested()))
     return;
   files.flush();
   if (distributed)

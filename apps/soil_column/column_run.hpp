@@ -17,6 +17,7 @@ struct RunRequest
   std::filesystem::path folder;
   std::string command_line;
   bool resume = false, overwrite = false, quiet = false;
+  int threads = 1; ///< of a rank, that share its packings
 };
 
 struct RunResult

@@ -42,6 +42,11 @@ std::string list(const std::vector<double> &values)
   return "[" + text + "]";
 }
 
+const char *name_of(LayerMaterial material)
+{
+  return material == LayerMaterial::grains ? "grains" : material == LayerMaterial::iwan ? "iwan" : "elastic";
+}
+
 /// From the surface down.
 std::string layers_json(const ColumnScene &scene)
 {
@@ -52,8 +57,8 @@ std::string layers_json(const ColumnScene &scene)
       text += fmt::format("{}\n    {{\"name\": {}, \"top\": {}, \"bottom\": {}, \"material\": {}, \"density\": {}, "
                           "\"shear_modulus\": {}}}",
                           text.empty() ? "" : ",", quoted(layer.name), number(top), number(top + layer.thickness),
-                          quoted(layer.material == LayerMaterial::iwan ? "iwan" : "elastic"), number(layer.density),
-                          number(layer.small_strain_modulus()));
+                          quoted(name_of(layer.material)), number(layer.density),
+                          layer.material == LayerMaterial::grains ? "null" : number(layer.small_strain_modulus()));
       top += layer.thickness;
     }
   return "[" + text + "\n  ]";
@@ -87,6 +92,12 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
                         p.ru_time);
   text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
+  if (s.grains)
+    text +=
+        fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n  least I_R                {:.3f} at a "
+                    "depth of {:.2f} m, t = {:.5g} s\n",
+                    s.grains->packings, s.grains->slowest, s.grains->fastest, s.grains->least_redundancy,
+                    s.grains->least_redundancy_depth, s.grains->least_redundancy_time);
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
@@ -94,13 +105,27 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                             1e3 * s.final_settlement, s.degree);
 }
 
+namespace
+{
+/// Where the time of a column of grains went; the rest of the material's time is waiting for other ranks.
+std::string packings_text(const RunTimes &t)
+{
+  return fmt::format(
+      "  packings                 {:.0f} calls, {:.1f} time steps each; {:.1f} s on the busiest rank, {:.1f} "
+      "s on all\n  outside of packings      {:.2f} % of the wall time; wave velocities {:.1f} s\n",
+      t.packing_trials, t.packing_steps / t.packing_trials, t.in_packings, t.all_packings,
+      100 * (1 - t.in_packings / t.wall), t.waves);
+}
+} // namespace
+
 std::string to_text(const RunTimes &t)
 {
   const double n = std::max(t.steps, 1.0);
-  return fmt::format(
-      "  time per step            {:.1f} us elements, {:.1f} us material\n  wall time                {:.2f} "
-      "s, {:.0f} steps\n",
-      1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
+  return (t.packing_trials > 0 ? packings_text(t) : "") +
+         fmt::format(
+             "  time per step            {:.1f} us elements, {:.1f} us material\n  wall time                {:.2f} "
+             "s, {:.0f} steps\n",
+             1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
 }
 
 std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
@@ -138,6 +163,14 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
   add("relative_energy_residual", number(relative_residual(s.last)));
   add("final_settlement", shaken(scene) ? "null" : number(s.final_settlement));
   add("degree_of_consolidation", shaken(scene) ? "null" : number(s.degree));
+  if (s.grains)
+    {
+      add("packings", std::to_string(s.grains->packings));
+      add("shear_velocities", list({s.grains->slowest, s.grains->fastest}));
+      add("least_redundancy", number(s.grains->least_redundancy));
+      add("least_redundancy_depth", number(s.grains->least_redundancy_depth));
+      add("least_redundancy_time", number(s.grains->least_redundancy_time));
+    }
   return text + "\n}\n";
 }
 } // namespace isostat

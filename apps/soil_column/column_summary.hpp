@@ -3,8 +3,18 @@
 #include "apps/soil_column/column_history.hpp"
 #include "apps/soil_column/column_peaks.hpp"
 
+#include <optional>
+
 namespace isostat
 {
+/// Of the packings of a column.
+struct GrainsSummary
+{
+  std::size_t packings = 0;
+  double slowest = 0, fastest = 0;                                                    ///< V_s at the (re)start, m/s
+  double least_redundancy = 0, least_redundancy_depth = 0, least_redundancy_time = 0; ///< of all profiles [-], m, s
+};
+
 /// What a person wants to know of a finished run. Nothing in it depends on the machine: see RunTimes for that.
 struct ColumnSummary
 {
@@ -14,6 +24,7 @@ struct ColumnSummary
   ColumnPeaks peaks;
   ColumnState last;                        ///< of the last row
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
+  std::optional<GrainsSummary> grains;
 };
 
 /// What the run took on this machine.
@@ -21,6 +32,9 @@ struct RunTimes
 {
   double wall = 0, solver = 0, material = 0; ///< s: from start to end, in steps without the material, in the material
   double steps = 0;                          ///< that were made, after a resume fewer than the run has
+  double packing_trials = 0, packing_steps = 0; ///< calls of packings, their own time steps
+  double in_packings = 0, all_packings = 0;     ///< s: in packings of the busiest rank, of all ranks together
+  double waves = 0;                             ///< s: for their wave velocities
 };
 
 /// For the terminal and summary.txt.

@@ -2,9 +2,9 @@
 // Shaking of a column from its start, or from a checkpoint, to its end.
 #include "apps/soil_column/column_progress.hpp"
 #include "apps/soil_column/column_run.hpp"
+#include "apps/soil_column/grain_files.hpp"
 #include "apps/soil_column/ranks.hpp"
 #include "apps/soil_column/timed_material.hpp"
-#include "fem/column_material.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -57,9 +57,15 @@ private:
   }
   void save()
   {
-    files_.save(run_.save(), follower_.peaks);
+    files_.save(run_.save(), follower_.peaks, grain_counters());
     last_checkpoint_ = Clock::now();
   }
+  void look_at_grains(bool row, bool profile);
+  std::map<std::string, double> grain_counters();
+  std::vector<double> depths() const;
+  bool checkpoint_due() const;
+  void add_grains(ColumnSummary &summary);
+  std::array<double, 2> grain_velocities() const;
   void look_around();
   RunResult result();
 
@@ -67,6 +73,7 @@ private:
   const ColumnScene &scene_;
   std::array<Motion, 3> motions_;
   Discretisation<dim> space_;
+  SoilMaterial soil_;
   TimedMaterial material_;
   Dynamics<dim> run_;
   ColumnFiles<dim> files_;
@@ -74,6 +81,8 @@ private:
   std::unique_ptr<ColumnCheckpoint> resumed_;
   std::uint64_t last_step_; ///< the last one whose start is recorded
   ColumnInstant instant_;
+  std::unique_ptr<GrainFiles> grain_files_;   ///< null without grains
+  std::array<double, 2> velocities_ = {0, 0}; ///< of the soil of grains at the start of this run
   std::unique_ptr<ColumnProgress> progress_;
   RunTimes times_;
   Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_;
@@ -83,8 +92,8 @@ template <int dim>
 DynamicRun<dim>::DynamicRun(const RunRequest &request)
     : request_(request), scene_(request.scene), motions_(column_motions(scene_)),
       space_(column_mesh<dim>(scene_, shaken_supports<dim>(scene_.base.kind == BaseKind::compliant))),
-      material_(column_material(scene_, space_)), run_(space_, material_, settings_of(scene_, motions_)),
-      files_(request.folder, scene_, space_, motions_),
+      soil_(soil_material(scene_, space_, request.threads)), material_(std::move(soil_.material)),
+      run_(space_, material_, settings_of(scene_, motions_)), files_(request.folder, scene_, space_, motions_),
       follower_(space_, files_.line(), files_.history().vertical_stress()), resumed_(checkpoint_of(request)),
       last_step_(static_cast<std::uint64_t>(std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12))))
 {
@@ -100,7 +109,20 @@ template <int dim>
 void DynamicRun<dim>::start()
 {
   open_folder(request_);
-  on_first_rank([&] { files_.open(resumed_.get()); });
+  if (soil_.grains && !scene_.mesh.distributed)
+    grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths());
+  on_first_rank([&] {
+    files_.open(resumed_.get());
+    if (grain_files_)
+      grain_files_->open(resumed_.get());
+  });
+  if (soil_.grains)
+    {
+      velocities_ = grain_velocities();
+      if (ranks().first() && !request_.quiet)
+        fmt::print(stderr, "{} packings, V_s {:.0f} to {:.0f} m/s\n", soil_.grains->owners().size(), velocities_[0],
+                   velocities_[1]);
+    }
   const auto total = static_cast<double>(last_step_ + 1);
   progress_ =
       std::make_unique<ColumnProgress>(request_.quiet, run_.n_steps(), static_cast<double>(run_.n_steps()) / total);
@@ -116,6 +138,7 @@ void DynamicRun<dim>::step()
 {
   const bool row = due(scene_.output.history_interval), profile = due(scene_.output.profile_interval),
              paraview = due(scene_.output.paraview_interval);
+  look_at_grains(row, profile);
   const auto begin = Clock::now();
   if (row || profile || paraview)
     observe_step(run_, space_, instant_);
@@ -132,6 +155,50 @@ void DynamicRun<dim>::step()
     files_.paraview(instant_);
 }
 
+/// Grains as they are before the step.
+template <int dim>
+void DynamicRun<dim>::look_at_grains(bool row, bool profile)
+{
+  if (!grain_files_)
+    return;
+  if (row)
+    grain_files_->record(run_.n_steps(), run_.time());
+  if (profile)
+    grain_files_->profile(run_.n_steps(), run_.time());
+  if (due(scene_.grains.snapshot_interval))
+    grain_files_->snapshots(run_.time());
+}
+
+template <int dim>
+std::map<std::string, double> DynamicRun<dim>::grain_counters()
+{
+  if (!grain_files_)
+    return {};
+  grain_files_->flush();
+  return grain_files_->counters();
+}
+
+/// Of the points below the surface, m.
+template <int dim>
+std::vector<double> DynamicRun<dim>::depths() const
+{
+  std::vector<double> depths;
+  for (const auto &place : space_.position)
+    depths.push_back(scene_.height() - place[2]);
+  return depths;
+}
+
+/// Packings of one run live on all ranks, so these must agree when to store them; a step of theirs is long enough to
+/// look at the clock after each.
+template <int dim>
+bool DynamicRun<dim>::checkpoint_due() const
+{
+  const bool late = seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes;
+  if (scene_.mesh.distributed)
+    return false;
+  return soil_.grains ? as_first_rank(late) : run_.n_steps() % 256 == 0 && late;
+}
+
 /// Progress, signals, checkpoints.
 template <int dim>
 void DynamicRun<dim>::look_around()
@@ -139,8 +206,7 @@ void DynamicRun<dim>::look_around()
   const std::uint64_t n = run_.n_steps();
   progress_->tick(n, static_cast<double>(n) / static_cast<double>(last_step_ + 1), files_.history().state);
   stop_if_asked<dim>(request_, n, files_, [&] { save(); });
-  if (!scene_.mesh.distributed && n % 256 == 0 &&
-      seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+  if (checkpoint_due())
     save();
 }
 
@@ -162,6 +228,40 @@ void DynamicRun<dim>::advance()
     }
 }
 
+/// Velocities of the soil of grains at its start, the least redundancy index, and what the packings took.
+template <int dim>
+void DynamicRun<dim>::add_grains(ColumnSummary &summary)
+{
+  const RveMaterialCost &cost = soil_.grains->cost();
+  summary.grains = {soil_.grains->owners().size(),
+                    velocities_[0],
+                    velocities_[1],
+                    grain_files_->least().redundancy,
+                    grain_files_->least().depth,
+                    grain_files_->least().time};
+  times_.packing_trials = static_cast<double>(cost.trials * soil_.grains->owners().size());
+  times_.packing_steps = static_cast<double>(cost.steps);
+  times_.in_packings = cost.busiest_seconds;
+  times_.all_packings = cost.rve_seconds;
+  times_.waves = cost.wave_seconds;
+}
+
+/// Least and greatest shear wave velocity of the points with grains, m/s.
+template <int dim>
+std::array<double, 2> DynamicRun<dim>::grain_velocities() const
+{
+  std::vector<WaveModuli> moduli(soil_.grains->n_points());
+  soil_.grains->wave_moduli(moduli);
+  std::array<double, 2> range = {1e300, 0};
+  for (std::size_t k = 0; k < moduli.size(); ++k)
+    {
+      const std::size_t layer = space_.cell_layer[soil_.grains_places[k] / space_.points_per_cell()];
+      const double velocity = std::sqrt(moduli[k].s / space_.mesh().soil.layers[layer].density);
+      range = {std::min(range[0], velocity), std::max(range[1], velocity)};
+    }
+  return range;
+}
+
 template <int dim>
 RunResult DynamicRun<dim>::result()
 {
@@ -171,6 +271,8 @@ RunResult DynamicRun<dim>::result()
   times_.material = material_.seconds;
   times_.solver -= times_.material;
   times_.wall = seconds_since(begin_);
+  if (grain_files_)
+    add_grains(summary);
   return {summary, times_};
 }
 
@@ -181,6 +283,8 @@ RunResult DynamicRun<dim>::go()
   advance();
   if (!scene_.mesh.distributed)
     save();
+  if (grain_files_)
+    grain_files_->flush();
   files_.finish(follower_.peaks);
   return result();
 }

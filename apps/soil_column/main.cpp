@@ -4,8 +4,8 @@
 //
 //      ~~~~~~~~ load   surface, free and drained      waves: central differences, pore pressure implicit
 //     |  layer 0 |                                    consolidation: Newton, the flow of the water without inertia
-//     |  layer 1 |     elastic, or sand that          leaves history.csv/.h5, profiles.h5, ParaView files, figures,
-//     |__________|     liquefies                      a printed summary
+//     |  layer 1 |     elastic, sand that liquefies,  leaves history.csv/.h5, profiles.h5, ParaView files, figures,
+//     |__________|     packings of grains             a printed summary
 //      base: rigid with a given motion, or rock that takes waves away
 //
 //   soil_column apps/scenes/column/uniform_layer.toml
@@ -33,6 +33,7 @@ struct Options
   std::vector<std::string> set;
   bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
        no_figures = false;
+  int threads = 1;
 };
 
 template <int dim>
@@ -66,6 +67,7 @@ RunRequest request_of(const Options &options)
   request.resume = options.resume;
   request.overwrite = options.overwrite;
   request.quiet = options.quiet;
+  request.threads = options.threads;
   if (options.resume && request.scene.mesh.distributed)
     throw InputError(fmt::format("{}: cannot be resumed, because a distributed run (mesh.distributed = true) keeps no "
                                  "checkpoint. Start it anew with --overwrite.",
@@ -135,6 +137,10 @@ int run_command(int argc, char **argv)
   app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
   app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  app.add_option("-t,--threads", options.threads,
+                 "threads of each rank that share its packings of grains, 0: all the process may use; results do not "
+                 "depend on it")
+      ->check(CLI::Range(0, 1024));
   options.command_line = command_line(argc, argv);
   bool ready = false; // not after --help
   const int code = parse_and_run(app, argc, argv, [&] { ready = print_something(options); });

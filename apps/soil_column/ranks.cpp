@@ -71,6 +71,13 @@ bool on_any_rank(bool here)
   return flag != 0;
 }
 
+bool as_first_rank(bool here)
+{
+  int flag = here;
+  MPI_Bcast(&flag, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return flag != 0;
+}
+
 void abort_all(const char *message)
 {
   const std::string line = std::string("failed: ") + message + "\n";

@@ -22,6 +22,9 @@ void on_first_rank(const std::function<void()> &task);
 /// True on all ranks if it is on one.   Collective.
 bool on_any_rank(bool here);
 
+/// What the first rank says, on all ranks.   Collective.
+bool as_first_rank(bool here);
+
 /// Ends all ranks, after `message` on stderr from this rank even if it is silent: for a failure the others cannot see.
 [[noreturn]] void abort_all(const char *message);
 } // namespace isostat

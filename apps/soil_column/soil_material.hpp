@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "coupling/rve_material.hpp"
+#include "fem/column_material.hpp"
+
+namespace isostat
+{
+/// The soil of a scene at the points of a mesh.
+struct SoilMaterial
+{
+  std::unique_ptr<Material> material;
+  const RveMaterial *grains = nullptr;    ///< the part of it that is made of packings; null if there is none
+  std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`
+};
+
+/// Materials of all layers, brought to their stress in situ. All points with grains are one material, whose packings
+/// are placed on the ranks together, whatever lies between the layers.   Collective.
+/// @throws InputError  no such specimens, a stress that a layer cannot bear   @throws RunFailure  stress not reached
+template <int dim>
+SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads);
+} // namespace isostat
