@@ -157,7 +157,7 @@ class Mistakes(ColumnTest):
 
     def test_failure_names_step_time_and_checkpoint(self):
         result = self.run_column(SCENES / "recorded_motion.toml", "-o", "out", "--quiet", *settings(
-            analysis__safety=0.99, layer__2__contraction=0, layer__2__dilation=1, motion__0__amplitude="1 g",
+            analysis__safety=0.99, layer__2__contraction=0, layer__2__dilation=1, motion__0__peak="1 g",
             output__checkpoint="1e-9 min"))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertRegex(result.stderr, r"step \d+ \(t = [\d.]+ s\): unstable: .*\n.*last good checkpoint: out/check")
