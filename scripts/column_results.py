@@ -26,12 +26,41 @@ def quantity(value, default=None):
 
 def of_layer(table):
     density = quantity(table.get("density"), 2000.0)
-    velocity = quantity(table.get("shear_velocity"))
-    if velocity is None:
-        velocity = np.sqrt(quantity(table["shear_modulus"]) / density)
-    return {"height": quantity(table["thickness"]), "density": density, "velocity": float(velocity),
+    velocity, modulus = quantity(table.get("shear_velocity")), quantity(table.get("shear_modulus"))
+    if velocity is None and modulus is not None:
+        velocity = float(np.sqrt(modulus / density))
+    elif velocity is None and table["material"] != "grains":
+        raise KeyError("shear_modulus")
+    return {"height": quantity(table["thickness"]), "density": density, "velocity": velocity,
             "poisson_ratio": table.get("poisson_ratio", 0.3), "porosity": table.get("porosity", 0.4),
             "permeability": quantity(table.get("permeability"), 0.0), "material": table["material"]}
+
+
+class Grains:
+    """What the packings of a column left: `points` of its grain_history with their prefix, `profiles` by name."""
+
+    def __init__(self, folder):
+        self.columns = self._read(folder / "grain_history/history.csv")
+        self.points = [(float(self.columns[f"{prefix}_depth"][0]), prefix) for prefix in self._prefixes(self.columns)]
+        rows = self._read(folder / "grain_profiles/history.csv")
+        prefixes = self._prefixes(rows)
+        self.profiles = {"time": rows["time"]} if prefixes else {}
+        if prefixes:
+            self.profiles["depth"] = np.array([rows[f"{prefix}_depth"][0] for prefix in prefixes])
+            for name in [cell[3:] for cell in rows if cell.startswith("p0_") and cell != "p0_depth"]:
+                self.profiles[name] = np.array([rows[f"{prefix}_{name}"] for prefix in prefixes]).T  # [time x depth]
+
+    @staticmethod
+    def _read(path):
+        try:
+            return read_history(path) if path.exists() else {}
+        except BadInput as error:
+            note(f"{error}; its figures are left out")
+            return {}
+
+    @staticmethod
+    def _prefixes(columns):
+        return sorted((name[:-6] for name in columns if name.endswith("_depth")), key=lambda prefix: int(prefix[1:]))
 
 
 class Column:
@@ -47,6 +76,7 @@ class Column:
             raise BadInput("history.csv: needs two rows at least, and times that rise")
         self.scene = self._read(folder / "scene.toml", tomllib.loads) or {}
         self.profiles = self._read_profiles(folder / "profiles.h5")
+        self.grains = Grains(folder)
         self._read_scene()
         summary = self._read(folder / "summary.json", json.loads) or {}
         self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name

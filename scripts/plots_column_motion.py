@@ -17,10 +17,10 @@ def peak_mark(axes, t, a, colour):
     """The greatest value, marked and written, away from the curve."""
     at = int(np.argmax(np.abs(a)))
     axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
-    side = 1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1
-    axes.annotate(f"{abs(a[at]):.3g} m/s$^2$", (t[at], a[at]), xytext=(6 * side, 0), textcoords="offset points",
-                  ha="left" if side > 0 else "right", va="center", fontsize=9, color=colour, zorder=6,
-                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+    side, up = (1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)
+    axes.annotate(f"{abs(a[at]):.3g} m/s$^2$", (t[at], a[at]), xytext=(5 * side, 2.5 * up), textcoords="offset points",
+                  ha="left" if side > 0 else "right", va="bottom" if up > 0 else "top", fontsize=9, color=colour,
+                  zorder=6, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
 
 
 def motions(column):
@@ -33,7 +33,7 @@ def motions(column):
     for row, axis in enumerate(column.moving):
         pair = panels[2 * row:2 * row + 2, 0]
         curves = ((f"input_a{axis}", f"{input_name(column)} (input)", BLACK), (f"surface_a{axis}", "surface", BLUE))
-        limit = 1.15 * max(column.peak(name) for name, _, _ in curves)
+        limit = 1.45 * max(column.peak(name) for name, _, _ in curves)
         for axes, (name, label, colour), letter in zip(pair, curves, "abcdef"[2 * row:]):
             if not column.has(name):
                 note(f"no column `{name}`; its curve is left out")
@@ -92,9 +92,10 @@ def finish_spectra(panels, damping):
 
 
 def highest_frequency(column, dt):
-    """To the fourth mode of the column by its travel time, at most 25 Hz and what the rows can show."""
-    travel = sum(layer["height"] / layer["velocity"] for layer in column.layers)
-    wanted = 8 / (4 * travel) if travel else 20
+    """To the fourth mode of the column by its travel time, at most 25 Hz and what the rows can show. The velocity of a
+    layer of grains is not in the scene."""
+    known = column.layers and all(layer["velocity"] for layer in column.layers)
+    wanted = 2 / sum(layer["height"] / layer["velocity"] for layer in column.layers) if known else 20
     return min(max(5.0, wanted), 25.0, 0.4 / dt)
 
 
@@ -142,10 +143,19 @@ def draw_transfer(column, axes, axis):
     axes.legend(loc="lower right", bbox_to_anchor=(0.85, 1.0), ncols=2, borderaxespad=0.2)
 
 
+def broad(column, axis):
+    """Whether the input holds two octaves at least; from a sine alone nothing can be seen."""
+    surface, dt = column.motion(f"surface_a{axis}")
+    f, _, strong = transfer_function(surface, column.motion(f"input_a{axis}")[0], dt, highest_frequency(column, dt))
+    return strong.any() and f[strong][-1] > 4 * f[strong][0]
+
+
 def transfer(column):
     """Fourier amplitudes of the surface over those of the input, along the horizontal."""
-    axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}")]
-    if column.consolidation or not axes_moving or len(column.time) < 8:
+    if column.consolidation or len(column.time) < 8:
+        return None
+    axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}") and broad(column, axis)]
+    if not axes_moving:
         return None
     n = len(axes_moving)
     figure, panels = plt.subplots(n, 1, figsize=(7.2, 2.8 * n + 0.4), sharex=True, squeeze=False,

@@ -2,14 +2,17 @@
 """Figures of the soil in a column: profiles, pore pressure over depth and time, loops and stress paths."""
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import MaxNLocator
 
 from plots_common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
 
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
+EARLY = 0.25  # of the motion: half of its squared acceleration by then is early
 SHARES = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9)  # of the squared acceleration: when profiles are drawn
 LEAST_RU = 1e-3  # below it water plays no part
+LIQUEFIED_RU = 0.95
+LEAST_SHARE = 0.1  # of the greatest shear stress: a direction with less is not drawn (grains always stray a little)
 
 
 def depth_axis(column, axes, depth):
@@ -30,8 +33,13 @@ def times_of_motion(column, shares):
 
 
 def time_norm(column):
-    """Colours for the motion; what follows has one colour."""
-    return Normalize(column.time[0], max(column.time[1], times_of_motion(column, [0.99])[0]))
+    """Colours for the motion; what follows has one colour. Where the surface soon comes to rest, more of them for the
+    beginning: half by half of the squared acceleration."""
+    half, end = times_of_motion(column, [0.5, 0.99]) - column.time[0]
+    end = max(end, column.time[1] - column.time[0])
+    early = 0 < half < EARLY * end
+    gamma = max(0.3, np.log(0.5) / np.log(half / end)) if early else 1.0
+    return PowerNorm(gamma, column.time[0], column.time[0] + end)
 
 
 def time_bar(figure, panels, norm, last, aspect=40):
@@ -108,6 +116,24 @@ def edges(middle, low, high):
     return np.concatenate([[low], 0.5 * (middle[1:] + middle[:-1]), [high]])
 
 
+def draw_input(column, axes):
+    for axis in column.moving:
+        axes.plot(column.time, column[f"input_a{axis}"], linewidth=0.7, label=f"${axis}$",
+                  color={"x": BLACK, "y": ORANGE, "z": BLUE}[axis])
+    if len(column.moving) > 1:
+        axes.legend(loc="upper right", ncols=len(column.moving))
+    axes.set_ylabel("Input (m/s$^2$)")
+
+
+def outline(axes, x, y, inside, **style):
+    """The borders of the cells [y, x] that are inside, along the cells: no shape between points is made up."""
+    rows, columns = np.nonzero(inside[1:] != inside[:-1])
+    parts = [[(x[i], y[j + 1]), (x[i + 1], y[j + 1])] for j, i in zip(rows, columns)]
+    rows, columns = np.nonzero(inside[:, 1:] != inside[:, :-1])
+    parts += [[(x[i + 1], y[j]), (x[i + 1], y[j + 1])] for j, i in zip(rows, columns)]
+    axes.add_collection(LineCollection(parts, capstyle="projecting", **style))
+
+
 def ru_map(column):
     """r_u over depth and time, below the motion that makes it."""
     ru = pore_pressure_ratio(column)
@@ -118,18 +144,14 @@ def ru_map(column):
     bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
     figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 4.9), sharex=True, height_ratios=(1, 2.6),
                                        layout="constrained")
-    for axis in column.moving:
-        top.plot(column.time, column[f"input_a{axis}"], linewidth=0.7, label=f"${axis}$",
-                 color={"x": BLACK, "y": ORANGE, "z": BLUE}[axis])
-    if len(column.moving) > 1:
-        top.legend(loc="upper right", ncols=len(column.moving))
-    top.set_ylabel("Input (m/s$^2$)")
-    shade = axes.pcolormesh(edges(time, time[0], time[-1]), edges(depth[order], 0, bottom), ru[:, order].T,
-                            cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))), rasterized=True)
-    if np.nanmax(ru) > 0.95:
-        axes.contour(time, depth[order], ru[:, order].T, levels=[0.95], colors=[RED], linewidths=0.9)
-        axes.annotate("red: $r_u$ = 0.95", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom", fontsize=9,
-                      color=RED)
+    draw_input(column, top)
+    x, y = edges(time, time[0], time[-1]), edges(depth[order], 0, bottom)
+    shade = axes.pcolormesh(x, y, ru[:, order].T, cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))),
+                            rasterized=True)
+    if np.nanmax(ru) > LIQUEFIED_RU:
+        outline(axes, x, y, ru[:, order].T > LIQUEFIED_RU, colors=RED, linewidths=0.9)
+        axes.annotate(f"red: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
+                      fontsize=9, color=RED)
     figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
     depth_axis(column, axes, depth)
     axes.grid(False)
@@ -145,10 +167,10 @@ def ru_map(column):
 
 
 def moving_shears(column):
-    """Directions of the shear that some output depth feels."""
+    """Directions of the shear that some output depth feels, beside the strongest."""
     largest = {axis: max((column.peak(f"{prefix}_tau_{axis}z") for _, prefix in column.points), default=0.0)
                for axis in "xy"}
-    return [axis for axis in "xy" if largest[axis] > 1e-6 * max(largest.values())]
+    return [axis for axis in "xy" if largest[axis] > LEAST_SHARE * max(largest.values())]
 
 
 def coloured_path(axes, x, y, time, norm):
@@ -215,7 +237,7 @@ def histories(column):
     figure, panels = plt.subplots(wet + sinks, 1, figsize=(7.2, 2.5 * (wet + sinks) + 0.5), sharex=True,
                                   squeeze=False, layout="constrained")
     panels = list(panels[:, 0])
-    for axes, letter in zip(panels, "ab"):
+    for axes, letter in zip(panels, "ab" if len(panels) > 1 else ""):
         panel_letter(axes, letter)
     if wet:
         draw_ru(column, panels[0])

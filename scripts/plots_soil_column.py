@@ -14,9 +14,13 @@ fig_histories.png     r_u at the output depths and its largest value anywhere; s
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
 fig_settlement.png    consolidation: settlement against time, likewise
+fig_grains_profiles.png   packings of grains: redundancy index I_R, coordination number, fabric over the depth
+fig_grains_map.png        I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95
+fig_grains_history.png    I_R, r_u and yielding contacts at the output depths
 
-What the run does not have is left out: a dry soil has no r_u, a base at rest no spectra. The input is the motion of a
-rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in compression.
+What the run does not have is left out: a dry soil has no r_u, a base at rest no spectra, a sine no transfer function.
+The input is the motion of a rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in
+compression.
 """
 import argparse
 import pathlib
@@ -24,6 +28,7 @@ import sys
 
 from column_results import Column
 from plots_column_consolidation import isochrones, settlement
+from plots_column_grains import grains_history, grains_map, grains_profiles
 from plots_column_motion import motions, spectra, transfer
 from plots_column_soil import histories, loops, profiles, ru_map
 from plots_common import STYLE, BadInput, note, plt
@@ -38,6 +43,9 @@ FIGURES = {
     "fig_loops": loops,
     "fig_isochrones": isochrones,
     "fig_settlement": settlement,
+    "fig_grains_profiles": grains_profiles,
+    "fig_grains_map": grains_map,
+    "fig_grains_history": grains_history,
 }
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes results folders as soil_column writes them, from closed forms: an elastic layer in the frequency domain, a
-consolidation by the eigenvectors of finite differences, and a made-up liquefaction. For tests of the figures."""
+consolidation by the eigenvectors of finite differences, and a made-up liquefaction, with grains if wanted. For tests of
+the figures."""
 import json
 import pathlib
+import re
 
 import h5py
 import numpy as np
@@ -75,11 +77,16 @@ def layer_motion(a, dt, depths, damping, rock=None):
     return np.array([x[:n] for x in accelerations]), np.array([x[:n] for x in strains])
 
 
-def elastic(folder, rock=None, end=20.0):
+def sine(t, amplitude, f):
+    """Forty periods with soft ends, then rest."""
+    return amplitude * np.sin(2 * np.pi * f * t) * np.sin(np.pi * np.clip(f * t / 40, 0, 1)) ** 2
+
+
+def elastic(folder, rock=None, end=20.0, motion=ricker):
     """The scene uniform_layer, or the same layer over rock."""
     dt, damping = 0.005, np.pi / 2
     t = dt * np.arange(int(end / dt) + 1)
-    a = ricker(t, 0.981, 4.0)
+    a = motion(t, 0.981, 4.0)
     accelerations, _ = layer_motion(a, dt, [0.0, HEIGHT], damping, rock)
     depths = np.linspace(0, HEIGHT, 41)
     _, gamma = layer_motion(a, dt, depths, damping, rock)
@@ -151,3 +158,45 @@ def liquefaction(folder):
         history |= {f"d{k}_sigma_v": sigma0[point] * (1 - ru[:, point]), f"d{k}_ru": ru[:, point],
                     f"d{k}_p": sigma0[point] * (1 - ru[:, point]) * 2 / 3, f"d{k}_u": sigma0[point] * ru[:, point]}
     return write(folder, scene("recorded_motion"), {name: values[::step] for name, values in history.items()}, profiles)
+
+
+# --- grains ----------------------------------------------------------------------------------------------------------
+
+
+def table(folder, columns):
+    folder.mkdir()
+    units = ["s" if name == "time" else "m" if name.endswith("depth") else "-" for name in columns]
+    header = ",".join(f"{name} ({unit})" for name, unit in zip(columns, units))
+    rows = np.column_stack(np.broadcast_arrays(*columns.values()))
+    np.savetxt(folder / "history.csv", rows, fmt="%.10g", delimiter=",", header=header, comments="")
+
+
+def of_packing(prefix, depth, ru):
+    """I_R crosses 1 when r_u reaches 0.9; what follows from the few contacts then left is noise."""
+    share = np.clip(ru, 0, 1)
+    noise = np.sin(np.arange(len(ru)) * (1 + depth))
+    values = {"depth": depth, "IR": 2.1 - 1.1 * (share / 0.9) ** 4, "Z": 4.2 - 3.0 * share**4,
+              "F_yx": 0.02 + np.where(share > 0.9, 0.5, 0.005) * noise, "f_S": 0.5 * share, "f_R": 0.02 * share,
+              "f_SR": 0.3 * share**2}
+    return {f"{prefix}_{name}": value for name, value in values.items()}
+
+
+def grains(folder):
+    """The liquefaction in packings of grains, of which the scene has no shear modulus."""
+    liquefaction(folder)
+    text = (folder / "scene.toml").read_text(encoding="utf-8")
+    layers = re.compile(r"^\[\[layer\]\]\n(?:(?!\[).*\n)*", re.MULTILINE)
+    text = layers.sub(lambda part: re.sub(r"(?m)^shear_.*\n", "", part[0]), text)
+    (folder / "scene.toml").write_text(re.sub(r'(?m)^material = .*', 'material = "grains"', text), encoding="utf-8")
+    with h5py.File(folder / "profiles.h5") as file:
+        depth, time, ru = (file[name][()] for name in ("depth", "time", "ru"))
+    both = {"step": np.arange(len(time)), "time": time}
+    profiles, history = dict(both), dict(both)
+    for k, z in enumerate(depth):
+        profiles |= of_packing(f"p{k}", z, ru[:, k])
+    for k, z in enumerate((3, 5, 7, 11)):
+        point = int(np.argmin(np.abs(depth - z)))
+        history |= of_packing(f"d{k}", depth[point], ru[:, point])
+    table(folder / "grain_profiles", profiles)
+    table(folder / "grain_history", history)
+    return folder

@@ -18,6 +18,8 @@ sys.path[:0] = [str(SCRIPTS)]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
 from column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
 from column_results import Column, quantity  # noqa: E402
+from plots_column_grains import first  # noqa: E402
+from plots_column_soil import outline  # noqa: E402
 from support import main  # noqa: E402
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
@@ -146,6 +148,21 @@ class Figures(unittest.TestCase):
         self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "ru_map",
                     "histories", "loops")
 
+    def test_grains(self):
+        self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "ru_map",
+                    "histories", "loops", "grains_profiles", "grains_map", "grains_history")
+
+    def test_grains_without_profiles(self):
+        """What is left of a run is drawn: here the history at the output depths, and no r_u in profiles.h5."""
+        folder = fixture.grains(self.folder / "run")
+        shutil.rmtree(folder / "grain_profiles")
+        (folder / "profiles.h5").unlink()
+        self.expect(folder, "motions", "spectra", "transfer", "histories", "loops", "grains_history")
+
+    def test_sine_has_no_transfer_function(self):
+        folder = fixture.elastic(self.folder / "run", motion=fixture.sine)
+        self.expect(folder, "motions", "spectra", "profiles", "loops")
+
     def test_history_alone(self):
         """No scene, no profiles, no summary: notes, and the figures that history.csv is enough for."""
         folder = fixture.elastic(self.folder / "run")
@@ -165,6 +182,46 @@ class Figures(unittest.TestCase):
     def test_quantities(self):
         for text, value in (("5 m", 5), ("2.3 g/cm3", 2300), ("0.1 g", 0.980665), (7, 7), ("37.5 MPa", 37.5e6)):
             self.assertAlmostEqual(quantity(text) / value, 1)
+
+
+class Grains(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_column_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def test_read(self):
+        """From the surface down, p10 after p9; times by depths; no velocity, which the scene does not have."""
+        column = Column(fixture.grains(self.folder / "run"))
+        grains = column.grains.profiles
+        np.testing.assert_allclose(grains["depth"], column.profiles["depth"])
+        self.assertEqual(grains["IR"].shape, (len(grains["time"]), len(grains["depth"])))
+        ru = column.profiles["ru"]
+        np.testing.assert_allclose(grains["IR"], 2.1 - 1.1 * (ru / 0.9) ** 4, atol=1e-9)
+        self.assertEqual([prefix for _, prefix in column.grains.points], ["d0", "d1", "d2", "d3"])
+        self.assertIsNone(column.layers[0]["velocity"])
+        self.assertIsNone(column.uniform_elastic())
+
+    def test_none(self):
+        grains = Column(fixture.liquefaction(self.folder / "run")).grains
+        self.assertEqual((grains.points, grains.profiles), ([], {}))
+
+    def test_onset(self):
+        time = np.array([0.0, 0.5, 1.0])
+        self.assertEqual(first(time, np.array([False, True, False])), 0.5)
+        self.assertIsNone(first(time, np.zeros(3, dtype=bool)))
+
+    def test_outline(self):
+        """Of one cell its four sides, of a row along the edge of the map the side within."""
+        class Canvas:
+            def add_collection(self, lines):
+                self.sides = {tuple(sorted(map(tuple, side.tolist()))) for side in lines.get_segments()}
+        x, y, inside, canvas = np.arange(4.0), np.arange(4.0), np.zeros((3, 3), dtype=bool), Canvas()
+        inside[1, 1] = True
+        outline(canvas, x, y, inside)
+        self.assertEqual(canvas.sides, {((1, 1), (2, 1)), ((1, 2), (2, 2)), ((1, 1), (1, 2)), ((2, 1), (2, 2))})
+        inside[:] = [[True] * 3, [False] * 3, [False] * 3]
+        outline(canvas, x, y, inside)
+        self.assertEqual(canvas.sides, {((k, 1), (k + 1, 1)) for k in range(3)})
 
 
 class SimulatedMotion(unittest.TestCase):

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of the packings in a soil column: redundancy index, coordination number, fabric, yielding contacts."""
+import numpy as np
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from plots_column_soil import (LEAST_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
+                               pore_pressure_ratio, time_bar, time_norm, times_of_motion)
+from plots_common import BLACK, BLUE, GREEN, ORANGE, RED, panel_letter, plt
+
+ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
+LEAST_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
+YIELDING = (("f_S", "sliding (S)", BLUE), ("f_SR", "both (SR)", GREEN), ("f_R", "rolling (R)", ORANGE))
+
+
+def first(time, reached):
+    """The time from which on a condition is met for the first time, or None."""
+    return float(time[np.argmax(reached)]) if np.any(reached) else None
+
+
+def grains_profiles(column):
+    """Redundancy index, coordination number and fabric over the depth at several times."""
+    grains = column.grains.profiles
+    if "IR" not in grains:
+        return None
+    depth, time = grains["depth"], grains["time"]
+    specs = [(grains["IR"], "Redundancy index $I_R$", ISOSTATIC), (grains["Z"], "Coordination number $Z$", None),
+             (np.where(grains["Z"] >= LEAST_Z, grains["F_yx"], np.nan),
+              rf"Fabric $F_{{[v-h]}}$, where $Z \geq {LEAST_Z}$", 0.0)]
+    figure, panels = plt.subplots(1, 3, figsize=(9.0, 4.3), sharey=True, layout="constrained")
+    norm = time_norm(column)
+    wanted = [time[0], *times_of_motion(column, SHARES), time[-1]]
+    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+    time_bar(figure, panels, norm, time[-1])
+    for axes, (values, label, level), letter in zip(panels, specs, "abc"):
+        for row in chosen:
+            axes.plot(values[row], depth, ".-", color=TIMES(norm(time[row])), linewidth=0.9, markersize=3.5)
+        if level is not None:
+            axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+        axes.set_xlabel(label)
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+        panel_letter(axes, letter)
+        depth_axis(column, axes, depth)
+    for axes in panels[:2]:
+        axes.set_xlim(left=0)
+    panels[0].set_ylabel("Depth (m)")
+    return figure
+
+
+# --- map -------------------------------------------------------------------------------------------------------------
+
+
+def wet_cells(column):
+    """r_u as [depth x time] from the surface down, with its depths and times; None in a dry soil."""
+    ru = pore_pressure_ratio(column)
+    if ru is None or len(column.profiles["time"]) < 2:
+        return None
+    order = np.argsort(column.profiles["depth"])
+    return ru[:, order].T, column.profiles["depth"][order], column.profiles["time"]
+
+
+def draw_onset(axes, depth, time, reached, **style):
+    """When each depth gets there first."""
+    at = [(first(time, row), z) for row, z in zip(reached, depth) if row.any()]
+    axes.plot(*zip(*at) if at else ([], []), linestyle="none", **style)
+
+
+def grains_map(column):
+    """I_R over depth and time, below the motion, with the borders of I_R < 1 and r_u > 0.95; their onset beside it."""
+    grains = column.grains.profiles
+    if "IR" not in grains or len(grains["time"]) < 2:
+        return None
+    depth, time, ir = grains["depth"], grains["time"], grains["IR"].T
+    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    figure, ((top, corner), (axes, side)) = plt.subplots(
+        2, 2, figsize=(8.6, 4.9), sharex="col", height_ratios=(1, 2.6), width_ratios=(3.2, 1), layout="constrained")
+    draw_input(column, top)
+    x, y = edges(time, time[0], time[-1]), edges(depth, 0, bottom)
+    shade = axes.pcolormesh(x, y, ir, cmap="RdBu", rasterized=True,
+                            norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(ir)))))
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.02).set_label("Redundancy index $I_R$")
+    outline(axes, x, y, ir < ISOSTATIC, colors=BLACK, linewidths=1.0)
+    draw_onset(side, depth, time, ir < ISOSTATIC, marker="o", markersize=4, color=BLACK)
+    wet = wet_cells(column)
+    if wet:
+        ru, places, times = wet
+        outline(axes, edges(times, times[0], times[-1]), edges(places, 0, bottom), ru > LIQUEFIED_RU, colors=ORANGE,
+                linewidths=0.8)
+        draw_onset(side, places, times, ru > LIQUEFIED_RU, marker="o", markersize=7.5, color=ORANGE,
+                   markerfacecolor="none", markeredgewidth=1.3)
+    finish_map(column, (top, corner, axes, side), depth, time, wet)
+    return figure
+
+
+def finish_map(column, panels, depth, time, wet):
+    top, corner, axes, side = panels
+    corner.axis("off")
+    handles = [Line2D([], [], color=BLACK, marker="o", markersize=4, linewidth=1.2, label="$I_R$ = 1")]
+    if wet:
+        handles.append(Line2D([], [], color=ORANGE, marker="o", markersize=7.5, markerfacecolor="none", linewidth=1.2,
+                              label=f"$r_u$ = {LIQUEFIED_RU}"))
+    corner.legend(handles=handles, loc="center")
+    for each in (axes, side):
+        depth_axis(column, each, depth)
+        each.set_xlabel("Time (s)")
+    side.tick_params(labelleft=False)
+    side.set_xlim(time[0], time[0] + 1.12 * max(side.dataLim.x1 - time[0], 0.05 * (time[-1] - time[0])))
+    side.set_title("first time", loc="right", fontsize=9, pad=5)
+    axes.grid(False)
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("Depth (m)")
+    for each, letter in zip((top, axes, side), "abc"):
+        panel_letter(each, letter)
+
+
+# --- output depths ---------------------------------------------------------------------------------------------------
+
+
+def marked(axes, time, values, at, colour):
+    """A dot on a curve."""
+    if at is not None:
+        axes.plot(at, np.interp(at, time, values), "o", color=colour, markersize=4.5, markeredgecolor=BLACK,
+                  markeredgewidth=0.6, zorder=6)
+
+
+def onsets(column, prefix):
+    """When I_R falls below 1 for the first time and when r_u exceeds 0.95, at an output depth."""
+    ir = first(column.grains.columns["time"], column.grains.columns[f"{prefix}_IR"] < ISOSTATIC)
+    wet = column.has(f"{prefix}_ru")
+    return ir, first(column.time, column[f"{prefix}_ru"] > LIQUEFIED_RU) if wet else None
+
+
+def draw_redundancy(column, axes, points, shades):
+    grains = column.grains.columns
+    for (depth, prefix), shade in zip(points, shades):
+        axes.plot(grains["time"], grains[f"{prefix}_IR"], color=shade, linewidth=0.9, label=f"{depth:g} m")
+        marked(axes, grains["time"], grains[f"{prefix}_IR"], onsets(column, prefix)[0], shade)
+    axes.axhline(ISOSTATIC, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("Redundancy index $I_R$")
+    axes.set_title("dots: below 1 for the first time", loc="right", fontsize=8.5, pad=5)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0)
+
+
+def draw_ratio(column, axes, points, shades):
+    for (_, prefix), shade in zip(points, shades):
+        if column.has(f"{prefix}_ru"):
+            axes.plot(column.time, column[f"{prefix}_ru"], color=shade)
+            marked(axes, column.time, column[f"{prefix}_ru"], onsets(column, prefix)[1], shade)
+    axes.axhline(LIQUEFIED_RU, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    axes.set_ylim(min(0, axes.get_ylim()[0]), max(1.02, axes.get_ylim()[1]))
+    axes.set_ylabel("Pore pressure ratio $r_u$")
+    axes.set_title(f"dots: above {LIQUEFIED_RU} for the first time", loc="right", fontsize=8.5, pad=5)
+
+
+def draw_yielding(column, axes, depth, prefix):
+    """Stacked shares of the contacts that yield."""
+    grains = column.grains.columns
+    shares = [np.nan_to_num(grains[f"{prefix}_{name}"]) for name, _, _ in YIELDING]
+    axes.stackplot(grains["time"], shares, labels=[label for _, label, _ in YIELDING], linewidth=0,
+                   colors=[colour for _, _, colour in YIELDING], rasterized=True)
+    onset = onsets(column, prefix)[0]
+    if onset is not None:
+        axes.axvline(onset, color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)), label="first $I_R$ < 1")
+    axes.set_ylim(0, 1)
+    axes.set_yticks([0, 0.5, 1])
+    axes.annotate(f"{depth:g} m", (1.005, 0.5), xycoords="axes fraction", xytext=(2, 0), textcoords="offset points",
+                  ha="left", va="center", fontsize=9)
+
+
+def grains_history(column):
+    """Redundancy index and r_u at the output depths; the shares of the contacts that yield, a panel for each."""
+    grains = column.grains
+    points = [(depth, prefix) for depth, prefix in grains.points if f"{prefix}_IR" in grains.columns]
+    if not points or len(grains.columns["time"]) < 2:
+        return None
+    wet = any(column.peak(f"{prefix}_ru") > LEAST_RU for _, prefix in points)
+    n, shades = len(points), plt.get_cmap("plasma")(np.linspace(0.0, 0.85, len(points)))
+    figure, panels = plt.subplots(1 + wet + n, 1, figsize=(7.2, 2.1 * (1 + wet) + 0.95 * n + 0.7), sharex=True,
+                                  height_ratios=[2.1] * (1 + wet) + [0.95] * n, layout="constrained")
+    draw_redundancy(column, panels[0], points, shades)
+    if wet:
+        draw_ratio(column, panels[1], points, shades)
+    for axes, (depth, prefix) in zip(panels[1 + wet:], points):
+        draw_yielding(column, axes, depth, prefix)
+    known = {text: handle for axes in panels[1 + wet:] for handle, text in zip(*axes.get_legend_handles_labels())}
+    panels[1 + wet].legend(known.values(), known.keys(),
+                           loc="lower right", bbox_to_anchor=(1, 1), ncols=4, borderaxespad=0.1, handlelength=1.4)
+    panels[1 + wet + (n - 1) // 2].set_ylabel("Share of the contacts")
+    for axes, letter in zip(panels[:2 + wet], "abc"):
+        panel_letter(axes, letter)
+    panels[-1].set_xlim(grains.columns["time"][0], grains.columns["time"][-1])
+    panels[-1].set_xlabel("Time (s)")
+    return figure
