@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# A small specimen liquefies: builds the release preset, runs an undrained cyclic test and lists the figures it made.
+# A small specimen liquefies, then a deposit of ten of them: builds the release preset, runs an undrained cyclic test and a
+# soil column with grains at its Gauss points, and lists the figures they made.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 results=results/demo
 scripts/setup.sh
 cmake --preset release
-cmake --build --preset release --parallel "$(nproc)" --target element_test
+cmake --build --preset release --parallel "$(nproc)" --target element_test specimen_library soil_column
 build/release/bin/element_test apps/scenes/quick_cyclic_liquefies.toml --output "$results" --overwrite
 
 # The application draws its own figures; draw them here if it could not.
@@ -17,5 +18,11 @@ for figure in fig_stress_path fig_redundancy fig_contact_fractions fig_fabric; d
     break
   fi
 done
+
+# Specimens of 300 grains, then the column that is made of them; the scene looks for them in results/.
+build/release/bin/specimen_library apps/scenes/rve_library.toml --output results/quick_library.h5 --append \
+  --pressures "20 kPa,100 kPa" --set contact.young="1 GPa" --set grading.grains=300 --set grading.cloud_edge="3.107 mm"
+build/release/bin/soil_column apps/scenes/column/quick_grains_10m.toml --output results/demo_column --overwrite
+
 echo "figures:"
-ls -1 "$results"/figures/*.png
+ls -1 "$results"/figures/*.png results/demo_column/figures/*.png
