@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""soil_column with packings of grains at its Gauss points: ranks and threads, kills, rest, failures, a full disk,
-mistakes, dissipation. A few packings of 250 grains, shaken until they liquefy within 0.3 s."""
+"""soil_column with packings of grains at its Gauss points: a few of 250 grains, shaken until they liquefy in 0.3 s."""
 import contextlib
 import errno
 import json
@@ -112,8 +111,6 @@ class Bits(GrainColumnTest):
             self.assert_same_bytes("whole", f"on{n}")
         self.assert_done(self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2))
         self.assert_same_bytes("whole", "threads")
-        self.assert_done(self.run_on_ranks(2, self.scene, "-o", "both", "-q", "--threads", 2))
-        self.assert_same_bytes("whole", "both")
 
     def stop(self, n, with_signal, wait, *more):
         """Starts n ranks; one of them gets a signal `wait` seconds after the first checkpoint of this run."""
