@@ -91,12 +91,12 @@ TEST(RveColumn, OneElementIsThePackingAloneToTheBit)
   RveMaterial packing({specimen}, {}, MPI_COMM_SELF);
   Recording material(packing);
   DynamicsSettings settings{.safety = 0.5, .drainage = Drainage::undrained};
-  settings.base.motion[0] = harmonic_motion(20, 4, 2, 0.2, 1e-3);
+  settings.base.motion[0] = harmonic_motion(45, 4, 2, 0.2, 1e-3);
   Dynamics<1> run(space, material, settings);
   Rve alone(specimen, {}); // in its own axes, as an element test
   const Mat3 frame = column_frame();
   double least_pressure = 1e300, largest = 0;
-  for (int k = 0; k < 250; ++k)
+  for (int k = 0; k < 380; ++k)
     {
       run.step();
       const Mat3 h = to_matrix(material.increments.back()[0]);
