@@ -128,10 +128,12 @@ void Dynamics<dim>::find_loads()
       for (unsigned i : loaded_)
         load_.local_element(i) += surface_.local_element(i) * traction[i % 3];
     }
-  std::copy(minus_reference_.begin(), minus_reference_.begin() + minus_reference_.locally_owned_size(), force_.begin());
-  if (space_.shared_out())
-    force_.zero_out_ghost_values();
+  force_ = 0;
   space_.add_internal_force(stresses_, force_);
+  // the difference of two whole sums: zero to the bit as long as the stresses are those of the start
+  const std::size_t n = force_.locally_owned_size();
+  for (std::size_t i = 0; i < n; ++i)
+    force_.local_element(i) += minus_reference_.local_element(i);
 }
 
 /// From the velocity at the start to the one half a step before.

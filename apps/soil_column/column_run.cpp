@@ -21,6 +21,25 @@ Discretisation<dim> column_mesh(const ColumnScene &scene, const Supports &suppor
   return Discretisation<dim>(mesh, supports, scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
 }
 
+DynamicsSettings dynamics_settings(const ColumnScene &scene, const std::array<Motion, 3> &motions)
+{
+  DynamicsSettings settings;
+  settings.time_step = scene.analysis.time_step.value_or(0);
+  settings.safety = scene.analysis.safety;
+  settings.mass_damping = scene.analysis.mass_damping;
+  settings.drainage = scene.water.drainage;
+  settings.lagged_compressibility = scene.water.lagged_compressibility;
+  settings.base = {scene.base.kind == BaseKind::compliant, scene.base.density, scene.base.shear_velocity,
+                   scene.base.rock_p_velocity(), motions};
+  if (scene.load.kind != LoadKind::none)
+    settings.surface_traction = [load = scene.load](double t) {
+      std::array<double, 3> traction = {};
+      traction[static_cast<std::size_t>(load.direction)] = load.traction(t);
+      return traction;
+    };
+  return settings;
+}
+
 std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request)
 {
   if (!request.resume)
@@ -82,11 +101,19 @@ template <int dim>
 void fail(const RunFailure &failure, std::uint64_t step, double time, const Discretisation<dim> &space,
           ColumnFiles<dim> &files)
 {
-  const std::string what =
+  std::string what =
       fmt::format("step {} (t = {:.6g} s): {}\n  {}", step, time, failure.what(), files.last_checkpoint());
   if (space.shared_out())
     abort_all(what.c_str());
-  files.flush();
+  try
+    {
+      files.flush();
+    }
+  catch (const std::exception &error) // the disk is full, say
+    {
+      if (what.find(error.what()) == std::string::npos)
+        what += fmt::format("\n  and then: {}", error.what());
+    }
   throw RunFailure(what);
 }
 

@@ -38,6 +38,7 @@ RunResult run_consolidation(const RunRequest &request);
 /// What both kinds of run share.
 template <int dim>
 Discretisation<dim> column_mesh(const ColumnScene &scene, const Supports &supports);
+DynamicsSettings dynamics_settings(const ColumnScene &scene, const std::array<Motion, 3> &motions);
 /// The newest checkpoint; null if the run starts anew.
 /// @throws InputError  none there, or it belongs to another scene
 std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request);

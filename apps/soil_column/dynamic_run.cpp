@@ -15,25 +15,6 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 3> &motions)
-{
-  DynamicsSettings settings;
-  settings.time_step = scene.analysis.time_step.value_or(0);
-  settings.safety = scene.analysis.safety;
-  settings.mass_damping = scene.analysis.mass_damping;
-  settings.drainage = scene.water.drainage;
-  settings.lagged_compressibility = scene.water.lagged_compressibility;
-  settings.base = {scene.base.kind == BaseKind::compliant, scene.base.density, scene.base.shear_velocity,
-                   scene.base.rock_p_velocity(), motions};
-  if (scene.load.kind != LoadKind::none)
-    settings.surface_traction = [load = scene.load](double t) {
-      std::array<double, 3> traction = {};
-      traction[static_cast<std::size_t>(load.direction)] = load.traction(t);
-      return traction;
-    };
-  return settings;
-}
-
 /// Whole steps between two outputs.
 std::uint64_t steps_between(double interval, double time_step)
 {
@@ -55,17 +36,13 @@ private:
   {
     return interval && run_.n_steps() % steps_between(*interval, run_.time_step()) == 0;
   }
-  void save()
-  {
-    files_.save(run_.save(), follower_.peaks, grain_counters());
-    last_checkpoint_ = Clock::now();
-  }
+  void save();
+  void write(const std::function<void()> &task);
   void look_at_grains(bool row, bool profile);
   std::map<std::string, double> grain_counters();
   std::vector<double> depths() const;
   bool checkpoint_due() const;
   void add_grains(ColumnSummary &summary);
-  std::array<double, 2> grain_velocities() const;
   void look_around();
   RunResult result();
 
@@ -93,7 +70,7 @@ DynamicRun<dim>::DynamicRun(const RunRequest &request)
     : request_(request), scene_(request.scene), motions_(column_motions(scene_)),
       space_(column_mesh<dim>(scene_, shaken_supports<dim>(scene_.base.kind == BaseKind::compliant))),
       soil_(soil_material(scene_, space_, request.threads)), material_(std::move(soil_.material)),
-      run_(space_, material_, settings_of(scene_, motions_)), files_(request.folder, scene_, space_, motions_),
+      run_(space_, material_, dynamics_settings(scene_, motions_)), files_(request.folder, scene_, space_, motions_),
       follower_(space_, files_.line(), files_.history().vertical_stress()), resumed_(checkpoint_of(request)),
       last_step_(static_cast<std::uint64_t>(std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12))))
 {
@@ -110,7 +87,7 @@ void DynamicRun<dim>::start()
 {
   open_folder(request_);
   if (soil_.grains && !scene_.mesh.distributed)
-    grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths());
+    grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths(), resumed_.get());
   on_first_rank([&] {
     files_.open(resumed_.get());
     if (grain_files_)
@@ -118,7 +95,7 @@ void DynamicRun<dim>::start()
   });
   if (soil_.grains)
     {
-      velocities_ = grain_velocities();
+      velocities_ = grain_velocities(soil_, space_);
       if (ranks().first() && !request_.quiet)
         fmt::print(stderr, "{} packings, V_s {:.0f} to {:.0f} m/s\n", soil_.grains->owners().size(), velocities_[0],
                    velocities_[1]);
@@ -147,12 +124,46 @@ void DynamicRun<dim>::step()
   times_.solver += seconds_since(begin);
   ++times_.steps;
   follower_.follow(run_);
-  if (row)
-    files_.record(instant_);
-  if (profile)
-    files_.profile(instant_);
-  if (paraview)
-    files_.paraview(instant_);
+  if (row || profile || paraview)
+    write([&] {
+      if (row)
+        files_.record(instant_);
+      if (profile)
+        files_.profile(instant_);
+      if (paraview)
+        files_.paraview(instant_);
+    });
+}
+
+/// Files that one rank alone writes, or fails to write: all stop then.
+template <int dim>
+void DynamicRun<dim>::write(const std::function<void()> &task)
+{
+  if (!space_.shared_out())
+    return together(task);
+  try
+    {
+      task(); // has collective calls
+    }
+  catch (const std::exception &error)
+    {
+      throw RunFailure(error.what());
+    }
+}
+
+template <int dim>
+void DynamicRun<dim>::save()
+{
+  try
+    {
+      DynamicsState state = run_.save();
+      write([&] { files_.save(std::move(state), follower_.peaks, grain_counters()); });
+    }
+  catch (const RunFailure &failure)
+    {
+      fail(failure, run_.n_steps(), run_.time(), space_, files_);
+    }
+  last_checkpoint_ = Clock::now();
 }
 
 /// Grains as they are before the step.
@@ -244,22 +255,6 @@ void DynamicRun<dim>::add_grains(ColumnSummary &summary)
   times_.in_packings = cost.busiest_seconds;
   times_.all_packings = cost.rve_seconds;
   times_.waves = cost.wave_seconds;
-}
-
-/// Least and greatest shear wave velocity of the points with grains, m/s.
-template <int dim>
-std::array<double, 2> DynamicRun<dim>::grain_velocities() const
-{
-  std::vector<WaveModuli> moduli(soil_.grains->n_points());
-  soil_.grains->wave_moduli(moduli);
-  std::array<double, 2> range = {1e300, 0};
-  for (std::size_t k = 0; k < moduli.size(); ++k)
-    {
-      const std::size_t layer = space_.cell_layer[soil_.grains_places[k] / space_.points_per_cell()];
-      const double velocity = std::sqrt(moduli[k].s / space_.mesh().soil.layers[layer].density);
-      range = {std::min(range[0], velocity), std::max(range[1], velocity)};
-    }
-  return range;
 }
 
 template <int dim>

@@ -50,9 +50,14 @@ std::size_t counter(const ColumnCheckpoint *checkpoint, const std::string &name)
 }
 } // namespace
 
-GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil, std::vector<double> depths)
-    : folder_(std::move(folder)), grains_(*soil.grains), from_above_(soil.grains_places.size())
+GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil, std::vector<double> depths,
+                       const ColumnCheckpoint *resumed)
+    : folder_(std::move(folder)), grains_(*soil.grains), from_above_(soil.grains_places.size()),
+      n_snapshots_(counter(resumed, "grain_snapshots"))
 {
+  if (resumed)
+    least_ = {resumed->numbers.at("least_IR"), resumed->numbers.at("least_IR_depth"),
+              resumed->numbers.at("least_IR_time")};
   for (std::size_t place : soil.grains_places)
     depths_.push_back(depths[place]);
   std::iota(from_above_.begin(), from_above_.end(), 0);
@@ -79,10 +84,6 @@ void GrainFiles::open(const ColumnCheckpoint *resumed)
     }
   history_ = std::make_unique<Recorder>(folder_ / "grain_history", history, counter(resumed, "grain_rows"));
   profiles_ = std::make_unique<Recorder>(folder_ / "grain_profiles", profiles, counter(resumed, "grain_profiles"));
-  n_snapshots_ = counter(resumed, "grain_snapshots");
-  if (resumed)
-    least_ = {resumed->numbers.at("least_IR"), resumed->numbers.at("least_IR_depth"),
-              resumed->numbers.at("least_IR_time")};
   if (pictured_.empty())
     return;
   fs::create_directories(folder_ / "grains");
@@ -95,12 +96,14 @@ std::vector<double> GrainFiles::measured(const std::vector<std::size_t> &points)
 {
   const std::size_t width = Micromechanics::columns().size();
   std::vector<double> values(points.size() * width, 0.0);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    if (const Rve *element = grains_.element(points[k]))
-      {
-        const std::vector<double> row = micromechanics(element->snapshot()).row();
-        std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * width));
-      }
+  together([&] {
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (const Rve *element = grains_.element(points[k]))
+        {
+          const std::vector<double> row = micromechanics(element->snapshot()).row();
+          std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * width));
+        }
+  });
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
   return values; // all but the owner added zeros: exact
 }
@@ -118,8 +121,10 @@ void GrainFiles::record(std::uint64_t step, double time)
       row.insert(row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * width),
                  values.begin() + static_cast<std::ptrdiff_t>((k + 1) * width));
     }
-  if (history_)
-    history_->append(row);
+  together([&] {
+    if (history_)
+      history_->append(row);
+  });
 }
 
 void GrainFiles::profile(std::uint64_t step, double time)
@@ -135,14 +140,22 @@ void GrainFiles::profile(std::uint64_t step, double time)
       if (const double ir = values[k * width + redundancy]; ir < least_.redundancy)
         least_ = {ir, depths_[from_above_[k]], time};
     }
-  if (profiles_)
-    profiles_->append(row);
+  together([&] {
+    if (profiles_)
+      profiles_->append(row);
+  });
 }
 
 void GrainFiles::snapshots(double time)
 {
   if (pictured_.empty())
     return;
+  together([&] { write_packings(time); });
+  ++n_snapshots_;
+}
+
+void GrainFiles::write_packings(double time)
+{
   for (std::size_t k = 0; k < pictured_.size(); ++k)
     if (const Rve *element = grains_.element(pictured_[k]))
       {
@@ -155,7 +168,6 @@ void GrainFiles::snapshots(double time)
       }
   for (std::size_t k = 0; k < pictures_.size(); ++k)
     pictures_[k]->append(time, fmt::format("d{}_{:05d}.vtp", k, n_snapshots_));
-  ++n_snapshots_;
 }
 
 void GrainFiles::flush()

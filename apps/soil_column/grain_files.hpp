@@ -19,16 +19,16 @@ namespace isostat
 class GrainFiles
 {
 public:
-  /// @param depths  of the points of the mesh, m
+  /// On every rank.   @param depths  of the points of the mesh, m   @param resumed  null: start anew
   GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
-             std::vector<double> depths);
+             std::vector<double> depths, const ColumnCheckpoint *resumed);
 
-  /// On the rank that writes.   @param resumed  null: start anew
+  /// On the rank that writes, but for snapshots.   @param resumed  null: start anew
   void open(const ColumnCheckpoint *resumed);
-  /// Rows.   Collective; before the step that starts at `time`.
+  /// Rows.   Collective; before the step that starts at `time`.   @throws RunFailure  on all ranks
   void record(std::uint64_t step, double time);
   void profile(std::uint64_t step, double time);
-  /// Whole packings, each written by the rank that has it.
+  /// Whole packings, each written by the rank that has it.   Collective.   @throws RunFailure  on all ranks
   void snapshots(double time);
   void flush();
   /// What a checkpoint has to keep.
@@ -41,6 +41,7 @@ public:
   const Least &least() const { return least_; }
 
 private:
+  void write_packings(double time);
   std::vector<double> measured(const std::vector<std::size_t> &points) const;
 
   std::filesystem::path folder_;
@@ -49,7 +50,7 @@ private:
   std::vector<std::size_t> from_above_; ///< points of grains_ from the surface down
   std::vector<std::size_t> chosen_;     ///< nearest to output.depths
   std::vector<std::size_t> pictured_;   ///< nearest to grains.snapshot_depths
-  std::uint64_t n_snapshots_ = 0;
+  std::uint64_t n_snapshots_;           ///< the same on every rank
   std::unique_ptr<Recorder> history_, profiles_;
   std::vector<std::unique_ptr<PvdCollection>> pictures_;
   Least least_;

@@ -64,6 +64,30 @@ void on_first_rank(const std::function<void()> &task)
     throw RunFailure(what);
 }
 
+void together(const std::function<void()> &task)
+{
+  const Ranks all = ranks();
+  int lowest = all.size;
+  std::string what;
+  try
+    {
+      task();
+    }
+  catch (const std::exception &error)
+    {
+      lowest = all.rank;
+      what = error.what();
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (lowest == all.size)
+    return;
+  auto length = static_cast<int>(what.size());
+  MPI_Bcast(&length, 1, MPI_INT, lowest, MPI_COMM_WORLD);
+  what.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(what.data(), length, MPI_CHAR, lowest, MPI_COMM_WORLD);
+  throw RunFailure(what);
+}
+
 bool on_any_rank(bool here)
 {
   int flag = here;

@@ -19,6 +19,10 @@ void silence_others();
 /// `task` on the first rank; the others wait. What it throws is thrown on all ranks.   Collective.
 void on_first_rank(const std::function<void()> &task);
 
+/// `task` on every rank, without any call to another one. What it throws on one, the lowest of these, is thrown on all
+/// as RunFailure.   Collective.
+void together(const std::function<void()> &task);
+
 /// True on all ranks if it is on one.   Collective.
 bool on_any_rank(bool here);
 

@@ -4,6 +4,8 @@
 #include "base/error.hpp"
 #include "fem/patchwork.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -77,6 +79,24 @@ SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &
   return soil;
 }
 
+template <int dim>
+std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space)
+{
+  std::vector<WaveModuli> moduli(soil.grains->n_points());
+  soil.grains->wave_moduli(moduli);
+  std::array<double, 2> range = {1e300, 0};
+  for (std::size_t k = 0; k < moduli.size(); ++k)
+    {
+      const std::size_t layer = space.cell_layer[soil.grains_places[k] / space.points_per_cell()];
+      const double velocity = std::sqrt(moduli[k].s / space.mesh().soil.layers[layer].density);
+      range = {std::min(range[0], velocity), std::max(range[1], velocity)};
+    }
+  return range;
+}
+
+template std::array<double, 2> grain_velocities<1>(const SoilMaterial &, const Discretisation<1> &);
+template std::array<double, 2> grain_velocities<2>(const SoilMaterial &, const Discretisation<2> &);
+template std::array<double, 2> grain_velocities<3>(const SoilMaterial &, const Discretisation<3> &);
 template SoilMaterial soil_material<1>(const ColumnScene &, const Discretisation<1> &, int);
 template SoilMaterial soil_material<2>(const ColumnScene &, const Discretisation<2> &, int);
 template SoilMaterial soil_material<3>(const ColumnScene &, const Discretisation<3> &, int);

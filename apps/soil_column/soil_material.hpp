@@ -18,4 +18,8 @@ struct SoilMaterial
 /// @throws InputError  no such specimens, a stress that a layer cannot bear   @throws RunFailure  stress not reached
 template <int dim>
 SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads);
+
+/// Least and greatest shear wave velocity of the points with grains, m/s.   Collective.
+template <int dim>
+std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space);
 } // namespace isostat

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""soil_column with packings of grains at its Gauss points: a few of 250 grains, shaken until they liquefy in 0.3 s."""
+import contextlib
+import errno
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from column_support import NO_FILES, ColumnTest, history, settings
+from support import contents, main
+
+SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
+GRAINS = """title = "grains"
+[mesh]
+degree = 1
+[water]
+drainage = "undrained"
+[[layer]]
+thickness = "3 m"
+cells = 5
+density = "1970 kg/m3"
+porosity = 0.41
+material = "grains"
+relative_density = 0.5
+[grains]
+library = "{cache}/library.h5"
+cache = "{cache}/in_situ.h5"
+snapshot_depths = ["1 m", "2.5 m"]
+snapshot_interval = "0.1 s"
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.6 g"
+frequency = "5 Hz"
+duration = "0.4 s"
+[load]
+surcharge = "10 kPa"
+[analysis]
+kind = "dynamic"
+duration = "0.3 s"
+safety = 0.7
+[output]
+history_interval = "0.005 s"
+depths = ["0.5 m", "2 m"]
+profile_interval = "0.01 s"
+paraview_interval = "0.1 s"
+checkpoint = "1e-9 min"
+"""
+
+
+class GrainColumnTest(ColumnTest):
+    """Specimens are made once for all tests, and brought to their stress in situ once."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("grains.toml", GRAINS.format(cache=self.cache))
+        if not (self.cache / "library.h5").exists():
+            self.assert_done(self.run_app(
+                "specimen_library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
+                *settings(grading__grains=250, grading__cloud_edge="2.924 mm")))  # 10 mm x (250/10000)^(1/3)
+
+    def whole(self):
+        """The folder `whole`, of a run without any disturbance."""
+        if not (self.cache / "whole").exists():
+            self.assert_done(self.run_column(self.scene, "-o", self.cache / "whole", "-q"))
+        shutil.copytree(self.cache / "whole", self.folder / "whole")
+
+    def command_on_ranks(self, n, *arguments):
+        return ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
+
+    def files(self, folder):
+        """Bytes of all results. An older checkpoint may be there or not."""
+        return {name: data for name, data in contents(self.folder / folder).items()
+                if name not in NO_FILES | {"checkpoint/previous.h5"}}
+
+    def assert_same_bytes(self, one, other):
+        left, right = self.files(one), self.files(other)
+        self.assertEqual(sorted(left), sorted(right))
+        for name, data in left.items():
+            self.assertEqual(data, right[name], f"{one}, {other}: {name}")
+
+
+class Bits(GrainColumnTest):
+
+    def test_ranks_and_threads(self):
+        self.whole()
+        summary = json.loads((self.folder / "whole/summary.json").read_text(encoding="utf-8"))
+        names = set(self.files("whole"))
+        self.assertLessEqual({"history.csv", "history.h5", "profiles.h5", "grain_history/history.csv",
+                              "grain_history/history.h5", "grain_profiles/history.h5", "grains/d0_00002.h5",
+                              "grains/d1_00002.vtp", "paraview/column_00002.vtu", "summary.json",
+                              "checkpoint/last.h5"}, names)
+        self.assertGreater(summary["max_ru"], 0.95)
+        self.assertGreater(summary["peak_gamma"], 0.01)
+        for n in (1, 2, 3, 4):
+            result = self.run_on_ranks(n, self.scene, "-o", f"on{n}")
+            self.assert_done(result)
+            self.assertEqual(result.stdout.count("peak shear strain"), 1)
+            self.assert_same_bytes("whole", f"on{n}")
+        self.assert_done(self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2))
+        self.assert_same_bytes("whole", "threads")
+
+    def stop(self, n, with_signal, wait, *more):
+        """Starts n ranks; one of them gets a signal `wait` seconds after the first checkpoint of this run."""
+        last, begin = self.folder / "parts/checkpoint/last.h5", time.time()
+        with subprocess.Popen(self.command_on_ranks(n, self.scene, "-o", "parts", "-q", *more), cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            while process.poll() is None and time.time() < begin + 60:
+                with contextlib.suppress(FileNotFoundError):
+                    if last.stat().st_mtime > begin:
+                        break
+                time.sleep(0.002)
+            time.sleep(wait)
+            with contextlib.suppress(ProcessLookupError, FileNotFoundError):
+                ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
+                os.kill(int(ranks.split()[-1]), with_signal)
+            _, message = process.communicate(timeout=60)
+        return process.returncode, message
+
+    def test_kills_and_other_ranks(self):
+        self.whole()
+        moments, killed = random.Random(20240229), 0
+        for k, n in enumerate((2, 3, 1, 4, 2)):
+            code, _ = self.stop(n, signal.SIGKILL, moments.uniform(0.02, 0.3), *(["--resume"] if k else []))
+            killed += code == 128 + signal.SIGKILL
+        self.assertGreaterEqual(killed, 3)
+        self.assert_done(self.run_on_ranks(3, self.scene, "-o", "parts", "-q", "--resume"))
+        self.assert_same_bytes("whole", "parts")
+
+    def test_sigterm(self):
+        self.whole()
+        code, message = self.stop(2, signal.SIGTERM, 0.1)
+        self.assertEqual(code, 130, message)
+        self.assertEqual(len(re.findall(r"interrupted at step \d+; go on with --resume", message)), 1)
+        self.assert_done(self.run_on_ranks(1, self.scene, "-o", "parts", "-q", "--resume"))
+        self.assert_same_bytes("whole", "parts")
+
+
+class Rest(GrainColumnTest):
+    """10,000 steps without motion."""
+
+    LONG = settings(analysis__duration="35 s", output__history_interval="0.1 s", output__profile_interval="5 s",
+                    output__paraview_interval="100 s", grains__snapshot_interval="100 s", output__checkpoint="10 min")
+
+    def rest(self, *more):
+        result = self.run_column(self.scene, "-o", "rest", "-q", "--overwrite", *self.LONG, *more)
+        self.assert_done(result)
+        rows = history(self.folder / "rest")
+        self.assertGreater(rows["step"][-1], 10000)
+        return rows, float(re.search(r"calls, ([\d.]+) time steps each", result.stdout).group(1))
+
+    def test_frozen_column_stays_still_to_the_bit(self):
+        self.scene = self.write("frozen.toml", re.sub(r"\[\[motion\]\][^\[]*", "", GRAINS.format(cache=self.cache)))
+        rows, steps = self.rest()
+        for name in ("surface_ux", "surface_uy", "surface_uz", "surface_ax", "d0_u", "d1_u", "d1_gamma_xz"):
+            self.assertEqual(np.abs(rows[name]).max(), 0, name)
+        for name in ("d0_sigma_v", "d1_sigma_v", "d0_tau_xz", "d1_p"):
+            self.assertEqual(np.ptp(rows[name]), 0, name)
+        self.assertEqual(steps, 0)  # of grains
+
+    def test_touched_column_settles_down(self):
+        """A touch of 1e-6 g sets the grains going; what they had left of unbalanced forces dies away."""
+        rows, steps = self.rest(*settings(motion__0__amplitude="1e-6 g"))
+        self.assertGreater(steps, 0.9)
+        for name in ("surface_ux", "surface_uy"):
+            self.assertLess(np.abs(rows[name]).max(), 2e-7, name)  # m; 4e-8 measured
+        for name in ("d0_sigma_v", "d1_sigma_v"):
+            self.assertLess(np.ptp(rows[name]), 2e-4 * rows[name][0], name)  # 7e-5 measured
+        for name in ("d0_tau_xz", "d1_tau_xz"):
+            self.assertLess(np.ptp(rows[name]), 3, name)  # Pa, of 13 and 30 kPa vertical stress; 0.5 measured
+        late = rows["time"] > 25
+        for name in ("surface_ux", "surface_uy"):
+            self.assertLess(np.ptp(rows[name][late]), 3e-8, name)
+
+
+class Failures(GrainColumnTest):
+    def fail(self, point, *more):
+        result = self.run_on_ranks(2, self.scene, "-o", "out", "--overwrite", "-q", *settings(layer__0__cells=4), *more)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("failed: "), 1)
+        self.assertRegex(result.stderr, rf"failed: step \d+ \(t = [\d.]+ s\): rve: point {point}: an increment .*\n"
+                         r"  last good checkpoint: out/checkpoint/last.h5\n")
+        with h5py.File(self.folder / "out/checkpoint/last.h5") as file:
+            self.assertGreater(file.attrs["step"], 0)
+
+    def test_packing_of_the_first_rank(self):
+        self.fail(0, *settings(motion__0__amplitude="1e5 g"))
+
+    def test_packing_of_another_rank(self):
+        self.fail(3, *settings(load__kind="harmonic", load__direction="x", load__amplitude="1 GPa",
+                               load__frequency="5 Hz"))
+
+    def test_full_disk(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "tmpfs", disk], check=False,
+                          capture_output=True).returncode != 0:
+            self.skipTest("no right to mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", "-l", disk], check=False)
+        self.whole()
+        for n in (1, 2):
+            with self.subTest(ranks=n):
+                self.fill_while_running(n, disk)
+
+    def fill_while_running(self, n, disk):
+        run = ("-o", "disk/out", "-q")
+        with subprocess.Popen(self.command_on_ranks(n, self.scene, *run, "--overwrite"), cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            last, end = disk / "out/checkpoint/last.h5", time.time() + 60
+            while process.poll() is None and time.time() < end and not last.exists():
+                time.sleep(0.002)
+            with open(disk / "filler", "wb", buffering=0) as filler:
+                try:
+                    while True:
+                        filler.write(b"\0" * 4096)
+                except OSError as error:
+                    self.assertEqual(error.errno, errno.ENOSPC)
+            _, message = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, message)
+        self.assertEqual(message.count("failed: "), 1, message)
+        self.assertRegex(message, r"failed: step \d+ \(t = [\d.]+ s\): disk/out/.*free space")
+        self.assertIn("last good checkpoint: disk/out/checkpoint/last.h5", message)
+        (disk / "filler").unlink()
+        self.assert_done(self.run_on_ranks(3 - n, self.scene, *run, "--resume"))
+        self.assert_same_bytes("whole", "disk/out")
+
+
+class Mistakes(GrainColumnTest):
+    def refuse(self, parts, *arguments, scene=None):
+        result = self.run_column(scene or self.scene, "-o", "out", "-q", *arguments)
+        self.assert_refused(result, *parts)
+        self.assertEqual(contents(self.folder / "out"), {})
+
+    def test_library(self):
+        self.refuse(["grains.library", "nowhere.h5", "is not there"], *settings(grains__library="nowhere.h5"))
+        self.refuse(["grains.toml", "not an HDF5 file"], *settings(grains__library="grains.toml"))
+        self.refuse(["0 realisations", "of 0.9", "specimen_library --append", "s0001"],
+                    *settings(layer__0__relative_density=0.9))
+        self.refuse(["1 realisations", "needs 3", "specimen_library --append"], *settings(layer__0__realisation=2))
+        result = self.run_on_ranks(2, self.scene, "-o", "out", *settings(layer__0__relative_density=0.9))
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stderr.count("error: "), 1, result.stderr)
+
+    def test_scene(self):
+        text = GRAINS.format(cache=self.cache)
+        for old, new, *parts in (
+                ('material = "grains"\nrelative_density = 0.5', 'material = "elastic"\nshear_velocity = "150 m/s"',
+                 "grains", "no layer has material"),
+                ('relative_density = 0.5', 'relative_density = 0.5\nshear_velocity = "150 m/s"', "shear_velocity",
+                 "does not belong"),
+                (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "specimen_library"),
+                ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths", "4 m does not"),
+                ('depths = ["0.5 m", "2 m"]', 'depths = ["4 m"]', "output.depths", "4 m"),
+                ('drainage = "undrained"', 'drainage = "coupled"', "degree = 2")):
+            self.assertIn(old, text)
+            self.refuse([*parts, "changed.toml:"], scene=self.write("changed.toml", text.replace(old, new, 1)))
+
+    def test_too_little_stress(self):
+        self.refuse(["p' =", "below 0.5 kPa", "surcharge"], *settings(load__surcharge="0 kPa", layer__0__cells=40))
+
+    def test_consolidation(self):
+        text = re.sub(r"\[\[motion\]\][^\[]*", "", GRAINS.format(cache=self.cache))
+        text = re.sub(r"\[analysis\][^\[]*", '[analysis]\nkind = "consolidation"\nfirst_time = "1 s"\n'
+                      'last_time = "9 s"\nsteps = 5\n', text).split("[output]")[0]
+        text = text.replace('"undrained"', '"coupled"').replace("degree = 1", "degree = 2")
+        text = text.replace("cells = 5", 'cells = 5\npermeability = "1e-5 m/s"')
+        self.refuse(["changed.toml:", "grains", "dynamic"], scene=self.write("changed.toml", text))
+
+
+class Drained(GrainColumnTest):
+    def test_pore_pressure_falls_after_shaking(self):
+        result = self.run_column(self.scene, "-o", "out", "-q", *settings(
+            mesh__degree=2, water__drainage="coupled", layer__0__cells=3, layer__0__permeability="1e-2 m/s",
+            motion__0__amplitude="0.15 g", analysis__duration="0.8 s", output__checkpoint="1 min"))
+        self.assert_done(result)
+        rows = history(self.folder / "out")
+        shaking, after = rows["time"] < 0.4, rows["time"] > 0.75
+        self.assertGreater(rows["d1_ru"][shaking].max(), 0.3)
+        for name in ("d0_u", "d1_u"):
+            self.assertLess(np.abs(rows[name][after]).max(), 0.05 * rows[name][shaking].max(), name)
+        settled = rows["settlement"]
+        self.assertGreater(settled[-1], 1e-3)
+        self.assertLess(np.ptp(settled[after]), 0.02 * settled[-1])
+        self.assertLess(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max())
+
+
+if __name__ == "__main__":
+    main()
