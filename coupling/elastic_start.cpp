@@ -12,20 +12,19 @@ namespace isostat
 {
 namespace
 {
-constexpr double first_strain = 2e-6, last_strain = 2e-3, ratio = 1.4142135623730951;
-constexpr double hopeless = 3;       ///< times the tolerance
-constexpr double look_so_far = 3e-5; ///< whatever the deviation
-constexpr int pauses = 5;            ///< of 40 time steps each
+constexpr double first_strain = 5e-6, last_strain = 2e-3, ratio = 2;
+constexpr double hopeless = 3; ///< times the tolerance
+constexpr int pauses = 3;      ///< of 40 time steps each
 
-/// Column directions in the specimen's axes (y vertical), of strain_norm 1.
+/// Directions of a column, of strain_norm 1.
 std::vector<Mat3> directions(bool constant_volume)
 {
   std::vector<Mat3> all(constant_volume ? 3 : 4, Mat3::Zero());
-  all[0](0, 1) = 1;
-  all[1](2, 1) = 1;
-  all[2](0, 0) = 0.5, all[2](1, 1) = -0.5;
+  all[0](0, 2) = 1;
+  all[1](1, 2) = 1;
+  all[2](0, 0) = 0.5, all[2](2, 2) = -0.5;
   if (!constant_volume)
-    all[3](1, 1) = std::sqrt(0.5);
+    all[3](2, 2) = std::sqrt(0.5);
   for (std::size_t k = 0, n = all.size(); k < n; ++k)
     all.push_back(-all[k]);
   return all;
@@ -37,45 +36,51 @@ void stand_still(Rve &rve)
     rve.advance(MixedIncrement{}); // 40 steps until it has looked three times that nothing is wanted
 }
 
+/// A copy of an element, to be strained in its own axes: it can stand still in no others.
 class Probe
 {
 public:
-  Probe(const Rve &rve, RveSettings settings, bool constant_volume, double tolerance)
-      : rve_([&] {
-          settings.frame = Mat3::Identity(); // it stands still in its own axes only
+  Probe(const Rve &rve, const ElasticStart &start, RveSettings settings, bool constant_volume, double tolerance)
+      : elastic_(start), frame_(settings.frame), rve_([&] {
+          settings.frame = Mat3::Identity();
           return Rve::unpack(rve.pack(), settings);
         }()),
-        start_(rve_.save()), stiffness_(rve_.stiffness()), constant_volume_(constant_volume), tolerance_(tolerance)
-  {
-    for (double strain = first_strain; strain <= last_strain; strain *= ratio)
-      strains_.push_back(strain);
-  }
+        start_(rve_.save()), constant_volume_(constant_volume), tolerance_(tolerance)
+  {}
 
-  double limit_along(const Mat3 &direction)
+  /// Not beyond `enough`.
+  double limit_along(const Mat3 &direction, double enough)
   {
     rve_.restore(start_);
     double limit = 0, worst = 0, present = 0;
-    for (std::size_t k = 0; k < strains_.size(); ++k)
+    for (std::size_t level = 0;; ++level)
       {
-        const Mat3 h = (strains_[k] - present) * direction;
-        if ((constant_volume_ ? rve_.undrained(h) : rve_.advance(h)).outcome != RveOutcome::accepted)
-          break;
-        stand_still(rve_);
-        present = strains_[k];
-        const Mat3 change =
-            to_matrix(to_stress_vector(stiffness_ * strain_vector(present * direction, constant_volume_)));
-        const double deviation = (rve_.stress() - still(k) - change).norm(), allowed = tolerance_ * change.norm();
+        const double strain = first_strain * std::pow(ratio, static_cast<double>(level));
+        if (strain > enough || !go((strain - present) * direction))
+          return limit;
+        present = strain;
+        const Mat3 change = elastic_.stress_at(strain_vector(strain * direction, constant_volume_)) - elastic_.stress;
+        const double deviation = (laboratory(rve_.stress() - still(level)) - change).norm();
+        const double allowed = tolerance_ * change.norm();
         worst = std::max(worst, deviation);
         if (worst <= allowed)
-          limit = present;
-        else if (deviation > hopeless * allowed && present > look_so_far)
-          break;
+          limit = strain;
+        else if (deviation > hopeless * allowed && level > 2)
+          return limit;
       }
-    return limit;
   }
 
 private:
-  static Stress to_stress_vector(const StrainVector &s) { return {s[0], s[1], s[2], s[3], s[4], s[5]}; }
+  Mat3 laboratory(const Mat3 &own) const { return frame_ * own * frame_.transpose(); }
+
+  bool go(const Mat3 &h)
+  {
+    const Mat3 own = frame_.transpose() * h * frame_;
+    if ((constant_volume_ ? rve_.undrained(own) : rve_.advance(own)).outcome != RveOutcome::accepted)
+      return false;
+    stand_still(rve_);
+    return true;
+  }
 
   /// Stress of a copy at rest after as many pauses.
   Mat3 still(std::size_t level)
@@ -91,12 +96,12 @@ private:
     return still_[level];
   }
 
+  const ElasticStart &elastic_;
+  Mat3 frame_;
   Rve rve_;
   RveState start_;
-  Stiffness stiffness_;
   bool constant_volume_;
   double tolerance_;
-  std::vector<double> strains_;
   std::vector<Mat3> still_;
   std::optional<RveState> resting_;
 };
@@ -128,9 +133,9 @@ ElasticStart find_elastic_start(const Rve &rve, const RveSettings &settings, boo
   start.stiffness = rve.stiffness();
   start.stress = rve.stress();
   start.limit = last_strain;
-  Probe probe(rve, settings, constant_volume, tolerance);
+  Probe probe(rve, start, settings, constant_volume, tolerance);
   for (const Mat3 &direction : directions(constant_volume))
-    start.limit = std::min(start.limit, probe.limit_along(direction));
+    start.limit = probe.limit_along(direction, start.limit);
   return start;
 }
 } // namespace isostat

@@ -25,14 +25,14 @@ struct ElasticStart
 
 /// Measures how far an element follows its condensed stiffness C. A copy is strained each way in each direction of a
 /// column (shear xz and yz, extension along x with compression along z; and along z alone if the volume may change) up
-/// to 2e-6, sqrt(2) as much and so on, and stands still for 200 time steps each time.
+/// to 5e-6, twice as much and so on, and stands still for 120 time steps each time.
 ///
 ///     deviation(e) = |sigma - sigma_still - C:e|,    limit: greatest e with deviation(e' <= e) <= tolerance |C:e|
 ///
 /// sigma_still is the stress of a copy that was not strained: packings creep a little. The limit is the least of all
-/// directions; 0 if even 2e-6 is too much, 2e-3 at most.
+/// directions; 0 if even 5e-6 is too much, 2e-3 at most.
 /// @param settings  of `rve`
-/// cost some 1 s for each 1,000 grains, a part of it the stiffness; deterministic
+/// cost that of the stiffness and some 5,000 time steps; deterministic
 /// tested: tests/coupling/elastic_start_test.cpp
 ElasticStart find_elastic_start(const Rve &rve, const RveSettings &settings, bool constant_volume, double tolerance);
 } // namespace isostat
