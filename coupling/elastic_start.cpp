@@ -12,19 +12,25 @@ namespace isostat
 {
 namespace
 {
-constexpr double first_strain = 5e-6, last_strain = 2e-3, ratio = 2;
+constexpr double first_strain = 1.25e-6, last_strain = 2e-3, ratio = 2;
 constexpr double hopeless = 3; ///< times the tolerance
 constexpr int pauses = 3;      ///< of 40 time steps each
 
-/// Directions of a column, of strain_norm 1.
-std::vector<Mat3> directions(bool constant_volume)
+/// Directions of shear between horizontal planes, or of other strains, of norm 1.
+std::vector<Mat3> directions(bool shear, bool constant_volume)
 {
-  std::vector<Mat3> all(constant_volume ? 3 : 4, Mat3::Zero());
-  all[0](0, 2) = 1;
-  all[1](1, 2) = 1;
-  all[2](0, 0) = 0.5, all[2](2, 2) = -0.5;
-  if (!constant_volume)
-    all[3](2, 2) = std::sqrt(0.5);
+  std::vector<Mat3> all(shear || !constant_volume ? 2 : 1, Mat3::Zero());
+  if (shear)
+    {
+      all[0](0, 2) = 1;
+      all[1](1, 2) = 1;
+    }
+  else
+    {
+      all[0](0, 0) = 0.5, all[0](2, 2) = -0.5;
+      if (!constant_volume)
+        all[1](2, 2) = std::sqrt(0.5);
+    }
   for (std::size_t k = 0, n = all.size(); k < n; ++k)
     all.push_back(-all[k]);
   return all;
@@ -65,7 +71,7 @@ public:
         worst = std::max(worst, deviation);
         if (worst <= allowed)
           limit = strain;
-        else if (deviation > hopeless * allowed && level > 2)
+        else if (deviation > hopeless * allowed && level > 4)
           return limit;
       }
   }
@@ -116,9 +122,10 @@ StrainVector strain_vector(const Mat3 &h, bool constant_volume)
   return e;
 }
 
-double strain_norm(const StrainVector &e)
+double ElasticStart::part_used(const StrainVector &e) const
 {
-  return std::sqrt(2 * e.head<3>().squaredNorm() + e.tail<3>().squaredNorm());
+  const double shear = std::hypot(e[3], e[4]), other = std::sqrt(2 * e.head<3>().squaredNorm() + e[5] * e[5]);
+  return (shear == 0 ? 0 : shear / shear_limit) + (other == 0 ? 0 : other / other_limit);
 }
 
 Mat3 ElasticStart::stress_at(const StrainVector &strain) const
@@ -132,10 +139,12 @@ ElasticStart find_elastic_start(const Rve &rve, const RveSettings &settings, boo
   ElasticStart start;
   start.stiffness = rve.stiffness();
   start.stress = rve.stress();
-  start.limit = last_strain;
+  start.shear_limit = start.other_limit = last_strain;
   Probe probe(rve, start, settings, constant_volume, tolerance);
-  for (const Mat3 &direction : directions(constant_volume))
-    start.limit = probe.limit_along(direction, start.limit);
+  for (const Mat3 &direction : directions(true, constant_volume))
+    start.shear_limit = probe.limit_along(direction, start.shear_limit);
+  for (const Mat3 &direction : directions(false, constant_volume))
+    start.other_limit = probe.limit_along(direction, start.other_limit);
   return start;
 }
 } // namespace isostat

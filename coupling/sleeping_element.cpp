@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "fem/bytes.hpp"
 
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cstring>
@@ -62,7 +63,7 @@ ElementTrial SleepingElement::trial(const Mat3 &h)
   if (!sleep_)
     return element_.trial(h);
   const StrainVector strain = sleep_->strain + strain_vector(h, constant_volume_);
-  if (strain_norm(strain) <= sleep_->start.limit) // not a number: the packing will say so
+  if (sleep_->start.part_used(strain) <= 1) // not a number: the packing will say so
     {
       if (!h.isZero(0))
         pending_ = Pending{h, strain};
@@ -167,7 +168,7 @@ std::vector<std::byte> SleepingElement::with_sleep(const std::vector<std::byte> 
     {
       out.numbers(std::span(sleep_->start.stiffness.data(), 36));
       out.numbers(std::span(sleep_->start.stress.data(), 9));
-      out.numbers(std::array{sleep_->start.limit});
+      out.numbers(std::array{sleep_->start.shear_limit, sleep_->start.other_limit});
       out.numbers(std::span(sleep_->strain.data(), 6));
       write_history(out, sleep_->history);
     }
@@ -197,12 +198,12 @@ SleepingElement SleepingElement::unpack(std::span<const std::byte> bytes, const 
   if (in.count() != 0)
     {
       sleep.emplace();
-      double limit = 0;
+      std::array<double, 2> limits{};
       in.numbers(std::span(sleep->start.stiffness.data(), 36), "numbers of stiffness");
       in.numbers(std::span(sleep->start.stress.data(), 9), "numbers of stress");
-      in.numbers(std::span(&limit, 1), "limits");
+      in.numbers(limits, "limits");
       in.numbers(std::span(sleep->strain.data(), 6), "numbers of strain");
-      sleep->start.limit = limit;
+      sleep->start.shear_limit = limits[0], sleep->start.other_limit = limits[1];
       sleep->history = read_history(in);
     }
   SleepingElement element(Rve::unpack(in.block(), settings), constant_volume, halvings, true);
