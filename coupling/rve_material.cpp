@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The batch: trial, commit, rollback, and who computes what. Initial stress, stiffness and bytes are in files of their
-// own.
+// The batch: trial, commit, rollback, and who computes what. Elements, initial stress, stiffness and bytes are in
+// files of their own.
 #include "coupling/rve_material.hpp"
 
 #include "base/error.hpp"
@@ -17,8 +17,9 @@ namespace isostat
 {
 namespace
 {
-constexpr std::size_t row_width = 9; ///< stress (6), seconds, steps, failed
-constexpr double forget = 0.1;       ///< weight of the last trial in the running mean of costs
+constexpr std::size_t row_width = 11;  ///< stress (6), seconds, steps, failed, seconds that will not come again, asleep
+constexpr double sleeping_cost = 1e-6; ///< s: all are alike, so that sleepers move for nothing but others' costs
+constexpr double forget = 0.1;         ///< weight of the last trial in the running mean of costs
 
 double seconds_since(std::chrono::steady_clock::time_point begin)
 {
@@ -32,6 +33,8 @@ void RveMaterialSettings::check() const
     throw InputError("rve: realisations = 0; a point needs at least one element");
   if (halvings > 20)
     throw InputError(fmt::format("rve: halvings = {}; at most 20 (a million parts)", halvings));
+  if (!(elastic_start >= 0 && elastic_start < 1))
+    throw InputError(fmt::format("rve: elastic_start = {:g}; must be >= 0 and below 1", elastic_start));
   if (threads < 0)
     throw InputError(fmt::format("rve: threads = {}; must be >= 0", threads));
   if (!(balance.threshold >= 1 && balance.least_gain >= 0) || balance_interval == 0)
@@ -55,6 +58,7 @@ RveMaterial::RveMaterial(std::size_t n_points, const RveMaterialSettings &settin
   elements_.resize(n);
   committed_.assign(n, Stress{});
   trial_.assign(n, Stress{});
+  asleep_.assign(n, 0);
   rows_.assign(row_width * n, 0.0);
   waves_.resize(n);
   skeleton_.resize(n);
@@ -74,20 +78,8 @@ RveMaterial::RveMaterial(const std::vector<Snapshot> &specimens, const RveMateri
                                  settings.realisations));
   exchange_.stop_together(
       for_mine([&](std::size_t id) { elements_[id] = make_element(Rve(specimens[id], element_settings())); }));
+  let_sleep();
   start();
-}
-
-RveSettings RveMaterial::element_settings() const
-{
-  RveSettings settings;
-  settings.motion = settings_.motion;
-  settings.frame = column_frame();
-  return settings;
-}
-
-std::unique_ptr<RveElement> RveMaterial::make_element(Rve rve) const
-{
-  return std::make_unique<RveElement>(std::move(rve), settings_.undrained, settings_.halvings);
 }
 
 std::string RveMaterial::label(std::size_t id) const
@@ -125,12 +117,19 @@ std::optional<Exchange::Failure> RveMaterial::for_mine(const std::function<void(
 /// Elements have their stress: what is known of them on all ranks starts here.
 void RveMaterial::start()
 {
-  std::vector<double> rows(6 * n_elements(), 0.0);
+  constexpr std::size_t width = 7;
+  std::vector<double> rows(width * n_elements(), 0.0);
   for (std::size_t id : order_)
-    std::ranges::copy(to_stress(elements_[id]->rve().stress()), &rows[6 * id]);
-  exchange_.share(all_, owners_, 6, rows);
+    {
+      std::ranges::copy(to_stress(elements_[id]->stress()), &rows[width * id]);
+      rows[width * id + 6] = elements_[id]->asleep();
+    }
+  exchange_.share(all_, owners_, width, rows);
   for (std::size_t id = 0; id < n_elements(); ++id)
-    std::copy_n(&rows[6 * id], 6, committed_[id].begin());
+    {
+      std::copy_n(&rows[width * id], 6, committed_[id].begin());
+      asleep_[id] = rows[width * id + 6] != 0;
+    }
   std::ranges::fill(waves_, Wave{});
   skeleton_known_ = has_trial_ = false;
   commits_ = 0;
@@ -165,6 +164,8 @@ void RveMaterial::run_element(std::size_t id, const Gradient &increment)
       reason = error.what();
     }
   row[6] = seconds_since(begin);
+  row[9] = elements_[id]->replay_seconds();
+  row[10] = elements_[id]->asleep();
   if (row[8] != 0)
     {
 #pragma omp critical(isostat_rve_material_failure)
@@ -245,7 +246,8 @@ void RveMaterial::count_costs()
   for (std::size_t id = 0; id < n_elements(); ++id)
     {
       const double seconds = rows_[row_width * id + 6];
-      costs_[id] = cost_.trials == 0 ? seconds : (1 - forget) * costs_[id] + forget * seconds;
+      const double again = rows_[row_width * id + 10] != 0 ? sleeping_cost : seconds - rows_[row_width * id + 9];
+      costs_[id] = cost_.trials == 0 ? again : (1 - forget) * costs_[id] + forget * again;
       loads[owners_[id]] += seconds;
       cost_.rve_seconds += seconds;
       steps += rows_[row_width * id + 7];
@@ -264,6 +266,8 @@ void RveMaterial::commit()
   if (failure)
     throw RunFailure(failure->message);
   std::swap(committed_, trial_);
+  for (std::size_t id = 0; id < n_elements(); ++id)
+    asleep_[id] = rows_[row_width * id + 10] != 0;
   ++commits_;
   mark_due();
   if (commits_ % settings_.balance_interval == 0)
@@ -283,13 +287,5 @@ void RveMaterial::balance()
     place(rebalanced(costs_, owners_, exchange_.size(), settings_.balance));
   else if (settings_.threads > 1)
     order_ = dearest_first(costs_, owners_, exchange_.rank());
-}
-
-const Rve *RveMaterial::element(std::size_t point, std::size_t realisation) const
-{
-  const auto &element = elements_.at(point * settings_.realisations + realisation);
-  if (element && !has_trial_)
-    element->rollback();
-  return element ? &element->rve() : nullptr;
 }
 } // namespace isostat

@@ -10,7 +10,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t version = 1;
+constexpr std::uint64_t version = 1, version_with_sleepers = 2;
 } // namespace
 
 std::vector<std::byte> RveMaterial::pack() const
@@ -20,7 +20,8 @@ std::vector<std::byte> RveMaterial::pack() const
   exchange_.stop_together(for_mine([&](std::size_t id) { packed[id] = elements_[id]->pack(); }));
   ByteWriter out;
   out.text(name());
-  out.count(version), out.count(n_points_), out.count(settings_.realisations), out.count(settings_.undrained);
+  out.count(may_sleep() ? version_with_sleepers : version), out.count(n_points_), out.count(settings_.realisations),
+      out.count(settings_.undrained);
   out.count(commits_);
   for (std::size_t id = 0; id < n_elements(); ++id)
     {
@@ -37,7 +38,7 @@ void RveMaterial::unpack(std::span<const std::byte> bytes)
 {
   ByteReader in(bytes, name());
   in.expect(in.text(), name());
-  in.expect(in.count(), version, "as their version");
+  in.expect(in.count(), may_sleep() ? version_with_sleepers : version, "as their version (1, with elastic_start 2)");
   in.expect(in.count(), n_points_, "points");
   in.expect(in.count(), settings_.realisations, "realisations");
   in.expect(in.count(), settings_.undrained, "as their drainage (1 is undrained)");
@@ -52,9 +53,8 @@ void RveMaterial::unpack(std::span<const std::byte> bytes)
       blocks[id] = in.block();
     }
   in.expect_end();
-  std::vector<std::unique_ptr<RveElement>> elements(n_elements());
-  exchange_.stop_together(
-      for_mine([&](std::size_t id) { elements[id] = make_element(Rve::unpack(blocks[id], element_settings())); }));
+  std::vector<std::unique_ptr<SleepingElement>> elements(n_elements());
+  exchange_.stop_together(for_mine([&](std::size_t id) { elements[id] = unpack_element(blocks[id]); }));
   elements_ = std::move(elements);
   start();
   waves_ = std::move(waves);
@@ -92,7 +92,7 @@ void RveMaterial::place(const Owners &owners)
   order_ = dearest_first(costs_, owners_, exchange_.rank());
   exchange_.stop_together(for_mine([&](std::size_t id) {
     if (const auto found = bytes_of.find(id); found != bytes_of.end())
-      elements_[id] = make_element(Rve::unpack(found->second, element_settings()));
+      elements_[id] = unpack_element(found->second);
   }));
 }
 } // namespace isostat

@@ -27,6 +27,7 @@ RveMaterialSettings grains_settings(const ColumnScene &scene, int threads)
   settings.in_situ.motion = settings.motion;
   settings.undrained = scene.water.drainage == Drainage::undrained;
   settings.realisations = spec.realisations;
+  settings.elastic_start = spec.elastic_start;
   settings.threads = threads;
   return settings;
 }
