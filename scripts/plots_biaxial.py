@@ -82,6 +82,8 @@ def map_row(block, fields, labels, bar):
     high = max(np.quantile(field, 0.99) for field in fields)
     for panel, field, label in zip(axes[0], fields, labels):
         image = block.show(panel, field, 0, high, label)
+        panel.set_xlabel("$x$ (m)")
+    axes[0][0].set_ylabel("$z$ (m)")
     figure.colorbar(image, ax=axes, label=bar, shrink=0.8)
     return figure
 
