@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/biaxial/biaxial_run.hpp"
+
+#include "apps/biaxial/block_files.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress_text.hpp"
+#include "apps/common/result_folder.hpp"
+#include "base/error.hpp"
+#include "fem/column_instant.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+StaticsSettings settings_of(const BiaxialScene &scene)
+{
+  StaticsSettings settings;
+  const double way = scene.test.axial_strain * scene.mesh.height;
+  settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
+  settings.tolerance = scene.newton.tolerance;
+  settings.least_force = scene.test.confinement * scene.mesh.width;
+  settings.max_iterations = scene.newton.max_iterations;
+  settings.iterations_per_tangent = scene.newton.iterations_per_tangent;
+  settings.max_halvings = scene.newton.max_halvings;
+  return settings;
+}
+
+const std::vector<RecordColumn> columns = {
+    {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
+    {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
+    {"shear_mean"}, {"shear_quantile"}, {"shear_greatest"}};
+
+/// One run from its start to its end.
+class BiaxialRun
+{
+public:
+  explicit BiaxialRun(const BiaxialRequest &request)
+      : request_(request), scene_(request.scene), space_(scene_),
+        material_(block_material(scene_, space_, request.threads)),
+        statics_(space_, *material_.material, settings_of(scene_))
+  {
+    summary_.points = space_.n_points();
+  }
+
+  BiaxialSummary go();
+
+private:
+  void open();
+  void record();
+  void step();
+  void say(const std::string &line) const
+  {
+    if (!request_.quiet)
+      std::fprintf(stderr, "%s\n", line.c_str());
+  }
+
+  const BiaxialRequest &request_;
+  const BiaxialScene &scene_;
+  const Clock::time_point begin_ = Clock::now();
+  BlockMesh space_;
+  BlockMaterial material_;
+  Statics<2> statics_;
+  BiaxialSummary summary_;
+  std::unique_ptr<Recorder> history_;
+  std::unique_ptr<BlockFiles> files_;
+};
+
+void BiaxialRun::open()
+{
+  open_result_folder(request_.folder, request_.overwrite ? FolderUse::overwrite : FolderUse::fresh);
+  write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                   {{"threads", std::to_string(request_.threads)}});
+  history_ = std::make_unique<Recorder>(request_.folder, columns);
+  files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
+}
+
+void BiaxialRun::record()
+{
+  std::vector<Gradient> gradients;
+  gradients_of(space_, statics_.displacement(), gradients);
+  std::vector<double> shear;
+  double volume = 0, vertical = 0, lateral = 0, mean = 0;
+  for (std::size_t q = 0; q < space_.n_points(); ++q)
+    {
+      const PointState point = point_state(gradients[q], statics_.stresses()[q]);
+      const double part = space_.weight[q] / (scene_.mesh.width * scene_.mesh.height);
+      volume += part * point.volumetric;
+      vertical -= part * gradients[q][8];
+      lateral -= part * gradients[q][0];
+      mean += part * point.shear;
+      shear.push_back(point.shear);
+    }
+  std::sort(shear.begin(), shear.end());
+  const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
+  const StaticsEffort &effort = statics_.effort();
+  const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
+  history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
+                                       1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
+                                       1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
+  history_->flush();
+  summary_.axial_strain = vertical;
+  summary_.volumetric_strain = volume;
+  summary_.last_stress = stress;
+  summary_.localisation = median > 0 ? quantile / median : 1;
+  if (summary_.steps == 0 || stress > summary_.peak_stress)
+    {
+      summary_.peak_stress = stress;
+      summary_.peak_strain = vertical;
+    }
+}
+
+void BiaxialRun::step()
+{
+  statics_.step(1.0 / scene_.test.steps);
+  ++summary_.steps;
+  const StaticsEffort &effort = statics_.effort();
+  summary_.iterations += effort.iterations;
+  summary_.trials += effort.trials;
+  summary_.substeps += effort.substeps;
+  summary_.rejected += effort.rejected;
+  record();
+  if (summary_.steps % scene_.output.map_every == 0 || summary_.steps == scene_.test.steps)
+    files_->map(summary_.axial_strain, statics_);
+  say(fmt::format("step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
+                  "{} trials, {} sub-steps, {} rejected",
+                  summary_.steps, scene_.test.steps, duration_text(seconds_since(begin_)), summary_.axial_strain,
+                  summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
+                  effort.substeps, effort.rejected));
+}
+
+BiaxialSummary BiaxialRun::go()
+{
+  open();
+  say(fmt::format("{} points, {} steps", space_.n_points(), scene_.test.steps));
+  record();
+  files_->map(0, statics_);
+  try
+    {
+      while (summary_.steps < scene_.test.steps)
+        {
+          if (stop_requested())
+            throw Interrupted(fmt::format("interrupted after step {}", summary_.steps));
+          step();
+        }
+      summary_.complete = true;
+    }
+  catch (const RunFailure &failure)
+    {
+      summary_.failure = failure.what();
+      files_->map(summary_.axial_strain, statics_);
+    }
+  summary_.wall_seconds = seconds_since(begin_);
+  if (material_.grains)
+    {
+      const RveMaterialCost &cost = material_.grains->cost();
+      summary_.material_seconds = cost.batch_seconds;
+      summary_.tangent_seconds = cost.wave_seconds;
+      summary_.tangents = cost.stiffnesses;
+      summary_.rve_steps = static_cast<double>(cost.steps);
+    }
+  return summary_;
+}
+} // namespace
+
+BiaxialSummary run_biaxial(const BiaxialRequest &request) { return BiaxialRun(request).go(); }
+} // namespace isostat

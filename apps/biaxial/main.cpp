@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// biaxial SCENE: a block of soil in plane strain, confined on its sides and compressed by its top until a shear band
+// forms; quasi-static, drained, by Newton with the tangent of the material.
+//
+//      ____v____  smooth plate, moves down
+//   -> |       | <-
+//   -> |   #   | <-  constant pressure      elastic, sand (iwan), packings of grains at the Gauss points;
+//   -> |       | <-                         # weak elements
+//      ---------  smooth plate
+//
+//   biaxial apps/scenes/biaxial/iwan.toml
+//   biaxial apps/scenes/biaxial/grains.toml --set test.steps=100 --threads 2
+#include "apps/biaxial/biaxial_run.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/main_guard.hpp"
+#include "apps/common/progress_text.hpp"
+#include "apps/common/result_folder.hpp"
+#include "base/replace_file.hpp"
+
+#include <deal.II/base/mpi.h>
+
+namespace
+{
+using namespace isostat;
+
+struct Options
+{
+  std::string scene, output, command_line;
+  std::vector<std::string> set;
+  bool validate = false, print_defaults = false, overwrite = false, quiet = false, no_figures = false;
+  int threads = 1;
+};
+
+int run_scene(const Options &options)
+{
+  BiaxialRequest request;
+  request.scene = read_biaxial_scene(options.scene, options.set);
+  request.folder = options.output.empty() ? request.scene.output.folder : options.output;
+  if (!request.folder.has_filename()) // a slash at the end
+    request.folder = request.folder.parent_path();
+  request.command_line = options.command_line;
+  request.overwrite = options.overwrite;
+  request.quiet = options.quiet;
+  request.threads = options.threads;
+  check_result_folder(request.folder, request.overwrite ? FolderUse::overwrite : FolderUse::fresh);
+  const BiaxialSummary summary = run_biaxial(request);
+  const std::string text = to_text(summary, request.scene);
+  write_replacing(request.folder / "summary.json", to_json(summary, request.scene));
+  write_replacing(request.folder / "summary.txt", text);
+  fmt::print("{}  time                {}: packings {}, their tangents {}\n", text, duration_text(summary.wall_seconds),
+             duration_text(summary.material_seconds), duration_text(summary.tangent_seconds));
+  if (!options.no_figures)
+    fmt::print("  {}\n", draw_figures(request.folder, "plots_biaxial.py"));
+  if (!summary.complete)
+    throw RunFailure(summary.failure);
+  return 0;
+}
+
+int run_with_mpi(const Options &options)
+{
+  char name[] = "biaxial", *only_name[] = {name, nullptr}, **arguments = only_name;
+  int n = 1;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n, arguments, 1);
+  catch_signals(); // after PETSc, which has handlers of its own
+  return guarded([&] {
+    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      throw InputError("a biaxial block runs on one rank only. Give it --threads.");
+    run_scene(options);
+  });
+}
+
+int run_command(int argc, char **argv)
+{
+  CLI::App app{"A block of soil in plane strain, compressed until a shear band forms"};
+  Options options;
+  app.add_option("scene", options.scene, "scene file (TOML); see --print-defaults");
+  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  app.add_option("--set", options.set, "override a key, e.g. --set test.steps=100 (repeatable)");
+  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
+  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
+  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  app.add_option("-t,--threads", options.threads,
+                 "threads that share the packings, 0: all the process may use; results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  options.command_line = command_line(argc, argv);
+  bool ready = false; // not after --help
+  const int code = parse_and_run(app, argc, argv, [&] {
+    if (options.print_defaults)
+      fmt::print("{}", default_biaxial_scene());
+    else if (options.scene.empty())
+      throw InputError("no scene given. Try biaxial apps/scenes/biaxial/iwan.toml, or --help.");
+    else if (options.validate)
+      fmt::print("{}", to_toml(read_biaxial_scene(options.scene, options.set)));
+    else
+      ready = true;
+  });
+  return ready ? run_with_mpi(options) : code;
+}
+} // namespace
+
+int main(int argc, char **argv) { return run_command(argc, argv); }

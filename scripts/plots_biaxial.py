@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the figures of a run of biaxial from its history.csv, maps.h5 and summary.json.
+
+    plots_biaxial.py RESULTS_FOLDER [--out DIR]              default DIR: RESULTS_FOLDER/figures
+
+fig_stress_strain.png   axial stress and volumetric strain against axial strain, and the scatter of the shear strain
+fig_shear_maps.png      shear strain since the start over the block at several axial strains
+fig_rate_maps.png       shear strain between two of them: where the block deforms at the time
+fig_grain_maps.png      void ratio and redundancy index at the end, of packings
+
+Of fig_rate_maps the last map is asked for the inclination of a band: the direction of least spread of the points with
+the greatest shear strain, printed with their number. Compression is positive.
+"""
+import argparse
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+
+from plots_common import BLACK, BLUE, ORANGE, STYLE, BadInput, note, plt, read_history, read_summary
+
+PANELS = 5
+
+
+class Block:
+    def __init__(self, folder):
+        self.history = read_history(folder / "history.csv")
+        self.summary = read_summary(folder / "summary.json")
+        self.title = self.summary.get("title") or folder.resolve().name
+        with h5py.File(folder / "maps.h5") as file:
+            self.maps = {name: np.asarray(values) for name, values in file.items()}
+        self.strain = self.maps["axial_strain"]
+        if len(self.strain) < 2:
+            raise BadInput(f"{folder}: only the start of a run")
+        self.size = [self.summary.get(key, float(self.maps[axis].max())) for key, axis in
+                     (("width_m", "x"), ("height_m", "z"))]
+
+    def chosen(self):
+        """Maps to show: the last one, and others at equal distances in axial strain."""
+        wanted = np.linspace(0, self.strain[-1], PANELS + 1)[1:]
+        return sorted({int(np.argmin(np.abs(self.strain - s))) for s in wanted} - {0})
+
+    def show(self, axes, values, low, high, label):
+        """Points as the squares around them: sorted by place they are a table."""
+        x, z = (np.unique(np.round(self.maps[axis], 9)) for axis in "xz")
+        order = np.lexsort((np.round(self.maps["x"], 9), np.round(self.maps["z"], 9)))
+        table = values[order].reshape(len(z), len(x))
+        edges = [np.concatenate(([0], (p[1:] + p[:-1]) / 2, [size])) for p, size in zip((x, z), self.size)]
+        image = axes.pcolormesh(*edges, table, vmin=low, vmax=high, cmap="viridis")
+        axes.set_aspect("equal")
+        axes.grid(False)
+        axes.set_title(label, fontsize=8.5)
+        axes.set_xticks([0, self.size[0]])
+        axes.set_yticks([0, self.size[1]])
+        return image
+
+
+def stress_strain(block):
+    figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.0), constrained_layout=True)
+    strain = 100 * block.history["axial_strain"]
+    axes[0].plot(strain, block.history["axial_stress"] / 1e3, color=BLACK)
+    axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
+    axes[0].set_ylim(bottom=0)
+    axes[1].plot(strain, 100 * block.history["volumetric_strain"], color=BLUE)
+    axes[1].set_ylabel("Volumetric strain (%)")
+    for name, label, color in (("shear_mean", "mean", BLACK), ("shear_quantile", "90 % quantile", BLUE),
+                               ("shear_greatest", "greatest", ORANGE)):
+        axes[2].plot(strain, 100 * block.history[name], color=color, label=label)
+    axes[2].set_ylabel("Shear strain of points (%)")
+    axes[2].legend()
+    for panel in axes:
+        panel.set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
+        panel.set_xlim(left=0)
+    return figure
+
+
+def map_row(block, fields, labels, bar):
+    figure, axes = plt.subplots(1, len(fields), figsize=(1.7 * len(fields) + 1, 3.6), constrained_layout=True,
+                                squeeze=False)
+    high = max(np.quantile(field, 0.99) for field in fields)
+    for panel, field, label in zip(axes[0], fields, labels):
+        image = block.show(panel, field, 0, high, label)
+        panel.set_xlabel("$x$ (m)")
+    axes[0][0].set_ylabel("$z$ (m)")
+    figure.colorbar(image, ax=axes, label=bar, shrink=0.8)
+    return figure
+
+
+def shear_maps(block):
+    chosen = block.chosen()
+    return map_row(block, [100 * block.maps["shear_strain"][k] for k in chosen],
+                   [f"{100 * block.strain[k]:.2g} %" for k in chosen], "Shear strain (%)")
+
+
+def differences(block):
+    """Shear strain that came between shown maps over that of a uniform block."""
+    chosen = [0, *block.chosen()]
+    for before, now in zip(chosen, chosen[1:]):
+        came = block.maps["shear_strain"][now] - block.maps["shear_strain"][before]
+        yield before, now, came / came.mean()
+
+
+def rate_maps(block):
+    rows = list(differences(block))
+    report_band(block, rows[-1][2])
+    return map_row(block, [field for _, _, field in rows],
+                   [f"{100 * block.strain[a]:.2g}-{100 * block.strain[b]:.2g} %" for a, b, _ in rows],
+                   "Shear strain meanwhile / mean")
+
+
+def report_band(block, field):
+    """Inclination to the horizontal of the line through the fifth of the points that shears most."""
+    most = field >= np.quantile(field, 0.8)
+    place = np.stack([block.maps["x"][most], block.maps["z"][most]])
+    values, vectors = np.linalg.eigh(np.cov(place))
+    angle = np.degrees(np.arctan2(abs(vectors[1, 1]), abs(vectors[0, 1])))
+    side = "rising" if vectors[0, 1] * vectors[1, 1] > 0 else "falling"
+    print(f"the fifth of points that shears most has {field[most].sum() / field.sum():.2f} of the shear strain; it lies "
+          f"along {angle:.0f} deg to the horizontal, {side}; spread across over along "
+          f"{np.sqrt(max(values[0], 0) / values[1]):.2f}")
+
+
+def grain_maps(block):
+    if not block.maps["redundancy"].any():
+        return None
+    figure, axes = plt.subplots(1, 2, figsize=(5.4, 3.6), constrained_layout=True)
+    for panel, name, label in zip(axes, ("void_ratio", "redundancy"), ("Void ratio $e$", "Redundancy index $I_R$")):
+        field = block.maps[name][-1]
+        image = block.show(panel, field, *np.quantile(field, [0.01, 0.99]), f"{100 * block.strain[-1]:.2g} %")
+        figure.colorbar(image, ax=panel, label=label, shrink=0.8)
+    return figure
+
+
+FIGURES = {
+    "fig_stress_strain": stress_strain,
+    "fig_shear_maps": shear_maps,
+    "fig_rate_maps": rate_maps,
+    "fig_grain_maps": grain_maps,
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=pathlib.Path, help="folder with history.csv, maps.h5, summary.json")
+    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
+    arguments = parser.parse_args()
+    out = arguments.out or arguments.results / "figures"
+    try:
+        block = Block(arguments.results)
+        out.mkdir(parents=True, exist_ok=True)
+    except (BadInput, OSError, KeyError, ValueError) as error:
+        note(error)
+        return 2
+    plt.rcParams.update(STYLE)
+    for name, draw in FIGURES.items():
+        figure = draw(block)
+        if figure is None:
+            continue
+        figure.suptitle(block.title, fontsize=9.5, x=0.01, ha="left")
+        figure.savefig(out / f"{name}.png")
+        plt.close(figure)
+        print(out / f"{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program biaxial: an elastic block against its closed form, a weak element, a block of packings, refusals."""
+import json
+import os
+
+import h5py
+import numpy as np
+
+from support import AppTest, main, tiny_scene
+
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
+                  OMP_NUM_THREADS="1")
+
+ELASTIC = """title = "elastic block"
+[mesh]
+cells_across = 3
+cells_up = 4
+degree = {degree}
+[soil]
+material = "elastic"
+shear_modulus = "50 MPa"
+poisson_ratio = 0.3
+[test]
+axial_strain = 0.01
+steps = 2
+"""
+GRAINS = """title = "two elements"
+[mesh]
+cells_across = 1
+cells_up = 2
+[soil]
+material = "grains"
+library = "library.h5"
+rate_ceiling = "20 1/s"
+[test]
+confinement = "50 kPa"
+axial_strain = 0.002
+steps = 2
+[newton]
+tolerance = 0.01
+[output]
+map_every = 1
+"""
+CELL = 'domain = "periodic-cell"\npressure = "50 kPa"\npreparation_friction = "10 deg"\n'
+FEW = ("--set", "grading.truncate=[20, 80]", "--set", "grading.grains=150", "--set", "grading.cloud_edge=2.45 mm")
+
+
+class Biaxial(AppTest):
+    def run_block(self, text, *arguments, name="run"):
+        scene = self.write("block.toml", text)
+        return self.run_app("biaxial", scene, "-o", name, "--overwrite", "--no-figures", "-q", *arguments)
+
+    def history(self, name="run"):
+        with h5py.File(self.folder / name / "history.h5") as file:
+            return {key: np.asarray(values) for key, values in file["history"].items()}
+
+    def maps(self, name="run"):
+        with h5py.File(self.folder / name / "maps.h5") as file:
+            return {key: np.asarray(values) for key, values in file.items()}
+
+    def test_elastic_block_is_the_closed_form(self):
+        nu, strain = 0.3, 0.01
+        modulus = 2 * 50e6 * (1 + nu) / (1 - nu**2)
+        for degree in (1, 2):
+            self.assert_done(self.run_block(ELASTIC.format(degree=degree)))
+            rows = self.history()
+            np.testing.assert_allclose(rows["axial_stress"], 100e3 + modulus * np.array([0, strain / 2, strain]),
+                                       rtol=1e-10)
+            self.assertAlmostEqual(rows["axial_strain"][-1], strain, delta=1e-14)
+            self.assertAlmostEqual(rows["lateral_strain"][-1], -nu / (1 - nu) * strain, delta=1e-13)
+            self.assertAlmostEqual(rows["volumetric_strain"][-1], (1 - nu / (1 - nu)) * strain, delta=1e-13)
+            self.assertEqual(list(rows["iterations"]), [0, 1, 1])
+            maps = self.maps()
+            np.testing.assert_allclose(maps["shear_strain"][-1], strain / (1 - nu), rtol=1e-9)
+            np.testing.assert_allclose(maps["q"][-1], modulus * strain / 2, rtol=1e-9)
+            self.assertTrue((self.folder / "run/paraview/block_00001.vtu").exists())
+
+    def test_weak_element_shears_more(self):
+        weak = ("weak.cells=1", "weak.column=1", "weak.row=2", "weak.factor=0.5")
+        arguments = [part for key in weak for part in ("--set", key)]
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *arguments))
+        maps = self.maps()
+        inside = (abs(maps["x"] - 0.5) < 1 / 6) & (abs(maps["z"] - 1.25) < 1 / 4)
+        self.assertEqual(inside.sum(), 4)
+        self.assertGreater(maps["shear_strain"][-1][inside].min(), maps["shear_strain"][-1][~inside].mean())
+
+    def test_packings(self):
+        scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
+        self.assert_done(self.run_app("specimen_library", scene, *FEW, "-n", "2", "-o", "library.h5"))
+        mixed = ("--set", "soil.mixed_realisations=2")
+        self.assert_done(self.run_block(GRAINS, *mixed))
+        self.assert_done(self.run_block(GRAINS, *mixed, "--threads", "2", name="threads"))
+        for name, values in self.history().items():
+            np.testing.assert_array_equal(values, self.history("threads")[name], err_msg=name)
+        rows, maps = self.history(), self.maps()
+        self.assertTrue(np.all(np.diff(rows["axial_stress"]) > 0))
+        self.assertLess(rows["residual"].max(), 0.01)
+        self.assertGreater(maps["redundancy"].min(), 1)
+        self.assertGreater(len(np.unique(maps["void_ratio"][0])), 1)  # two realisations
+        summary = json.loads((self.folder / "run/summary.json").read_text(encoding="utf-8"))
+        self.assertTrue(summary["complete"])
+        self.assertEqual(summary["points"], 8)
+
+    def test_too_much_strain_for_newton_leaves_what_it_found(self):
+        iwan = ELASTIC.format(degree=1).replace('"elastic"', '"iwan"')
+        result = self.run_block(iwan, "--set", "newton.max_iterations=1", "--set", "newton.max_halvings=0")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("no equilibrium in step 1", result.stderr)
+        self.assertEqual(len(self.history()["step"]), 1)
+        self.assertIn('"complete": false', (self.folder / "run/summary.json").read_text(encoding="utf-8"))
+
+    def test_scene_is_read_back_and_refused(self):
+        shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")
+        self.assert_done(shown)
+        again = self.run_app("biaxial", self.write("again.toml", shown.stdout), "--validate")
+        self.assertEqual(again.stdout.replace("again", "block"), shown.stdout)
+        self.assert_done(self.run_app("biaxial", "--print-defaults"))
+        self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")
+        self.assert_refused(self.run_block(GRAINS), "soil.library", "is not there")
+        self.assert_refused(self.run_block(ELASTIC.format(degree=1), "--set", "weak.cells=4"), "weak.column")
+
+
+if __name__ == "__main__":
+    main()
