@@ -57,6 +57,7 @@ private:
   void open();
   void record();
   void step();
+  void back_to_committed();
   void say(const std::string &line) const
   {
     if (!request_.quiet)
@@ -137,6 +138,15 @@ void BiaxialRun::step()
                   effort.substeps, effort.rejected));
 }
 
+/// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.
+void BiaxialRun::back_to_committed()
+{
+  const std::vector<Gradient> still(space_.n_points(), Gradient{});
+  std::vector<Stress> stresses(space_.n_points());
+  material_.material->trial(still, stresses);
+  material_.material->rollback();
+}
+
 BiaxialSummary BiaxialRun::go()
 {
   open();
@@ -156,6 +166,7 @@ BiaxialSummary BiaxialRun::go()
   catch (const RunFailure &failure)
     {
       summary_.failure = failure.what();
+      back_to_committed();
       files_->map(summary_.axial_strain, statics_);
     }
   summary_.wall_seconds = seconds_since(begin_);
