@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// biaxial SCENE: a block of soil in plane strain, confined on its sides and compressed by its top until a shear band
-// forms; quasi-static, drained, by Newton with the tangent of the material.
+// biaxial SCENE: a block of soil in plane strain, confined on its sides and compressed by its top, to see a shear band
+// form; quasi-static, drained, by Newton with the tangent of the material.
 //
 //      ____v____  smooth plate, moves down
 //   -> |       | <-
@@ -71,7 +71,7 @@ int run_with_mpi(const Options &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"A block of soil in plane strain, compressed until a shear band forms"};
+  CLI::App app{"A block of soil in plane strain, confined and compressed: does a shear band form?"};
   Options options;
   app.add_option("scene", options.scene, "scene file (TOML); see --print-defaults");
   app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
