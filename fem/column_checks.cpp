@@ -94,14 +94,7 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 void check_grains(const SceneDocument &document, const ColumnScene &scene)
 {
   if (!scene.has_grains())
-    {
-      if (document.find("grains"))
-        document.refuse("grains", "has no effect: no layer has material = \"grains\". Remove it.");
-      return;
-    }
-  if (scene.analysis.kind == AnalysisKind::consolidation)
-    document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
-                              "\"dynamic\", or layers another material.");
+    return;
   if (scene.grains.library.empty())
     document.refuse("grains.library", "is missing; layers of grains are made of its specimens. Give library = "
                                       "\"library.h5\", made by specimen_library.");

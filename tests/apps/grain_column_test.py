@@ -255,8 +255,6 @@ class Mistakes(GrainColumnTest):
     def test_scene(self):
         text = GRAINS.format(cache=self.cache)
         for old, new, *parts in (
-                ('material = "grains"\nrelative_density = 0.5', 'material = "elastic"\nshear_velocity = "150 m/s"',
-                 "grains", "no layer has material"),
                 ('relative_density = 0.5', 'relative_density = 0.5\nshear_velocity = "150 m/s"', "shear_velocity",
                  "does not belong"),
                 (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "specimen_library"),
