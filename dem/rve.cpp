@@ -51,6 +51,10 @@ void RveSettings::check() const
                                  greatest_increment));
   if (greatest_steps == 0)
     throw InputError("greatest_steps of a representative volume element must be positive");
+  if (least_steps == 0 || least_steps > greatest_steps)
+    throw InputError(
+        fmt::format("least_steps = {} of a representative volume element; allowed is 1 to greatest_steps = {}",
+                    least_steps, greatest_steps));
 }
 
 Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
@@ -105,11 +109,11 @@ void Rve::step(const Mat3 &own_gradient)
 void Rve::run_strain(const Mat3 &own_gradient)
 {
   const double size = strain_measure(own_gradient);
-  double left = 1;
-  for (bool last = own_gradient.isZero(0); !last;)
+  double left = 1, least = static_cast<double>(settings_.least_steps);
+  for (bool last = own_gradient.isZero(0); !last; least -= 1)
     {
       review();
-      const double whole = left * size / (drive_.rate * assembly_.time_step);
+      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), least);
       if (!(whole < static_cast<double>(settings_.greatest_steps)))
         throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
                                      drive_.rate, whole));

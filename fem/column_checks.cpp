@@ -95,6 +95,9 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
 {
   if (!scene.has_grains())
     return;
+  if (scene.analysis.kind == AnalysisKind::consolidation)
+    document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
+                              "\"dynamic\", or layers another material.");
   if (scene.grains.library.empty())
     document.refuse("grains.library", "is missing; layers of grains are made of its specimens. Give library = "
                                       "\"library.h5\", made by specimen_library.");

@@ -214,6 +214,7 @@ struct ColumnGrains
   std::uint64_t realisations = 1;            ///< packings of a point
   double quasi_static_tolerance = 0.01;      ///< as in the element tests [-]
   double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s
+  std::uint64_t least_steps = 20;            ///< time steps of the grains in a step of the column, at least
   double damping = 0.2;                      ///< [-]
   std::vector<double> snapshot_depths;       ///< below the surface; whole packings are stored there, m
   double snapshot_interval = 1;              ///< s

@@ -294,6 +294,10 @@ constexpr Key keys[] = {
   {.path = "grains.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
    .range = positive, .text = "Greatest strain rate inside a packing.",
    .field = [](ColumnScene &s) -> Field { return &s.grains.rate_ceiling; }},
+  {.path = "grains.least_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
+   .text = "Time steps of the grains in each step of the column, at least: small increments would be over in one or two, "
+           "before the grains find their places.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.least_steps; }},
   {.path = "grains.damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
    .field = [](ColumnScene &s) -> Field { return &s.grains.damping; }},
   {.path = "grains.elastic_start", .value = "0", .range = {0, 1, false, true},

@@ -26,6 +26,7 @@ RveMaterialSettings grains_settings(const ColumnScene &scene, int threads)
       spec.in_situ == GrainsInSitu::no_lateral_strain ? InSituPath::no_lateral_strain : InSituPath::all_stresses;
   settings.in_situ.motion = settings.motion;
   settings.undrained = scene.water.drainage == Drainage::undrained;
+  settings.least_steps = spec.least_steps;
   settings.realisations = spec.realisations;
   settings.elastic_start = spec.elastic_start;
   settings.threads = threads;

@@ -271,6 +271,7 @@ class Mistakes(GrainColumnTest):
         text = re.sub(r"\[\[motion\]\][^\[]*", "", GRAINS.format(cache=self.cache))
         text = re.sub(r"\[analysis\][^\[]*", '[analysis]\nkind = "consolidation"\nfirst_time = "1 s"\n'
                       'last_time = "9 s"\nsteps = 5\n', text).split("[output]")[0]
+        text = re.sub(r"\[load\]", '[load]\nkind = "step"\namplitude = "10 kPa"', text)
         text = text.replace('"undrained"', '"coupled"').replace("degree = 1", "degree = 2")
         text = text.replace("cells = 5", 'cells = 5\npermeability = "1e-5 m/s"')
         self.refuse(["changed.toml:", "grains", "dynamic"], scene=self.write("changed.toml", text))

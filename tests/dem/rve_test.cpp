@@ -276,6 +276,24 @@ TEST(Rve, AnIncrementTooLargeIsRejectedAndNothingChanges)
   EXPECT_EQ(rve.undrained(increment(2)).outcome, RveOutcome::accepted);
 }
 
+TEST(Rve, SmallIncrementsTakeTheLeastSteps)
+{
+  RveSettings slow;
+  slow.least_steps = 20;
+  Rve rve(specimen(), slow), fast(specimen(), {});
+  const RveResponse large = rve.advance(simple_shear(1e-4)), same = fast.advance(simple_shear(1e-4));
+  EXPECT_GT(large.steps, 20u);
+  EXPECT_EQ(large.steps, same.steps);
+  EXPECT_EQ(large.stress, same.stress);
+  EXPECT_EQ(rve.advance(simple_shear(1e-9)).steps, 20u);
+  EXPECT_EQ(fast.advance(simple_shear(1e-9)).steps, 1u);
+  for (const std::uint64_t wrong : {std::uint64_t{0}, slow.greatest_steps + 1})
+    {
+      slow.least_steps = wrong;
+      EXPECT_THROW(Rve(specimen(), slow), InputError) << wrong;
+    }
+}
+
 TEST(Rve, AFailureOnTheWayGoesBackToTheStateBefore)
 {
   RveSettings few;
