@@ -56,6 +56,7 @@ RveMaterial::RveMaterial(std::size_t n_points, const RveMaterialSettings &settin
   all_.resize(n);
   std::iota(all_.begin(), all_.end(), std::size_t{0});
   elements_.resize(n);
+  increments_.assign(n_points, Gradient{});
   committed_.assign(n, Stress{});
   trial_.assign(n, Stress{});
   asleep_.assign(n, 0);
@@ -181,6 +182,7 @@ void RveMaterial::trial(std::span<const Gradient> increments, std::span<Stress> 
                                  stresses.size(), n_points_));
   const auto begin = std::chrono::steady_clock::now();
   has_trial_ = skeleton_known_ = false;
+  std::ranges::copy(increments, increments_.begin());
   (void)for_mine([&](std::size_t id) { run_element(id, increments[point_of(id)]); });
   exchange_.share(all_, owners_, row_width, rows_);
   stop_if_failed();

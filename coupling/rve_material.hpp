@@ -100,6 +100,17 @@ public:
   /// initial packing while it sleeps; null where it lives on another rank.
   const Rve *element(std::size_t point, std::size_t realisation = 0) const;
 
+  /// How its elements are run.
+  RveSettings element_settings() const;
+  const RveMaterialSettings &settings() const { return settings_; }
+  /// Displacement gradient of a point in the last trial.
+  const Gradient &increment(std::size_t point) const { return increments_[point]; }
+  /// Stress of an element at the committed state, on every rank.
+  const Stress &stress(std::size_t point, std::size_t realisation = 0) const
+  {
+    return committed_[point * settings_.realisations + realisation];
+  }
+
   /// Moves elements to given ranks, one for each id. Results do not change.   @pre no trial is pending
   void place(const Owners &owners);
   const Owners &owners() const { return owners_; }
@@ -112,7 +123,6 @@ private:
   std::size_t point_of(std::size_t id) const { return id / settings_.realisations; }
   bool is_mine(std::size_t id) const { return owners_[id] == exchange_.rank(); }
   std::string label(std::size_t id) const;
-  RveSettings element_settings() const;
   std::unique_ptr<SleepingElement> make_element(Rve rve) const;
   std::unique_ptr<SleepingElement> unpack_element(std::span<const std::byte> bytes) const;
   bool may_sleep() const { return settings_.elastic_start > 0; }
@@ -141,6 +151,7 @@ private:
   std::vector<double> costs_;                              ///< s per trial, of each element
   std::vector<std::unique_ptr<SleepingElement>> elements_; ///< null where it is not mine
   bool ready_ = false, has_trial_ = false;
+  std::vector<Gradient> increments_;      ///< of each point in the last trial
   std::vector<Stress> committed_, trial_; ///< of each element
   std::vector<char> asleep_;              ///< each element at the committed state
   std::vector<double> rows_;              ///< what a trial gave, shared between ranks

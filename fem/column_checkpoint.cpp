@@ -3,8 +3,8 @@
 
 #include "base/checkpoint_folder.hpp"
 #include "base/error.hpp"
+#include "base/hdf5_bytes.hpp"
 
-#include <cstring>
 #include <fmt/format.h>
 
 namespace isostat
@@ -38,27 +38,6 @@ void get(const hdf5::Group &group, std::map<std::string, std::vector<double>> &v
     vectors[name] = group.read<double>(name);
 }
 
-/// Bytes as whole words; the last one filled up with zeros.
-void put_bytes(hdf5::Group group, const std::vector<std::byte> &bytes)
-{
-  std::vector<std::uint64_t> words((bytes.size() + 7) / 8, 0);
-  if (!bytes.empty())
-    std::memcpy(words.data(), bytes.data(), bytes.size());
-  group.write("material", std::span<const std::uint64_t>(words), "-");
-  group.set_attribute("bytes", static_cast<std::uint64_t>(bytes.size()), "material");
-}
-
-std::vector<std::byte> get_bytes(const hdf5::Group &group)
-{
-  const auto words = group.read<std::uint64_t>("material");
-  std::vector<std::byte> bytes(group.attribute<std::uint64_t>("bytes", "material"));
-  if (bytes.size() > words.size() * 8)
-    throw InputError(fmt::format("{}: the state of the material is cut off", group.where()));
-  if (!bytes.empty())
-    std::memcpy(bytes.data(), words.data(), bytes.size());
-  return bytes;
-}
-
 ColumnCheckpoint read_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
@@ -67,7 +46,7 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   ColumnCheckpoint checkpoint;
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
-  checkpoint.state.material = get_bytes(root);
+  checkpoint.state.material = hdf5::read_bytes(root, "material");
   get(root.group("state_vectors"), checkpoint.state.vectors);
   get(root.group("state_numbers"), checkpoint.state.numbers);
   get(root.group("vectors"), checkpoint.vectors);
@@ -82,7 +61,7 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
     set_format(root, format_name, schema_version);
     root.set_attribute("scene", checkpoint.scene);
     root.set_attribute("step", checkpoint.state.step);
-    put_bytes(root, checkpoint.state.material);
+    hdf5::write_bytes(root, "material", checkpoint.state.material);
     put(root.create_group("state_vectors"), checkpoint.state.vectors);
     put(root.create_group("state_numbers"), checkpoint.state.numbers);
     put(root.create_group("vectors"), checkpoint.vectors);

@@ -91,6 +91,15 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
                                                       number_text(scene.analysis.first_time)));
 }
 
+void check_depths(const SceneDocument &document, const ColumnScene &scene, const std::string &key,
+                  const std::vector<double> &depths)
+{
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    if (depths[i] > scene.height() * (1 + 1e-12)) // the sum of layers is rounded
+      document.refuse(key, fmt::format("must lie in the soil, in [0 m, {} m], but entry {} is {} m.",
+                                       number_text(scene.height()), i + 1, number_text(depths[i])));
+}
+
 void check_grains(const SceneDocument &document, const ColumnScene &scene)
 {
   if (!scene.has_grains())
@@ -103,10 +112,10 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
                                       "\"library.h5\", made by specimen_library.");
   if (scene.grains.rate_floor > scene.grains.rate_ceiling)
     document.refuse("grains.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
-  for (double depth : scene.grains.snapshot_depths)
-    if (depth > scene.height() * (1 + 1e-12))
-      document.refuse("grains.snapshot_depths", fmt::format("must lie in the soil, in [0 m, {} m], but {} m does not.",
-                                                            number_text(scene.height()), number_text(depth)));
+  if (!scene.grains.path_depths.empty() && scene.grains.elastic_start > 0)
+    document.refuse("grains.path_depths", "wants packings that run from the start. Remove it, or elastic_start.");
+  check_depths(document, scene, "grains.path_depths", scene.grains.path_depths);
+  check_depths(document, scene, "grains.snapshot_depths", scene.grains.snapshot_depths);
 }
 
 void check_output(const SceneDocument &document, const ColumnScene &scene)
@@ -117,11 +126,7 @@ void check_output(const SceneDocument &document, const ColumnScene &scene)
       if (given)
         document.refuse(key, "is not possible if mesh.distributed is true, where no rank has the whole depth. Remove "
                              "it, or give distributed = false.");
-  for (std::size_t i = 0; i < scene.output.depths.size(); ++i)
-    if (scene.output.depths[i] > scene.height() * (1 + 1e-12)) // the sum of layers is rounded
-      document.refuse("output.depths",
-                      fmt::format("must lie in the soil, in [0 m, {} m], but entry {} is {} m.",
-                                  number_text(scene.height()), i + 1, number_text(scene.output.depths[i])));
+  check_depths(document, scene, "output.depths", scene.output.depths);
 }
 } // namespace
 

@@ -308,6 +308,11 @@ constexpr Key keys[] = {
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",
    .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_depths; }},
+  {.path = "grains.path_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"5 m\"]", .range = not_negative,
+   .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, which "
+           "sends the packing the same way again, alone.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.path_depths; }},
   {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .value = "1 s", .range = positive, .text = "Time between them.",
    .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_interval; }},

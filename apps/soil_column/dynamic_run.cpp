@@ -3,6 +3,7 @@
 #include "apps/soil_column/column_progress.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/grain_files.hpp"
+#include "apps/soil_column/grain_paths.hpp"
 #include "apps/soil_column/ranks.hpp"
 #include "apps/soil_column/timed_material.hpp"
 
@@ -59,6 +60,7 @@ private:
   std::uint64_t last_step_; ///< the last one whose start is recorded
   ColumnInstant instant_;
   std::unique_ptr<GrainFiles> grain_files_;   ///< null without grains
+  std::unique_ptr<GrainPaths> grain_paths_;   ///< likewise
   std::array<double, 2> velocities_ = {0, 0}; ///< of the soil of grains at the start of this run
   std::unique_ptr<ColumnProgress> progress_;
   RunTimes times_;
@@ -87,12 +89,17 @@ void DynamicRun<dim>::start()
 {
   open_folder(request_);
   if (soil_.grains && !scene_.mesh.distributed)
-    grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths(), resumed_.get());
+    {
+      grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths(), resumed_.get());
+      grain_paths_ = std::make_unique<GrainPaths>(request_.folder, scene_, soil_, depths());
+    }
   on_first_rank([&] {
     files_.open(resumed_.get());
     if (grain_files_)
       grain_files_->open(resumed_.get());
   });
+  if (grain_paths_)
+    grain_paths_->open(resumed_.get());
   if (soil_.grains)
     {
       velocities_ = grain_velocities(soil_, space_);
@@ -124,6 +131,8 @@ void DynamicRun<dim>::step()
   times_.solver += seconds_since(begin);
   ++times_.steps;
   follower_.follow(run_);
+  if (grain_paths_)
+    grain_paths_->record(run_.n_steps(), run_.time());
   if (row || profile || paraview)
     write([&] {
       if (row)
@@ -186,7 +195,10 @@ std::map<std::string, double> DynamicRun<dim>::grain_counters()
   if (!grain_files_)
     return {};
   grain_files_->flush();
-  return grain_files_->counters();
+  grain_paths_->flush();
+  auto counters = grain_files_->counters();
+  counters["grain_paths"] = grain_paths_->n_rows();
+  return counters;
 }
 
 /// Of the points below the surface, m.
@@ -279,7 +291,10 @@ RunResult DynamicRun<dim>::go()
   if (!scene_.mesh.distributed)
     save();
   if (grain_files_)
-    grain_files_->flush();
+    {
+      grain_files_->flush();
+      grain_paths_->flush();
+    }
   files_.finish(follower_.peaks);
   return result();
 }

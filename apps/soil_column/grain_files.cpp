@@ -7,7 +7,6 @@
 #include "dem/io/vtp.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <mpi.h>
 #include <numeric>
@@ -30,28 +29,14 @@ std::size_t column_number(const std::string &name)
   throw RunFailure("micromechanics have no column " + name);
 }
 
-std::vector<std::size_t> nearest(const std::vector<double> &depths, const std::vector<double> &wanted)
-{
-  std::vector<std::size_t> points;
-  for (double depth : wanted)
-    {
-      std::size_t best = 0;
-      for (std::size_t q = 1; q < depths.size(); ++q)
-        if (std::abs(depths[q] - depth) < std::abs(depths[best] - depth))
-          best = q;
-      points.push_back(best);
-    }
-  return points;
-}
-
 std::size_t counter(const ColumnCheckpoint *checkpoint, const std::string &name)
 {
   return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
 }
 } // namespace
 
-GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil, std::vector<double> depths,
-                       const ColumnCheckpoint *resumed)
+GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil,
+                       const std::vector<double> &depths, const ColumnCheckpoint *resumed)
     : folder_(std::move(folder)), grains_(*soil.grains), from_above_(soil.grains_places.size()),
       n_snapshots_(counter(resumed, "grain_snapshots"))
 {
@@ -63,8 +48,8 @@ GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMate
   std::iota(from_above_.begin(), from_above_.end(), 0);
   std::stable_sort(from_above_.begin(), from_above_.end(),
                    [&](std::size_t a, std::size_t b) { return depths_[a] < depths_[b]; });
-  chosen_ = nearest(depths_, scene.output.depths);
-  pictured_ = nearest(depths_, scene.grains.snapshot_depths);
+  chosen_ = nearest_grains(soil, depths, scene.output.depths);
+  pictured_ = nearest_grains(soil, depths, scene.grains.snapshot_depths);
 }
 
 void GrainFiles::open(const ColumnCheckpoint *resumed)

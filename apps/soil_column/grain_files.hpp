@@ -21,7 +21,7 @@ class GrainFiles
 public:
   /// On every rank.   @param depths  of the points of the mesh, m   @param resumed  null: start anew
   GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
-             std::vector<double> depths, const ColumnCheckpoint *resumed);
+             const std::vector<double> &depths, const ColumnCheckpoint *resumed);
 
   /// On the rank that writes, but for snapshots.   @param resumed  null: start anew
   void open(const ColumnCheckpoint *resumed);

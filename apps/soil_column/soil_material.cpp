@@ -45,6 +45,22 @@ std::vector<std::size_t> points_of(const Discretisation<dim> &space, std::size_t
 }
 } // namespace
 
+std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
+                                        const std::vector<double> &wanted)
+{
+  std::vector<std::size_t> points;
+  for (double depth : wanted)
+    {
+      const auto away = [&](std::size_t point) { return std::abs(depths[soil.grains_places[point]] - depth); };
+      std::size_t best = 0;
+      for (std::size_t point = 1; point < soil.grains_places.size(); ++point)
+        if (away(point) < away(best))
+          best = point;
+      points.push_back(best);
+    }
+  return points;
+}
+
 template <int dim>
 SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads)
 {

@@ -19,6 +19,11 @@ struct SoilMaterial
 template <int dim>
 SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads);
 
+/// The points of `soil.grains` nearest to some depths.
+/// @param depths, wanted  of the points of the mesh, below the surface, m
+std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
+                                        const std::vector<double> &wanted);
+
 /// Least and greatest shear wave velocity of the points with grains, m/s.   Collective.
 template <int dim>
 std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space);

@@ -37,6 +37,7 @@ relative_density = 0.5
 library = "{cache}/library.h5"
 cache = "{cache}/in_situ.h5"
 snapshot_depths = ["1 m", "2.5 m"]
+path_depths = ["2.1 m"]
 snapshot_interval = "0.1 s"
 [[motion]]
 axis = "x"
@@ -99,7 +100,7 @@ class Bits(GrainColumnTest):
         names = set(self.files("whole"))
         self.assertLessEqual({"history.csv", "history.h5", "profiles.h5", "grain_history/history.csv",
                               "grain_history/history.h5", "grain_profiles/history.h5", "grains/d0_00002.h5",
-                              "grains/d1_00002.vtp", "paraview/column_00002.vtu", "summary.json",
+                              "grains/d1_00002.vtp", "paths/d0/packing.h5", "paths/d0/history.h5", "paraview/column_00002.vtu", "summary.json",
                               "checkpoint/last.h5"}, names)
         self.assertGreater(summary["max_ru"], 0.95)
         self.assertGreater(summary["peak_gamma"], 0.01)
@@ -236,6 +237,56 @@ class Failures(GrainColumnTest):
         self.assert_same_bytes("whole", "disk/out")
 
 
+class Alone(GrainColumnTest):
+    """One packing of the column, sent the same way again by rve_replay."""
+
+    def setUp(self):
+        super().setUp()
+        self.whole()
+
+    def replay(self, *arguments):
+        result = self.run_app("rve_replay", "whole/paths/d0", "-q", *arguments)
+        self.assert_done(result)
+        return result.stdout, json.loads((self.folder / arguments[1] / "summary.json").read_text(encoding="utf-8"))
+
+    def test_stress_is_that_of_the_column_to_the_bit(self):
+        text, summary = self.replay("-o", "alone", "--every", 5)
+        self.assertIn("to the bit after all", text)
+        self.assertGreater(summary["increments"], 50)
+        self.assertEqual(summary["equal"], summary["increments"])
+        self.assertEqual(summary["largest_error"], 0)
+        self.assertGreater(summary["largest_strain"], 1e-4)
+        rows = history(self.folder / "alone")
+        np.testing.assert_array_equal(rows["tau"], rows["tau_column"])
+        self.assertGreater(np.ptp(rows["p"]), 1e3)
+        self.assertEqual(len(history(self.folder / "alone/grain_history")["IR"]), summary["increments"] // 5)
+        self.assertIn("figures in", text)
+        self.assertTrue((self.folder / "alone/figures/fig_path.png").exists())
+
+    def test_other_rates_give_other_stress(self):
+        text, summary = self.replay("-o", "fast", "--no-figures", "--rate-floor", 5, "--rate-ceiling", 5, "--least-steps", 1)
+        self.assertIn("of tau", text)
+        self.assertLess(summary["equal"], summary["increments"])
+        self.assertGreater(summary["shear_error"], 1e-4)
+
+    def test_mistakes(self):
+        def refuse(parts, *arguments):
+            self.assert_refused(self.run_app("rve_replay", *arguments, "-q"), *parts)
+        refuse(["whole", "packing.h5", "grains.path_depths"], "whole")
+        refuse(["--rate-floor 3", "above the ceiling, 2"], "whole/paths/d0", "--rate-floor", 3)
+        wrong = self.run_app("rve_replay", "whole/paths/d0", "--least-steps", 0)
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("least-steps", wrong.stderr)
+        packing = self.folder / "whole/paths/d0/packing.h5"
+        data = bytearray(packing.read_bytes())
+        data[len(data) // 2] ^= 1
+        packing.write_bytes(data)
+        refuse(["packing.h5", "damaged"], "whole/paths/d0")
+        packing.write_bytes(data[:1000])
+        refuse(["packing.h5"], "whole/paths/d0")
+        self.assertFalse((self.folder / "whole/paths/d0/replay").exists())
+
+
 class Mistakes(GrainColumnTest):
     def refuse(self, parts, *arguments, scene=None):
         result = self.run_column(scene or self.scene, "-o", "out", "-q", *arguments)
@@ -258,7 +309,8 @@ class Mistakes(GrainColumnTest):
                 ('relative_density = 0.5', 'relative_density = 0.5\nshear_velocity = "150 m/s"', "shear_velocity",
                  "does not belong"),
                 (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "specimen_library"),
-                ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths", "4 m does not"),
+                ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths", "entry 1 is 4 m"),
+                ('path_depths', 'elastic_start = 0.1\npath_depths', "path_depths", "elastic_start"),
                 ('depths = ["0.5 m", "2 m"]', 'depths = ["4 m"]', "output.depths", "4 m"),
                 ('drainage = "undrained"', 'drainage = "coupled"', "degree = 2")):
             self.assertIn(old, text)

@@ -2,6 +2,7 @@
 #include "base/hdf5.hpp"
 
 #include "base/error.hpp"
+#include "base/hdf5_bytes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
@@ -159,6 +160,26 @@ TEST_F(Hdf5, BadItemsNameFileItemAndExpectation)
   EXPECT_THAT(message_of<InputError>([&] { group.read<std::uint64_t>("values"); }), HasSubstr("unsigned integers"));
   EXPECT_THAT(message_of<InputError>([&] { group.read<std::uint32_t>("count"); }), HasSubstr("unsigned integers"));
   EXPECT_THAT(message_of<InputError>([&] { group.attribute<std::string>("number"); }), HasSubstr("text"));
+}
+
+TEST_F(Hdf5, BytesComeBackWhateverTheirNumber)
+{
+  const std::filesystem::path path = folder / "bytes.h5";
+  std::vector<std::byte> bytes(19);
+  for (std::size_t k = 0; k < bytes.size(); ++k)
+    bytes[k] = static_cast<std::byte>(7 * k + 250);
+  {
+    File file = File::create(path);
+    write_bytes(file.root(), "some", bytes);
+    write_bytes(file.root(), "none", {});
+    write_bytes(file.root(), "cut", bytes);
+    file.root().set_attribute("bytes", std::uint64_t{25}, "cut");
+    file.commit();
+  }
+  const File file = File::open(path);
+  EXPECT_EQ(read_bytes(file.root(), "some"), bytes);
+  EXPECT_TRUE(read_bytes(file.root(), "none").empty());
+  EXPECT_THAT(message_of<InputError>([&] { read_bytes(file.root(), "cut"); }), HasSubstr("cut holds 24 bytes of 25"));
 }
 
 TEST_F(Hdf5, UnwritablePlacesAreRunFailures)

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rve_replay RECORD: sends the packing of one depth of a shaken column the same way again, alone: undrained (or
+// drained) shear driven by the strain history that the finite elements gave it. The stress is that of the column to the
+// bit; with other rates, it is seen what those of the column cost in accuracy.
+//
+//   results/COLUMN/paths/d0/packing.h5        -> RECORD/replay/history.csv         strain, stress then and now
+//                           history.h5                         grain_history/      I_R, Z, fabric ...
+//                                                              figures/, summary.json
+//
+//   rve_replay results/quick_grains_10m/paths/d0
+//   rve_replay results/quick_grains_10m/paths/d0 --rate-floor 0.02 --tolerance 0.002 --output slow
+#include "apps/common/interrupt.hpp"
+#include "apps/common/main_guard.hpp"
+#include "apps/common/progress_text.hpp"
+#include "apps/common/result_folder.hpp"
+#include "apps/rve_replay/replay.hpp"
+#include "base/replace_file.hpp"
+
+#include <chrono>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+
+struct Options
+{
+  std::string record, output, command_line;
+  ReplayChanges changes;
+  std::size_t every = 10;
+  bool overwrite = false, quiet = false, no_figures = false;
+};
+
+/// A line on stderr every five seconds.
+class Progress
+{
+public:
+  Progress(bool quiet, std::size_t total) : quiet_(quiet), total_(total) {}
+  void tick(std::size_t done)
+  {
+    if (quiet_ || Clock::now() - last_ < std::chrono::seconds(5))
+      return;
+    last_ = Clock::now();
+    const double rate = static_cast<double>(done) / std::chrono::duration<double>(last_ - start_).count();
+    fmt::print(stderr, "  {:.1f} %  increment {}  {:.0f} 1/s  ETA {}\n",
+               100 * static_cast<double>(done) / static_cast<double>(total_), done, rate,
+               duration_text(static_cast<double>(total_ - done) / rate));
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  bool quiet_;
+  std::size_t total_;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+std::string scene_text(const Options &options, const RveSettings &settings)
+{
+  return fmt::format("record = \"{}\"\nquasi_static_tolerance = {}\nrate_floor = \"{} 1/s\"\nrate_ceiling = \"{} "
+                     "1/s\"\nleast_steps = {}\ndamping = {}\n",
+                     options.record, settings.motion.quasi_static_tolerance, settings.motion.rate_floor,
+                     settings.motion.rate_ceiling, settings.least_steps, settings.motion.damping);
+}
+
+void run(const Options &options)
+{
+  const StrainRecord record = read_strain_record(options.record);
+  const RveSettings settings = options.changes.applied_to(record.settings);
+  const fs::path folder = options.output.empty() ? fs::path(options.record) / "replay" : fs::path(options.output);
+  const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
+  check_result_folder(folder, use);
+  open_result_folder(folder, use);
+  write_provenance(folder, scene_text(options, settings), options.command_line, {});
+  Progress progress(options.quiet, record.increments.size());
+  const ReplayResult result = replay(record, options.changes, folder, options.every, [&](std::size_t done) {
+    progress.tick(done);
+    if (stop_requested())
+      throw Interrupted(fmt::format("interrupted at increment {}", done));
+  });
+  const std::string text = to_text(result, record, options.changes);
+  write_replacing(folder / "summary.json", to_json(result, record));
+  write_replacing(folder / "summary.txt", text);
+  fmt::print("{}  wall time                {:.2f} s\n", text, result.seconds);
+  if (!options.no_figures)
+    fmt::print("  {}\n", draw_figures(folder, "plots_rve_replay.py"));
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  CLI::App app{"The packing of one depth of a column, sent the same way again, alone"};
+  Options options;
+  app.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
+  app.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
+  app.add_option("--tolerance", options.changes.tolerance, "another quasi-static tolerance")
+      ->check(CLI::Range(1e-9, 1.0));
+  app.add_option("--rate-floor", options.changes.rate_floor, "another least strain rate, 1/s")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--rate-ceiling", options.changes.rate_ceiling, "another greatest strain rate, 1/s")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--least-steps", options.changes.least_steps, "time steps of an increment, at least")
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--damping", options.changes.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
+  app.add_option("--every", options.every, "increments between two rows of micromechanics")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str();
+  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  options.command_line = command_line(argc, argv);
+  return parse_and_run(app, argc, argv, [&] {
+    catch_signals();
+    run(options);
+  });
+}
