@@ -93,11 +93,11 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                         p.ru_time);
   text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
   if (s.grains)
-    text +=
-        fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n  least I_R                {:.3f} at a "
-                    "depth of {:.2f} m, t = {:.5g} s\n",
-                    s.grains->packings, s.grains->slowest, s.grains->fastest, s.grains->least_redundancy,
-                    s.grains->least_redundancy_depth, s.grains->least_redundancy_time);
+    text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
+                        s.grains->slowest, s.grains->fastest);
+  if (s.grains && s.grains->has_profiles)
+    text += fmt::format("  least I_R                {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
+                        s.grains->least_redundancy, s.grains->least_redundancy_depth, s.grains->least_redundancy_time);
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
@@ -167,6 +167,9 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
     {
       add("packings", std::to_string(s.grains->packings));
       add("shear_velocities", list({s.grains->slowest, s.grains->fastest}));
+    }
+  if (s.grains && s.grains->has_profiles)
+    {
       add("least_redundancy", number(s.grains->least_redundancy));
       add("least_redundancy_depth", number(s.grains->least_redundancy_depth));
       add("least_redundancy_time", number(s.grains->least_redundancy_time));

@@ -12,6 +12,7 @@ struct GrainsSummary
 {
   std::size_t packings = 0;
   double slowest = 0, fastest = 0;                                                    ///< V_s at the (re)start, m/s
+  bool has_profiles = false;                                                          ///< what follows is known
   double least_redundancy = 0, least_redundancy_depth = 0, least_redundancy_time = 0; ///< of all profiles [-], m, s
 };
 

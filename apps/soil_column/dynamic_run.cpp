@@ -259,6 +259,7 @@ void DynamicRun<dim>::add_grains(ColumnSummary &summary)
   summary.grains = {soil_.grains->owners().size(),
                     velocities_[0],
                     velocities_[1],
+                    scene_.output.profile_interval.has_value(),
                     grain_files_->least().redundancy,
                     grain_files_->least().depth,
                     grain_files_->least().time};
