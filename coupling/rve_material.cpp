@@ -241,6 +241,11 @@ void RveMaterial::scatter(std::span<Stress> deviations) const
     }
 }
 
+double RveMaterial::steps_of(std::size_t point, std::size_t realisation) const
+{
+  return rows_[row_width * (point * settings_.realisations + realisation) + 7];
+}
+
 void RveMaterial::count_costs()
 {
   std::vector<double> loads(exchange_.size(), 0.0);

@@ -111,6 +111,9 @@ public:
     return committed_[point * settings_.realisations + realisation];
   }
 
+  /// Time steps that an element took in the last trial, on every rank.
+  double steps_of(std::size_t point, std::size_t realisation = 0) const;
+
   /// Moves elements to given ranks, one for each id. Results do not change.   @pre no trial is pending
   void place(const Owners &owners);
   const Owners &owners() const { return owners_; }

@@ -83,14 +83,17 @@ std::vector<RecordColumn> strain_record_columns()
     columns.push_back({name, "-"});
   for (const char *name : stress_names)
     columns.push_back({name, "Pa"});
+  columns.push_back({"packing_steps", "-"});
   return columns;
 }
 
-std::vector<double> strain_record_row(std::uint64_t step, double time, const Gradient &h, const Stress &stress)
+std::vector<double> strain_record_row(std::uint64_t step, double time, const Gradient &h, const Stress &stress,
+                                      double steps_of_packing)
 {
   std::vector<double> row = {static_cast<double>(step), time};
   row.insert(row.end(), h.begin(), h.end());
   row.insert(row.end(), stress.begin(), stress.end());
+  row.push_back(steps_of_packing);
   return row;
 }
 

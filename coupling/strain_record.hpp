@@ -24,9 +24,11 @@ struct StrainRecord
   std::vector<Stress> stresses;     ///< effective stress after it, Pa, tension positive: xx yy zz yz xz xy
 };
 
-/// Columns of history.csv: step, time, H_xx ... H_zz, sigma_xx, sigma_yy, sigma_zz, sigma_yz, sigma_xz, sigma_xy.
+/// Columns of history.csv: step, time, H_xx ... H_zz, sigma_xx, sigma_yy, sigma_zz, sigma_yz, sigma_xz, sigma_xy, and
+/// the time steps that the packing took.
 std::vector<RecordColumn> strain_record_columns();
-std::vector<double> strain_record_row(std::uint64_t step, double time, const Gradient &h, const Stress &stress);
+std::vector<double> strain_record_row(std::uint64_t step, double time, const Gradient &h, const Stress &stress,
+                                      double steps_of_packing);
 
 /// Writes packing.h5.     @throws RunFailure  not writable
 void write_strain_record_start(const std::filesystem::path &folder, const StrainRecord &record);

@@ -28,7 +28,10 @@ std::array<Motion, 3> column_motions(const ColumnScene &scene)
 {
   std::array<Motion, 3> motions;
   for (const ColumnMotion &motion : scene.motions)
-    motions[static_cast<std::size_t>(motion.axis)] = motion_of(motion);
+    {
+      const Motion once = motion_of(motion);
+      motions[static_cast<std::size_t>(motion.axis)] = motion.again ? repeated(once, *motion.again) : once;
+    }
   return motions;
 }
 } // namespace isostat

@@ -135,6 +135,7 @@ struct ColumnMotion
   double duration = 0, ramp = 0;  ///< harmonic
   std::optional<double> centre;   ///< ricker: time of its peak
   std::optional<double> interval; ///< between samples of harmonic and ricker
+  std::optional<double> again;    ///< start of the same motion for the second time, s
 
   double peak_time() const { return centre.value_or(1.5 / frequency); }               ///< of a ricker, s
   double sample_interval() const { return interval.value_or(1 / (500 * frequency)); } ///< not of a record, s

@@ -249,6 +249,10 @@ constexpr Key keys[] = {
    .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = harmonic | ricker,
    .text = "Time between samples, straight in between; left out: 1 / (500 frequency).",
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.interval; }},
+  {.path = "motion.again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "20 s", .range = positive,
+   .text = "Time at which the same motion starts for the second time; left out: it comes once.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.again; }},
 
   {.path = "load.kind", .kind = Kind::choice, .value = "none", .choices = load_choices,
    .text = "How the traction runs in time.",

@@ -199,4 +199,20 @@ Motion scaled_to_peak(const Motion &motion, double peak)
                                        peak));
   return scaled(motion, peak / motion.peak());
 }
+
+Motion repeated(const Motion &motion, double start)
+{
+  check(start > 0 && std::isfinite(start), fmt::format("start of the second motion = {} s; must be > 0", start));
+  if (motion.at_rest())
+    return motion;
+  const std::vector<double> &once = motion.accelerations();
+  const std::size_t shift = steps_to(start, motion.interval());
+  std::vector<double> a(once.size() + shift, 0.0);
+  for (std::size_t i = 0; i < once.size(); ++i)
+    {
+      a[i] += once[i];
+      a[i + shift] += once[i];
+    }
+  return Motion(std::move(a), motion.interval());
+}
 } // namespace isostat

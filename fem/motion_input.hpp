@@ -106,6 +106,11 @@ Motion corrected(const Motion &motion, Baseline baseline);
 Motion scaled_to_peak(const Motion &motion, double peak);
 Motion scaled(const Motion &motion, double factor); ///< all accelerations times `factor`
 
+/// The motion twice: the second time from the first sample on that is `start` or later; where both are going on, their
+/// sum.     @param start  s; rounded up to whole intervals   @throws InputError unless start > 0
+/// tested: tests/fem/motion_input_test.cpp
+Motion repeated(const Motion &motion, double start);
+
 /// S_a(T): peak absolute acceleration of oscillators u'' + 2 xi w u' + w^2 u = -a(t), w = 2 pi/T, that start at rest;
 /// the absolute acceleration is -(2 xi w u' + w^2 u). Each step is the exact solution for linear a (Nigam & Jennings
 /// 1969). Steps are at most T/64 long, which misses at most 0.13 % of a peak (1000 steps between two samples at most,

@@ -61,7 +61,8 @@ void GrainPaths::record(std::uint64_t step, double time)
   ++n_rows_;
   together([&] {
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      rows_[k]->append(strain_record_row(step, time, grains_.increment(points_[k]), grains_.stress(points_[k])));
+      rows_[k]->append(strain_record_row(step, time, grains_.increment(points_[k]), grains_.stress(points_[k]),
+                                         grains_.steps_of(points_[k])));
   });
 }
 

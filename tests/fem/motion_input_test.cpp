@@ -281,5 +281,15 @@ TEST(Scaling, FactorAndPeak)
   EXPECT_THAT(refusal([&] { scaled_to_peak(m, 0); }), HasSubstr("peak acceleration = 0 m/s2; must be > 0"));
   EXPECT_THAT(refusal([&] { scaled(m, NAN); }), HasSubstr("scale factor = nan"));
 }
+
+TEST(Repeated, SecondTimeAfterAPauseAndOverlapping)
+{
+  const Motion m({0, 2, -1}, 0.5);
+  EXPECT_EQ(repeated(m, 1.8).accelerations(), (std::vector<double>{0, 2, -1, 0, 0, 2, -1}));
+  EXPECT_EQ(repeated(m, 0.5).accelerations(), (std::vector<double>{0, 2, 1, -1}));
+  EXPECT_EQ(repeated(m, 2).duration(), 3);
+  EXPECT_TRUE(repeated(Motion(), 1).at_rest());
+  EXPECT_THAT(refusal([&] { repeated(m, 0); }), HasSubstr("must be > 0"));
+}
 } // namespace
 } // namespace isostat
