@@ -17,15 +17,14 @@ half a cycle each, and inside a half cycle the strain, which runs one way there,
 tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles after the onset of liquefaction than before,
 they get half of the x axis, and its label says so. A column that is missing costs its curve or panel, with a note.
 """
-import argparse
-import pathlib
 import sys
 
 import numpy as np
 
-from plots_common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, STYLE, BadInput, Run, curves, draw_path,
+from plots_common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, curves, draw_path,
                           explain_median, legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt,
                           two_rows)
+from plots_main import draw_results
 from plots_simple_shear import rotation, shear_path
 
 
@@ -122,32 +121,10 @@ FIGURES = {
 }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=pathlib.Path, help="folder with history.csv and summary.json")
-    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "figures"
-    try:
-        run = Run(arguments.results)
-        out.mkdir(parents=True, exist_ok=True)
-    except (BadInput, OSError) as error:
-        note(error)
-        return 2
-    plt.rcParams.update(STYLE)
-    for name, draw in FIGURES.items():
-        figure = draw(run)
-        if figure is None:
-            if name == "fig_principal_stress" and not run.shear:
-                continue  # only simple shear turns the stresses
-            note(f"{name}: none of its columns is there; not drawn")
-            continue
-        figure.suptitle(run.title, fontsize=9.5, x=0.01, ha="left")
-        figure.savefig(out / f"{name}.png")
-        plt.close(figure)
-        print(out / f"{name}.png")
-    return 0
+def undrawn(name, run):
+    if name != "fig_principal_stress" or run.shear:  # only simple shear turns the stresses
+        note(f"{name}: none of its columns is there; not drawn")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(draw_results(__doc__.splitlines()[0], "history.csv and summary.json", Run, FIGURES, undrawn))

@@ -22,8 +22,6 @@ What the run does not have is left out: a dry soil has no r_u, a base at rest no
 The input is the motion of a rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in
 compression.
 """
-import argparse
-import pathlib
 import sys
 
 from column_results import Column
@@ -31,7 +29,7 @@ from plots_column_consolidation import isochrones, settlement
 from plots_column_grains import grains_history, grains_map, grains_profiles
 from plots_column_motion import motions, spectra, transfer
 from plots_column_soil import histories, loops, profiles, ru_map
-from plots_common import STYLE, BadInput, note, plt
+from plots_main import draw_results
 
 FIGURES = {
     "fig_motions": motions,
@@ -49,32 +47,5 @@ FIGURES = {
 }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=pathlib.Path, help="folder with history.csv, profiles.h5, scene.toml")
-    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "figures"
-    try:
-        column = Column(arguments.results)
-        out.mkdir(parents=True, exist_ok=True)
-    except KeyError as error:
-        note(f"scene.toml: {error} is missing, or is no unit")
-        return 2
-    except (BadInput, OSError, ValueError) as error:
-        note(error)
-        return 2
-    plt.rcParams.update(STYLE)
-    for name, draw in FIGURES.items():
-        figure = draw(column)
-        if figure is None:
-            continue
-        figure.suptitle(column.title, fontsize=9.5, x=0.01, ha="left")
-        figure.savefig(out / f"{name}.png")
-        plt.close(figure)
-        print(out / f"{name}.png")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(draw_results(__doc__.splitlines()[0], "history.csv, profiles.h5, scene.toml", Column, FIGURES))
