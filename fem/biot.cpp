@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/biot.hpp"
 
-#include "base/error.hpp"
 #include "fem/axes.hpp"
 #include "fem/biot_integrals.hpp"
+#include "fem/petsc_check.hpp"
 
-#include <fmt/format.h>
 #include <petscmat.h>
 
 namespace isostat
 {
 namespace
 {
-void check(PetscErrorCode code)
-{
-  const char *text = nullptr;
-  if (code)
-    {
-      PetscErrorMessage(code, &text, nullptr);
-      throw RunFailure(fmt::format("pore pressure system: PETSc error {}: {}", static_cast<int>(code), text));
-    }
-}
+void check(PetscErrorCode code) { petsc_check(code, "pore pressure system"); }
 
 /// Entries (row, column, value) that add up.
 struct Triplets

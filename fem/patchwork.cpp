@@ -24,6 +24,20 @@ void scatter(const std::vector<T> &mine, const std::vector<std::size_t> &places,
   for (std::size_t k = 0; k < places.size(); ++k)
     all[places[k]] = mine[k];
 }
+/// Where points of a part are in the mesh, for a message that counts them in the part; empty if they count alike.
+std::string which(const Patchwork::Part &part)
+{
+  constexpr std::size_t most = 20;
+  bool alike = true;
+  std::string places;
+  for (std::size_t k = 0; k < part.places.size(); ++k)
+    {
+      alike &= part.places[k] == k;
+      if (k <= most)
+        places += (k == 0 ? "" : ", ") + (k == most ? "..." : std::to_string(part.places[k]));
+    }
+  return alike ? "" : "material '" + part.material->name() + "', whose points are " + places + " of the mesh: ";
+}
 } // namespace
 
 Patchwork::Patchwork(std::vector<Part> parts) : parts_(std::move(parts))
@@ -57,10 +71,10 @@ void Patchwork::trial(std::span<const Gradient> increments, std::span<Stress> st
         {
           parts_[k].material->trial(gathered<Gradient>(increments, parts_[k].places), mine);
         }
-      catch (const RunFailure &)
+      catch (const RunFailure &failure)
         {
           rollback(); // of all: the parts before this one have a trial
-          throw;
+          throw RunFailure(which(parts_[k]) + failure.what());
         }
       scatter(mine, parts_[k].places, stresses);
     }

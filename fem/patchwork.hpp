@@ -6,7 +6,8 @@ namespace isostat
 {
 /// Materials whose points lie anywhere among those of the mesh, as one: part k has the points `places[k]`, in that
 /// order. A part whose points are shared out over processes can so have all of its points in one batch, whatever layers
-/// lie between them.   cost: a copy of increments and stresses   tested: tests/fem/material_test.cpp
+/// lie between them. A failure says which points of the mesh those of its part are.   cost: a copy of increments and
+/// stresses   tested: tests/fem/material_test.cpp
 class Patchwork : public Material
 {
 public:

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/statics_system.hpp"
 
-#include "base/error.hpp"
 #include "fem/biot_integrals.hpp"
+#include "fem/petsc_check.hpp"
 #include "fem/strain_matrix.hpp"
 
-#include <fmt/format.h>
 #include <petscmat.h>
 
 namespace isostat
 {
 namespace
 {
-void check(PetscErrorCode code)
-{
-  const char *text = nullptr;
-  if (code)
-    {
-      PetscErrorMessage(code, &text, nullptr);
-      throw RunFailure(fmt::format("system of statics: PETSc error {}: {}", static_cast<int>(code), text));
-    }
-}
+void check(PetscErrorCode code) { petsc_check(code, "system of statics"); }
 } // namespace
 
 template <int dim>
