@@ -3,17 +3,19 @@
 // its packings took in each step, and the program's own placement and balance.
 //
 //   paths/d0 ... dN/history.h5     ->   columns side by side, each as the one that was run but later by a lag of its
-//   own (grains.path_depths of a run:        step by step:  greatest load of a rank + elements + network
+//   own (grains.path_depths of a run:        step by step:  longest rank + elements + network
 //    all its levels)
 //
-//   shared      every rank has the whole mesh, packings go where they balance     t = max_r load_r + N t_el +
-//   Allgatherv distributed every rank has its columns, with their packings for good          t = max_r load_r + N/R
+//   shared      every rank has the whole mesh, packings go where they balance     t = max_r T_r + N t_el +
+//   Allgatherv distributed every rank has its columns, with their packings for good          t = max_r T_r + N/R
 //   t_el + halo
 //
 //   rank_model results/COLUMN/paths --step-seconds 36e-6 --element-seconds 3.2e-6
 //
+// T_r: the threads of a rank take its packings in the order of falling cost, each when it is free.
+//
 // Assumed, not measured: the network, cores as fast as the one measured, and lags. Efficiency is the time of all
-// packings over ranks and wall clock.
+// packings over cores and wall clock.
 #include "apps/common/main_guard.hpp"
 #include "base/hdf5.hpp"
 #include "coupling/placement.hpp"
@@ -22,6 +24,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <numeric>
+#include <queue>
 #include <random>
 
 namespace
@@ -36,6 +40,7 @@ struct Options
   double latency = 2e-6, bandwidth = 10e9; ///< s; bytes/s
   double packing_bytes = 405e3;            ///< of a packing that moves
   double lag = 1;                          ///< columns start later by a random time up to this, s
+  int threads = 1;                         ///< of a rank
   std::size_t interval = 100;              ///< steps between two looks at the balance
   std::uint64_t seed = 1;
 };
@@ -99,7 +104,7 @@ struct Model
   double packings = 0, busiest = 0, elements = 0, network = 0; ///< s: all packings together; wall clock of the rest
   std::size_t moves = 0;
   double wall() const { return busiest + elements + network; }
-  double efficiency(int ranks) const { return packings / (ranks * wall()); }
+  double efficiency(int cores) const { return packings / (cores * wall()); }
 };
 
 double gather_seconds(std::size_t bytes, int ranks, const Options &o)
@@ -107,12 +112,33 @@ double gather_seconds(std::size_t bytes, int ranks, const Options &o)
   return ranks == 1 ? 0 : std::ceil(std::log2(ranks)) * o.latency + static_cast<double>(bytes) / o.bandwidth;
 }
 
-double greatest_load(const std::vector<double> &seconds, const Owners &owners, int ranks)
+/// Wall clock of a rank whose threads take its packings in the order of falling mean cost, each when it is free.
+double makespan(const std::vector<double> &seconds, const std::vector<std::size_t> &order, int threads)
 {
-  std::vector<double> loads(ranks, 0.0);
-  for (std::size_t id = 0; id < seconds.size(); ++id)
-    loads[owners[id]] += seconds[id];
-  return *std::ranges::max_element(loads);
+  std::priority_queue<double, std::vector<double>, std::greater<>> busy_until;
+  for (int t = 0; t < threads; ++t)
+    busy_until.push(0);
+  double last = 0;
+  for (std::size_t id : order)
+    {
+      const double end = busy_until.top() + seconds[id];
+      busy_until.pop();
+      busy_until.push(end);
+      last = std::max(last, end);
+    }
+  return last;
+}
+
+/// Packings of each rank, dearest first.
+std::vector<std::vector<std::size_t>> orders_of(const std::vector<double> &mean, const Owners &owners, int ranks)
+{
+  std::vector<std::size_t> all(mean.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::ranges::stable_sort(all, [&](std::size_t a, std::size_t b) { return mean[a] > mean[b]; });
+  std::vector<std::vector<std::size_t>> orders(ranks);
+  for (std::size_t id : all)
+    orders[owners[id]].push_back(id);
+  return orders;
 }
 
 Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const Options &o)
@@ -125,6 +151,7 @@ Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const
   if (!shared)
     for (std::size_t id = 0; id < n; ++id)
       owners[id] = static_cast<int>(id * ranks / n);
+  auto orders = orders_of(mean, owners, ranks);
   Model model;
   for (std::size_t step = 0; step < n_steps; ++step)
     {
@@ -134,10 +161,16 @@ Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const
           mean[id] = step == 0 ? seconds[id] : (1 - forget) * mean[id] + forget * seconds[id];
           model.packings += seconds[id];
         }
-      model.busiest += greatest_load(seconds, owners, ranks);
+      double longest = 0;
+      for (const auto &order : orders)
+        longest = std::max(longest, makespan(seconds, order, o.threads));
+      model.busiest += longest;
       model.elements += o.element_seconds * static_cast<double>(shared ? n : n / ranks);
       model.network += shared ? gather_seconds(n * row_bytes, ranks, o) : (ranks > 1 ? 6 * o.latency : 0);
-      if (!shared || (step + 1) % o.interval != 0)
+      if ((step + 1) % o.interval != 0)
+        continue;
+      orders = orders_of(mean, owners, ranks);
+      if (!shared)
         continue;
       const Owners next = rebalanced(mean, owners, ranks, {});
       std::size_t moved = 0;
@@ -146,6 +179,7 @@ Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const
       model.moves += moved;
       model.network += static_cast<double>(moved) * o.packing_bytes / (o.bandwidth * ranks) * 2;
       owners = next;
+      orders = orders_of(mean, owners, ranks);
     }
   return model;
 }
@@ -153,19 +187,20 @@ Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const
 void report(const Records &records, const Options &options)
 {
   fmt::print(
-      "| columns | packings | ranks | mesh | wall clock, s | efficiency | busiest rank, s | elements, s | network, s "
-      "| moves |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| columns | packings | cores | ranks | mesh | wall clock, s | efficiency | busiest rank, s | elements, s | "
+      "network, s | moves |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   const std::vector<std::pair<std::size_t, int>> cases = {{1, 1},     {1, 2},      {16, 16},    {256, 16},
                                                           {256, 256}, {4096, 256}, {4096, 4096}};
-  for (const auto &[columns, ranks] : cases)
+  for (const auto &[columns, cores] : cases)
     for (const bool shared : {true, false})
       {
-        if (!shared && columns < static_cast<std::size_t>(ranks))
+        const int ranks = cores / options.threads;
+        if (cores % options.threads != 0 || (!shared && columns < static_cast<std::size_t>(ranks)))
           continue;
         const Block block(records, columns, options);
         const Model m = run(block, records.n_steps(), ranks, shared, options);
-        fmt::print("| {} | {} | {} | {} | {:.0f} | {:.2f} | {:.0f} | {:.1f} | {:.1f} | {} |\n", columns,
-                   block.n_packings(), ranks, shared ? "shared" : "distributed", m.wall(), m.efficiency(ranks),
+        fmt::print("| {} | {} | {} | {} | {} | {:.0f} | {:.2f} | {:.0f} | {:.1f} | {:.1f} | {} |\n", columns,
+                   block.n_packings(), cores, ranks, shared ? "shared" : "distributed", m.wall(), m.efficiency(cores),
                    m.busiest, m.elements, m.network, m.moves);
       }
 }
@@ -182,6 +217,7 @@ int main(int argc, char **argv)
   app.add_option("--latency", options.latency, "of a message, s")->check(CLI::NonNegativeNumber);
   app.add_option("--bandwidth", options.bandwidth, "of a rank, bytes/s")->check(CLI::PositiveNumber);
   app.add_option("--packing-bytes", options.packing_bytes, "of a packing that moves")->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads, "of a rank; they share its packings")->check(CLI::Range(1, 1024));
   app.add_option("--lag", options.lag, "columns are late by a random time up to this, s")
       ->check(CLI::NonNegativeNumber);
   return parse_and_run(app, argc, argv, [&] { report(read_records(options.records), options); });

@@ -15,6 +15,7 @@
 #include "apps/common/main_guard.hpp"
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/common/scene_options.hpp"
 #include "base/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
@@ -23,21 +24,11 @@ namespace
 {
 using namespace isostat;
 
-struct Options
-{
-  std::string scene, output, command_line;
-  std::vector<std::string> set;
-  bool validate = false, print_defaults = false, overwrite = false, quiet = false, no_figures = false;
-  int threads = 1;
-};
-
-int run_scene(const Options &options)
+int run_scene(const SceneOptions &options)
 {
   BiaxialRequest request;
   request.scene = read_biaxial_scene(options.scene, options.set);
-  request.folder = options.output.empty() ? request.scene.output.folder : options.output;
-  if (!request.folder.has_filename()) // a slash at the end
-    request.folder = request.folder.parent_path();
+  request.folder = options.folder(request.scene.output.folder);
   request.command_line = options.command_line;
   request.overwrite = options.overwrite;
   request.quiet = options.quiet;
@@ -56,7 +47,7 @@ int run_scene(const Options &options)
   return 0;
 }
 
-int run_with_mpi(const Options &options)
+int run_with_mpi(const SceneOptions &options)
 {
   char name[] = "biaxial", *only_name[] = {name, nullptr}, **arguments = only_name;
   int n = 1;
@@ -72,18 +63,10 @@ int run_with_mpi(const Options &options)
 int run_command(int argc, char **argv)
 {
   CLI::App app{"A block of soil in plane strain, confined and compressed: does a shear band form?"};
-  Options options;
-  app.add_option("scene", options.scene, "scene file (TOML); see --print-defaults");
-  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  app.add_option("--set", options.set, "override a key, e.g. --set test.steps=100 (repeatable)");
-  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
-  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
-  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  app.add_option("-t,--threads", options.threads,
-                 "threads that share the packings, 0: all the process may use; results do not depend on it")
-      ->check(CLI::Range(0, 1024));
+  SceneOptions options;
+  add_scene_options(app, options,
+                    {"scene file (TOML); see --print-defaults", "test.steps=100",
+                     "threads that share the packings, 0: all the process may use; results do not depend on it"});
   options.command_line = command_line(argc, argv);
   bool ready = false; // not after --help
   const int code = parse_and_run(app, argc, argv, [&] {

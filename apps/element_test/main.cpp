@@ -15,6 +15,7 @@
 #include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
+#include "apps/common/scene_options.hpp"
 #include "apps/common/test_summary.hpp"
 #include "base/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
@@ -26,15 +27,6 @@ namespace
 {
 using namespace isostat;
 namespace fs = std::filesystem;
-
-struct Options
-{
-  std::string scene, output, command_line;
-  std::vector<std::string> set;
-  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
-       no_figures = false;
-  int threads = 0;
-};
 
 /// The state of a run: fresh from the specimen, or from a checkpoint.
 struct Run
@@ -73,7 +65,7 @@ Run start(const Scene &scene, const fs::path &folder, bool quiet)
   return run;
 }
 
-void run_test(const Options &options)
+void run_test(const SceneOptions &options)
 {
   const Scene scene = read_scene(options.scene, options.set);
   Assembly::default_threads = options.threads;
@@ -82,9 +74,7 @@ void run_test(const Options &options)
       fmt::print("{}", to_toml(scene));
       return;
     }
-  fs::path folder = options.output.empty() ? scene.output.folder : options.output;
-  if (!folder.has_filename()) // a slash at the end
-    folder = folder.parent_path();
+  const fs::path folder = options.folder(scene.output.folder);
   const FolderUse use = options.resume      ? FolderUse::resume
                         : options.overwrite ? FolderUse::overwrite
                                             : FolderUse::fresh;
@@ -128,21 +118,14 @@ int run_command(int argc, char **argv)
 {
   CLI::App app{
       "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic"};
-  Options options;
-  app.add_option("scene", options.scene, "scene file (TOML); see docs/scene_reference.md");
-  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  app.add_option("--set", options.set, "override a key, e.g. --set motion.damping=0.3 (repeatable)");
-  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
-  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
-  app.add_flag("--print-manual", options.print_manual, "print docs/scene_reference.md: every key of a scene");
-  auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace results that are there");
-  app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  app.add_option("-t,--threads", options.threads,
-                 "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
-                 "results do not depend on it. Give 1 to runs that go side by side")
-      ->check(CLI::Range(0, 1024));
+  SceneOptions options;
+  options.threads = 0;
+  add_scene_options(
+      app, options,
+      {"scene file (TOML); see docs/scene_reference.md", "motion.damping=0.3",
+       "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
+       "results do not depend on it. Give 1 to runs that go side by side",
+       "docs/scene_reference.md"});
   options.command_line = command_line(argc, argv);
   return parse_and_run(app, argc, argv, [&] {
     if (options.print_defaults)

@@ -14,6 +14,7 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/common/scene_options.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/ranks.hpp"
 #include "base/replace_file.hpp"
@@ -26,15 +27,6 @@ namespace
 {
 using namespace isostat;
 namespace fs = std::filesystem;
-
-struct Options
-{
-  std::string scene, output, command_line;
-  std::vector<std::string> set;
-  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
-       no_figures = false;
-  int threads = 1;
-};
 
 template <int dim>
 RunResult run_kind(const RunRequest &request)
@@ -56,13 +48,11 @@ RunResult run_dimension(const RunRequest &request)
     }
 }
 
-RunRequest request_of(const Options &options)
+RunRequest request_of(const SceneOptions &options)
 {
   RunRequest request;
   request.scene = read_column_scene(options.scene, options.set);
-  request.folder = options.output.empty() ? request.scene.output.folder : options.output;
-  if (!request.folder.has_filename()) // a slash at the end
-    request.folder = request.folder.parent_path();
+  request.folder = options.folder(request.scene.output.folder);
   request.command_line = options.command_line;
   request.resume = options.resume;
   request.overwrite = options.overwrite;
@@ -75,7 +65,7 @@ RunRequest request_of(const Options &options)
   return request;
 }
 
-void run_scene(const Options &options)
+void run_scene(const SceneOptions &options)
 {
   const RunRequest request = request_of(options);
   on_first_rank([&] {
@@ -95,7 +85,7 @@ void run_scene(const Options &options)
 }
 
 /// With MPI up. No PETSc option is read from our command line.
-int run_on_ranks(const Options &options)
+int run_on_ranks(const SceneOptions &options)
 {
   char name[] = "soil_column", *only_name[] = {name, nullptr}, **arguments = only_name;
   int n = 1;
@@ -108,7 +98,7 @@ int run_on_ranks(const Options &options)
 }
 
 /// What needs no MPI. @return  true if that was not all
-bool print_something(const Options &options)
+bool print_something(const SceneOptions &options)
 {
   if (options.print_defaults)
     fmt::print("{}", default_column_scene());
@@ -126,21 +116,13 @@ bool print_something(const Options &options)
 int run_command(int argc, char **argv)
 {
   CLI::App app{"A column of saturated soil in layers: shaken, loaded, consolidating"};
-  Options options;
-  app.add_option("scene", options.scene, "scene file (TOML); see docs/column_scene_reference.md");
-  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  app.add_option("--set", options.set, "override a key, e.g. --set analysis.safety=0.5 (repeatable)");
-  app.add_flag("--validate", options.validate, "check the scene, print it with every key, and stop");
-  app.add_flag("--print-defaults", options.print_defaults, "print a commented scene with all keys, units and ranges");
-  app.add_flag("--print-manual", options.print_manual, "print docs/column_scene_reference.md: every key of a scene");
-  auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace results that are there");
-  app.add_flag("--resume", options.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  app.add_option("-t,--threads", options.threads,
-                 "threads of each rank that share its packings of grains, 0: all the process may use; results do not "
-                 "depend on it")
-      ->check(CLI::Range(0, 1024));
+  SceneOptions options;
+  add_scene_options(
+      app, options,
+      {"scene file (TOML); see docs/column_scene_reference.md", "analysis.safety=0.5",
+       "threads of each rank that share its packings of grains, 0: all the process may use; results do not "
+       "depend on it",
+       "docs/column_scene_reference.md"});
   options.command_line = command_line(argc, argv);
   bool ready = false; // not after --help
   const int code = parse_and_run(app, argc, argv, [&] { ready = print_something(options); });
