@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a run of biaxial from its history.csv, maps.h5 and summary.json.
 
-    plots_biaxial.py RESULTS_FOLDER [--out DIR]              default DIR: RESULTS_FOLDER/figures
+    plots_biaxial.py RESULTS_FOLDER [--out DIR] [--beside OTHER_RUN ...]    default DIR: RESULTS_FOLDER/figures
 
 fig_stress_strain.png   axial stress and volumetric strain against axial strain, and the scatter of the shear strain
 fig_shear_maps.png      shear strain since the start over the block at several axial strains
 fig_rate_maps.png       shear strain between two of them: where the block deforms at the time
+fig_band.png            axial stress beside that of other runs, shear strain at the end, where it came last, void ratio
 fig_grain_maps.png      void ratio and redundancy index at the end, of packings
 
 Of fig_rate_maps the last map is asked for the inclination of a band: the direction of least spread of the points with
@@ -19,7 +20,7 @@ import sys
 import h5py
 import numpy as np
 
-from plots_common import BLACK, BLUE, ORANGE, STYLE, BadInput, note, plt, read_history, read_summary
+from plots_common import BLACK, BLUE, GREEN, ORANGE, STYLE, BadInput, note, plt, read_history, read_summary
 
 PANELS = 5
 
@@ -36,11 +37,20 @@ class Block:
             raise BadInput(f"{folder}: only the start of a run")
         self.size = [self.summary.get(key, float(self.maps[axis].max())) for key, axis in
                      (("width_m", "x"), ("height_m", "z"))]
+        self.counts = [int(self.summary.get(key, 1)) for key in ("cells_across", "cells_up")]
+        self.beside = []
 
     def chosen(self):
         """Maps to show: the last one, and others at equal distances in axial strain."""
         wanted = np.linspace(0, self.strain[-1], PANELS + 1)[1:]
         return sorted({int(np.argmin(np.abs(self.strain - s))) for s in wanted} - {0})
+
+    def cells(self, values):
+        """Means over the elements."""
+        column, row = (np.minimum((self.maps[axis] / size * n).astype(int), n - 1) for axis, size, n in
+                       zip("xz", self.size, self.counts))
+        number = row * self.counts[0] + column
+        return np.bincount(number, values) / np.bincount(number)
 
     def show(self, axes, values, low, high, label):
         """Points as the squares around them: sorted by place they are a table."""
@@ -122,6 +132,36 @@ def report_band(block, field):
           f"{np.sqrt(max(values[0], 0) / values[1]):.2f}")
 
 
+def band(block):
+    """All of a band in one figure. Shear strains are over their mean."""
+    before, _, came = list(differences(block))[-1]
+    total = block.maps["shear_strain"][-1] / block.maps["shear_strain"][-1].mean()
+    for when, field in ("the start", total), (f"{100 * block.strain[before]:.2g} %", came):
+        elements = block.cells(field)
+        print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} to "
+              f"{elements.max():.2f}")
+    maps = [(total, 0, "Shear strain / mean", "since the start"),
+            (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
+    if block.maps["redundancy"].any():
+        void = block.maps["void_ratio"][-1]
+        maps.append((void, void.min(), "Void ratio $e$", "at the end"))
+    figure, axes = plt.subplots(1, 1 + len(maps), figsize=(3.2 + 2.1 * len(maps), 3.5), constrained_layout=True,
+                                gridspec_kw={"width_ratios": [1.7] + [1] * len(maps)})
+    runs = [("this block", block.history)] + [(other.title, other.history) for other in block.beside]
+    for (label, history), color in zip(runs, (BLACK, ORANGE, BLUE, GREEN)):
+        axes[0].plot(100 * history["axial_strain"], history["axial_stress"] / 1e3, color=color, label=label)
+    axes[0].set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
+    axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
+    axes[0].set_xlim(left=0)
+    axes[0].set_ylim(bottom=0)
+    if block.beside:
+        axes[0].legend(loc="lower right")
+    for panel, (field, low, bar, label) in zip(axes[1:], maps):
+        image = block.show(panel, field, low, np.quantile(field, 0.99), label)
+        figure.colorbar(image, ax=panel, label=bar, shrink=0.8)
+    return figure
+
+
 def grain_maps(block):
     if not block.maps["redundancy"].any():
         return None
@@ -137,6 +177,7 @@ FIGURES = {
     "fig_stress_strain": stress_strain,
     "fig_shear_maps": shear_maps,
     "fig_rate_maps": rate_maps,
+    "fig_band": band,
     "fig_grain_maps": grain_maps,
 }
 
@@ -145,10 +186,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=pathlib.Path, help="folder with history.csv, maps.h5, summary.json")
     parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
+    parser.add_argument("--beside", type=pathlib.Path, nargs="*", default=[],
+                        help="runs whose axial stress fig_band shows too")
     arguments = parser.parse_args()
     out = arguments.out or arguments.results / "figures"
     try:
         block = Block(arguments.results)
+        block.beside = [Block(folder) for folder in arguments.beside]
         out.mkdir(parents=True, exist_ok=True)
     except (BadInput, OSError, KeyError, ValueError) as error:
         note(error)

@@ -21,12 +21,12 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-StaticsSettings settings_of(const BiaxialScene &scene)
+StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
 {
   StaticsSettings settings;
   const double way = scene.test.axial_strain * scene.mesh.height;
   settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
-  settings.tolerance = scene.newton.tolerance;
+  settings.tolerance = tolerance;
   settings.least_force = scene.test.confinement * scene.mesh.width;
   settings.max_iterations = scene.newton.max_iterations;
   settings.iterations_per_tangent = scene.newton.iterations_per_tangent;
@@ -46,9 +46,12 @@ public:
   explicit BiaxialRun(const BiaxialRequest &request)
       : request_(request), scene_(request.scene), space_(scene_),
         material_(block_material(scene_, space_, request.threads)),
-        statics_(space_, *material_.material, settings_of(scene_))
+        statics_(space_, *material_.material, settings_of(scene_, scene_.newton.tolerance))
   {
     summary_.points = space_.n_points();
+    const double last = scene_.newton.last_tolerance.value_or(0);
+    for (double tolerance = 2 * scene_.newton.tolerance; tolerance <= last * (1 + 1e-9); tolerance *= 2)
+      looser_.push_back(std::make_unique<Statics<2>>(space_, *material_.material, settings_of(scene_, tolerance)));
   }
 
   BiaxialSummary go();
@@ -57,6 +60,7 @@ private:
   void open();
   void record();
   void step();
+  StaticsEffort solve();
   void back_to_committed();
   void say(const std::string &line) const
   {
@@ -70,6 +74,9 @@ private:
   BlockMesh space_;
   BlockMaterial material_;
   Statics<2> statics_;
+  std::vector<std::unique_ptr<Statics<2>>> looser_; ///< for steps that fail; double the tolerance each
+  StaticsEffort effort_;
+  double residual_ = 0;
   BiaxialSummary summary_;
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;
@@ -102,11 +109,11 @@ void BiaxialRun::record()
     }
   std::sort(shear.begin(), shear.end());
   const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
-  const StaticsEffort &effort = statics_.effort();
+  const StaticsEffort &effort = effort_;
   const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
   history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
                                        1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
-                                       1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
+                                       1.0 * effort.rejected, residual_, mean, quantile, shear.back()});
   history_->flush();
   summary_.axial_strain = vertical;
   summary_.volumetric_strain = volume;
@@ -119,11 +126,52 @@ void BiaxialRun::record()
     }
 }
 
+/// One step; what is left of it after a failure with looser tolerances in turn. The next step starts with the first one
+/// again, and as residuals are those of the whole load, it makes up for what was let through.
+StaticsEffort BiaxialRun::solve()
+{
+  const double end = (summary_.steps + 1.0) / scene_.test.steps;
+  Statics<2> *solver = &statics_;
+  StaticsEffort sum;
+  for (std::size_t failures = 0;; ++failures)
+    {
+      bool done = true;
+      try
+        {
+          solver->step(end - solver->time());
+        }
+      catch (const RunFailure &)
+        {
+          if (failures == looser_.size())
+            {
+              if (solver != &statics_)
+                statics_.restore(solver->save());
+              throw;
+            }
+          done = false;
+        }
+      const StaticsEffort &effort = solver->effort();
+      sum.substeps += effort.substeps;
+      sum.rejected += effort.rejected;
+      sum.iterations += effort.iterations;
+      sum.trials += effort.trials;
+      if (done)
+        break;
+      const StaticsState state = solver->save();
+      solver = looser_[failures].get();
+      solver->restore(state);
+    }
+  residual_ = solver->residual();
+  if (solver != &statics_)
+    statics_.restore(solver->save());
+  return sum;
+}
+
 void BiaxialRun::step()
 {
-  statics_.step(1.0 / scene_.test.steps);
+  effort_ = solve();
   ++summary_.steps;
-  const StaticsEffort &effort = statics_.effort();
+  const StaticsEffort &effort = effort_;
   summary_.iterations += effort.iterations;
   summary_.trials += effort.trials;
   summary_.substeps += effort.substeps;
@@ -132,10 +180,10 @@ void BiaxialRun::step()
   if (summary_.steps % scene_.output.map_every == 0 || summary_.steps == scene_.test.steps)
     files_->map(summary_.axial_strain, statics_);
   say(fmt::format("step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
-                  "{} trials, {} sub-steps, {} rejected",
+                  "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
                   summary_.steps, scene_.test.steps, duration_text(seconds_since(begin_)), summary_.axial_strain,
                   summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
-                  effort.substeps, effort.rejected));
+                  effort.substeps, effort.rejected, residual_));
 }
 
 /// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.

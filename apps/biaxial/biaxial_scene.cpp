@@ -136,6 +136,10 @@ constexpr Key keys[] = {
    .text = "Of the residual over the force scale, which is confinement times width or more. Grains need one above their "
            "noise, some 1e-2.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.tolerance; }},
+  {.path = "newton.last_tolerance", .presence = Presence::optional, .value = "0.08", .range = fraction,
+   .text = "What is left of a step without equilibrium is tried again with the tolerance doubled, up to this; the next "
+           "step has the first one again. Left out: the run ends there.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.last_tolerance; }},
   {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25", .range = counts,
    .text = "Of a sub-step; then it is halved.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.max_iterations; }},
@@ -168,6 +172,8 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     document.refuse("soil.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
   if (scene.soil.iwan.phase_transformation_ratio > scene.soil.iwan.strength_ratio)
     document.refuse("soil.phase_transformation_ratio", "must not exceed strength_ratio. Correct one of them.");
+  if (scene.newton.last_tolerance && *scene.newton.last_tolerance < scene.newton.tolerance)
+    document.refuse("newton.last_tolerance", "must not be below newton.tolerance. Correct one of them.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

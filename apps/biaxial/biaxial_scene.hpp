@@ -43,6 +43,7 @@ struct BiaxialNewton
 {
   double tolerance = 1e-6;
   unsigned max_iterations = 25, iterations_per_tangent = 1, max_halvings = 8;
+  std::optional<double> last_tolerance; ///< the greatest with which a step that failed is tried again
 
   bool operator==(const BiaxialNewton &) const = default;
 };
