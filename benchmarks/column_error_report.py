@@ -18,7 +18,7 @@ from speed_error.figures import STYLE, front, spread_labels  # noqa: E402
 RECOMMENDED = "default"
 LIQUEFIED = 0.95
 LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
-    "default": ("#1a1a1a", "*", "default, recommended"),
+    "default": ("#1a1a1a", "*", "default (recommended)"),
     "reference": ("#7f7f7f", "P", "next slow after the reference"),
     "least": ("#0072b2", "o", "least steps"),
     "tolerance": ("#56b4e9", "o", "tolerance"),
@@ -141,53 +141,63 @@ class Runs:
     def deviations(self):
         """Standard deviation of each strong quantity between seeds of 250 grains."""
         values = [quantities(f) for f in self.of("strong").values()]
-        return {q: np.nanstd([v[q] for v in values], ddof=1) for q in QUANTITIES} if len(values) > 1 else None
+        return {q: np.nanstd([v[q] for v in values], ddof=1) if len(values) > 2 else np.nan for q in QUANTITIES}
 
     def distance(self, one, other):
         """Mean over the strong quantities of the difference over the standard deviation between seeds."""
         a, b, s = quantities(one), quantities(other), self.deviations()
-        return float(np.nanmean([abs(a[q] - b[q]) / s[q] for q in QUANTITIES if s[q] > 0]))
+        parts = [abs(a[q] - b[q]) / s[q] for q in QUANTITIES if s[q] > 0]
+        return float(np.nanmean(parts)) if parts else np.nan
 
     def between_seeds(self):
         runs = list(self.of("strong").values())
         return float(np.mean([self.distance(a, b) for a, b in itertools.combinations(runs, 2)]))
 
-    def errors(self, level, label, grains=250):
+    def seeds(self, level, grains=250):
+        """Seeds of the references: those to compare; and those of the weak motion in which a level liquefies."""
+        slow = self.of(level, "reference", grains)
+        brink = [s for s, f in slow.items() if level == "weak" and quantities(f)["thick"] > 0]
+        return sorted(set(slow) - set(brink)), sorted(brink)
+
+    def errors(self, level, label, grains=250, seeds=None):
         """Rows of errors against the reference of the same seed, and of costs."""
         own, slow = self.of(level, label, grains), self.of(level, "reference", grains)
         rows = []
-        for seed in sorted(set(own) & set(slow)):
+        for seed in sorted(set(own) & set(self.seeds(level, grains)[0] if seeds is None else seeds)):
             data, (v, r) = read(own[seed]), differences(own[seed], slow[seed])
-            rows.append({"v": v, "r": r, "cost": data["steps"] * grains, "per_call": data["per_call"],
-                         "seconds": data["seconds"],
+            ours, theirs = (quantities(f[seed])["ru"] for f in (own, slow))
+            rows.append({"v": v, "r": r, "bias": ours / theirs - 1, "cost": data["steps"] * grains,
+                         "per_call": data["per_call"], "seconds": data["seconds"],
                          "distance": self.distance(own[seed], slow[seed]) if level == "strong" else np.nan})
         return rows
 
 
-def numerics_table(runs, level, grains=250):
-    if not runs.of(level, "reference", grains):
+def numerics_table(runs, level, seeds, grains=250):
+    if not seeds:
         return
     strong = level == "strong"
-    seeds = len(runs.of(level, "reference", grains))
-    print(f"\n<!-- numerics, {level}, {grains} grains, {seeds} seeds -->\n")
     head = ["setting", "steps a call", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
     if strong:
         head += ["quantities, over their scatter"]
         head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
-    print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    else:
+        head += ["bias of the final r_u, %", "largest r_u"]
+    print(f"\n<!-- numerics, {level}, {grains} grains, seeds {seeds} -->\n\n| {' | '.join(head)} |\n|" + "---|" * len(head))
     for _, label in runs.labels(level, grains):
-        rows = runs.errors(level, label, grains)
+        rows = runs.errors(level, label, grains, seeds)
         if not rows:
             continue
         mean = {key: mean_and_error([r[key] for r in rows]) for key in rows[0]}
-        shown = label + ("" if len(rows) == seeds else f" ({len(rows)} of the seeds)")
+        folders = [f for s, f in runs.of(level, label, grains).items() if s in seeds]
+        shown = label + ("" if len(rows) == len(seeds) else f" ({len(rows)} of the seeds)")
         cells = [shown, f"{mean['per_call'][0]:.0f}", f"{mean['cost'][0] / 1e6:.0f}", f"{mean['seconds'][0]:.1f}"]
-        cells += ["–"] * 2 if label == "reference" else [percent(*mean["v"]), percent(*mean["r"])]
+        cells += ["–"] * 2 if label == "reference" else [percent(*mean[key]) for key in ("v", "r")]
         if strong:
             cells.append("–" if label == "reference" else f"{mean['distance'][0]:.2f}")
-            values = [quantities(runs.of(level, label, grains)[s]) for s in runs.of(level, "reference", grains)
-                      if s in runs.of(level, label, grains)]
-            cells += [form.format(np.nanmean([v[q] for v in values])) for q, (_, _, _, form) in QUANTITIES.items()]
+            cells += quantity_cells(folders, spread=False)
+        else:
+            cells += ["–" if label == "reference" else percent(*mean["bias"])]
+            cells.append(" and ".join(f"{read(f)['ru'].max():.2f}" for f in folders))
         print("| " + " | ".join(cells) + " |")
 
 
@@ -207,13 +217,13 @@ def twins(runs, level):
             print(f"| {text} | {len(both)} | {percent(*mean_and_error(v))} | {percent(*mean_and_error(r))} | {apart} |")
 
 
-def quantity_cells(folders):
+def quantity_cells(folders, spread=True):
     cells = []
     values = [quantities(f) for f in folders]
     for q, (_, _, _, form) in QUANTITIES.items():
         x = [v[q] for v in values if np.isfinite(v[q])]
         cells.append(form.format(np.mean(x)) if x else "none")
-        if len(x) > 1:
+        if len(x) > 1 and spread:
             cells[-1] += " ± " + form.format(np.std(x, ddof=1))
     return cells
 
@@ -265,36 +275,56 @@ def mesh_table(runs, level):
         print("| " + " | ".join(cells) + " |")
 
 
+def grouped(points):
+    """One label for the default and all that lies on it."""
+    x, y = next((p[:2] for p in points if p[2] == "default"), (np.nan, np.nan))
+    near = [p for p in points if abs(p[0] / x - 1) < 0.05 and abs(p[1] / y - 1) < 0.08]
+    return [p for p in points if p not in near] + [
+        (x, y, f"default, and {len(near) - 1} like it" if len(near) > 1 else "default", p[3])
+        for p in near if p[2] == "default"]
+
+
 def panel(axes, runs, level, key, factor, title, label):
     points = []
     for family, name in runs.labels(level):
         rows = runs.errors(level, name)
         if name.startswith("reference") or not rows or name.endswith("own packings"):
             continue
-        x, (y, error) = np.mean([r["cost"] for r in rows]) / 1e6, mean_and_error([r[key] for r in rows])
+        x, y = np.mean([r["cost"] for r in rows]) / 1e6, mean_and_error([r[key] for r in rows])[0]
+        if not np.isfinite(y):
+            continue
         colour, marker, _ = LOOK[family]
-        bar = min(error, 0.7 * y) if np.isfinite(error) else 0
-        axes.errorbar(x, factor * y, [[factor * bar], [factor * (error if np.isfinite(error) else 0)]], fmt=marker,
-                      color=colour, ms=11 if marker == "*" else 5, elinewidth=0.7, capsize=2)
+        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5, zorder=3 + (marker == "*"))
         points.append((x, factor * y, name, colour))
     settings = list(points)
-    for grains, folders in runs.groups(level, "grains").items():
+    points = grouped(points)
+    sizes = {**runs.groups(level, "grains"), 750: list(runs.of(level, "mean of 3").values())}
+    for grains, folders in sizes.items():
         if len(folders) > 1 and level == "weak":
             x, y = np.mean([read(f)["steps"] for f in folders]) * grains / 1e6, 100 * scatter(folders)[0]
+            x /= 3 if grains == 750 else 1  # steps are those of all three
             axes.plot(x, y, LOOK["size"][1], color=LOOK["size"][0], ms=6)
-            points.append((x, y, f"N = {grains:,}", LOOK["size"][0]))
-    if level == "strong":
+            points.append((x, y, f"N = {grains:,}" if grains != 750 else "3 × N = 250", LOOK["size"][0]))
+    if level == "strong" and points:
         axes.axhline(runs.between_seeds(), color=LOOK["size"][0], lw=1)
         axes.text(0.99, runs.between_seeds() * 1.03, "two seeds", color=LOOK["size"][0], fontsize=7.5, ha="right",
                   transform=axes.get_yaxis_transform())
+    floor = [r[key] for r in runs.errors(level, "reference, 1 ppm larger")]
+    if floor:
+        axes.axhline(factor * np.mean(floor), color="#1a1a1a", lw=0.7, ls=":")
+        axes.text(0.99, factor * np.mean(floor) / 1.03, "reference, motion 1 ppm larger", fontsize=7.5, ha="right",
+                  va="top", transform=axes.get_yaxis_transform())
     axes.set(xscale="log", yscale="log", xlabel="cost, 10⁶ grain-steps", ylabel=label)
     axes.set_title(title, fontsize=9.5, loc="left")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:g}"))
         axis.set_minor_formatter(ticker.NullFormatter())
+    if not points:
+        return
     axes.set_xlim(min(p[0] for p in points) / 1.8, max(p[0] for p in points) * 2.4)
-    axes.set_ylim(min(p[1] for p in points) / 1.5, max(p[1] for p in points) * 1.5)
+    heights = [p[1] for p in points] + ([runs.between_seeds()] if level == "strong" else [])
+    axes.set_ylim(min(heights) / 1.5, max(heights) * 1.3)
     front(axes, settings)
     spread_labels(axes, points)
 
@@ -303,7 +333,7 @@ def draw(runs, path):
     with plt.rc_context({**STYLE, "savefig.dpi": 150}):
         figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.4))
         figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
-        panel(left, runs, "weak", "v", 100, "(a) weak motion: surface velocity", "rms error, % of the rms")
+        panel(left, runs, "weak", "v", 100, "(a) weak motion, far from liquefaction: surface velocity", "rms error, % of the rms")
         panel(right, runs, "strong", "distance", 1, "(b) strong motion: five quantities of the liquefied column",
               "mean difference, standard deviations between seeds")
         handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
@@ -330,11 +360,12 @@ def write(there, table, figure):
     write_csv(runs, table)
     for level in ("weak", "strong"):
         for grains in (250, 1000):
-            numerics_table(runs, level, grains)
+            for seeds in runs.seeds(level, grains):
+                numerics_table(runs, level, seeds, grains)
         twins(runs, level)
         size_table(runs, level)
         mesh_table(runs, level)
-    if runs.of("strong"):
+    if len(runs.of("strong")) > 2:
         print(f"\n<!-- two seeds differ by {runs.between_seeds():.2f} standard deviations -->")
     if runs.of("weak", "reference") and runs.of("strong", "reference"):
         draw(runs, figure)
