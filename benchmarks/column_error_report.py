@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Errors, tables and the figure of column_error.py."""
+import csv
+import functools
+import itertools
+import re
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib import ticker  # noqa: E402
+
+from speed_error.figures import STYLE, front, spread_labels  # noqa: E402
+
+RECOMMENDED = "default"
+LIQUEFIED = 0.95
+LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
+    "default": ("#1a1a1a", "*", "default (recommended)"),
+    "reference": ("#7f7f7f", "P", "next slow after the reference"),
+    "least": ("#0072b2", "o", "least steps"),
+    "tolerance": ("#56b4e9", "o", "tolerance"),
+    "rate": ("#d55e00", "s", "bounds of the rate, 1/s"),
+    "step": ("#009e73", "^", "FE step"),
+    "fast": ("#e69f00", "D", "tolerance 0.03, to 10 1/s, least steps 10"),
+    "size": ("#cc79a7", "h", "scatter of seeds: N grains"),
+    "same": ("#000000", "x", "no other setting: motion 1 ppm larger"),
+}
+QUANTITIES = {  # of the strong motion
+    "t95": ("first r_u > 0.95", "s", 1, "{:.3f}"),
+    "thick": ("liquefied", "m", 1, "{:.1f}"),
+    "peak": ("peak surface acceleration", "m/s2", 1, "{:.2f}"),
+    "arias": ("integral of its square", "m2/s3", 1, "{:.2f}"),
+    "ru": ("final r_u, mean over depth", "-", 1, "{:.3f}"),
+}
+
+
+@functools.lru_cache(maxsize=None)
+def read(folder):
+    """Histories, profiles and cost of a run."""
+    with open(folder / "history.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    data = {name: np.array([float(r[column]) for r in rows]) for name, column in
+            (("t", "time (s)"), ("v", "surface_vx (m/s)"), ("a", "surface_ax (m/s2)"), ("top", "max_ru (-)"))}
+    with h5py.File(folder / "profiles.h5", "r") as file:
+        order = np.argsort(file["depth"])
+        data.update(time=np.array(file["time"]), depth=np.array(file["depth"])[order], ru=np.array(file["ru"])[:, order])
+    text = (folder / "times.txt").read_text(encoding="utf-8")
+    calls, steps = re.search(r"(\d+) calls, ([\d.]+) time steps each", text).groups()
+    data["steps"] = float(calls) * float(steps)
+    data["per_call"] = float(steps)
+    data["seconds"] = float(re.search(r"([\d.]+) s on all", text).group(1))
+    return data
+
+
+def motion(folder, t):
+    data = read(folder)
+    return np.interp(t, data["t"], data["v"])
+
+
+def pressures(folder, time, depth):
+    data = read(folder)
+    at_time = np.array([np.interp(time, data["time"], column) for column in data["ru"].T]).T
+    return np.array([np.interp(depth, data["depth"], row) for row in at_time])
+
+
+def rms(x):
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+def differences(folder, reference):
+    """Of the surface velocity and of r_u over time and depth: rms of the difference over that of the reference."""
+    base = read(reference)
+    ru = pressures(folder, base["time"], base["depth"])
+    return (rms(motion(folder, base["t"]) - base["v"]) / rms(base["v"]), rms(ru - base["ru"]) / rms(base["ru"]))
+
+
+def scatter(folders):
+    """Standard deviation between runs, surface velocity and r_u: its rms over that of their mean."""
+    base, result = read(folders[0]), []
+    for look, axes in ((motion, (base["t"],)), (pressures, (base["time"], base["depth"]))):
+        values = [look(f, *axes) for f in folders]
+        result.append(rms(np.std(values, axis=0, ddof=1)) / rms(np.mean(values, axis=0)))
+    return result
+
+
+def drift(folders, largest):
+    """As differences(), of the means of two ensembles."""
+    base = read(largest[0])
+    result = []
+    for look, axes in ((motion, (base["t"],)), (pressures, (base["time"], base["depth"]))):
+        ours, theirs = (np.mean([look(f, *axes) for f in group], axis=0) for group in (folders, largest))
+        result.append(rms(ours - theirs) / rms(theirs))
+    return result
+
+
+def quantities(folder):
+    data = read(folder)
+    over = np.flatnonzero(data["top"] > LIQUEFIED)
+    height = np.gradient(data["depth"]).mean()
+    return {"t95": data["t"][over[0]] if over.size else np.nan,
+            "thick": height * np.count_nonzero(data["ru"].max(axis=0) > LIQUEFIED), "peak": np.abs(data["a"]).max(),
+            "arias": float(np.sum(0.5 * (data["a"][1:] ** 2 + data["a"][:-1] ** 2) * np.diff(data["t"]))),
+            "ru": data["ru"][-1].mean()}
+
+
+def mean_and_error(values):
+    values = np.array([v for v in values if np.isfinite(v)])
+    if not values.size:
+        return np.nan, np.nan
+    return values.mean(), values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
+
+
+def percent(value, error=np.nan):
+    if not np.isfinite(value):
+        return "–"
+    return f"{100 * value:.1f}" + (f" ± {100 * error:.1f}" if np.isfinite(error) else "")
+
+
+class Runs:
+    """What is there, by case."""
+
+    def __init__(self, there):
+        self.all = there
+
+    def of(self, level, label="default", grains=250, cells=10):
+        return {c.seed: f for c, f in self.all
+                if (c.level, c.label, c.grains, c.cells) == (level, label, grains, cells)}
+
+    def labels(self, level, grains=250):
+        return list(dict.fromkeys((c.family, c.label) for c, _ in self.all
+                                  if c.level == level and c.grains == grains and c.cells == 10 and c.realisations == 1))
+
+    def groups(self, level, of):
+        """Ensembles of the defaults by number of grains or of levels."""
+        keys = sorted({getattr(c, of) for c, _ in self.all if c.level == level and c.label == "default"})
+        return {key: list(self.of(level, **{of: key}).values()) for key in keys}
+
+    def deviations(self):
+        """Standard deviation of each strong quantity between seeds of 250 grains."""
+        values = [quantities(f) for f in self.of("strong").values()]
+        return {q: np.nanstd([v[q] for v in values], ddof=1) if len(values) > 2 else np.nan for q in QUANTITIES}
+
+    def distance(self, one, other):
+        """Mean over the strong quantities of the difference over the standard deviation between seeds."""
+        a, b, s = quantities(one), quantities(other), self.deviations()
+        parts = [abs(a[q] - b[q]) / s[q] for q in QUANTITIES if s[q] > 0]
+        return float(np.nanmean(parts)) if parts else np.nan
+
+    def between_seeds(self):
+        runs = list(self.of("strong").values())
+        return float(np.mean([self.distance(a, b) for a, b in itertools.combinations(runs, 2)]))
+
+    def seeds(self, level, grains=250):
+        """Seeds of the references: those to compare; and those of the weak motion in which a level liquefies."""
+        slow = self.of(level, "reference", grains)
+        brink = [s for s, f in slow.items() if level == "weak" and quantities(f)["thick"] > 0]
+        return sorted(set(slow) - set(brink)), sorted(brink)
+
+    def errors(self, level, label, grains=250, seeds=None):
+        """Rows of errors against the reference of the same seed, and of costs."""
+        own, slow = self.of(level, label, grains), self.of(level, "reference", grains)
+        rows = []
+        for seed in sorted(set(own) & set(self.seeds(level, grains)[0] if seeds is None else seeds)):
+            data, (v, r) = read(own[seed]), differences(own[seed], slow[seed])
+            ours, theirs = (quantities(f[seed])["ru"] for f in (own, slow))
+            rows.append({"v": v, "r": r, "bias": ours / theirs - 1, "cost": data["steps"] * grains,
+                         "per_call": data["per_call"], "seconds": data["seconds"],
+                         "distance": self.distance(own[seed], slow[seed]) if level == "strong" else np.nan})
+        return rows
+
+
+def numerics_table(runs, level, seeds, grains=250):
+    if not seeds:
+        return
+    strong = level == "strong"
+    head = ["setting", "steps a call", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
+    if strong:
+        head += ["quantities, over their scatter"]
+        head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
+    else:
+        head += ["bias of the final r_u, %", "largest r_u"]
+    print(f"\n<!-- numerics, {level}, {grains} grains, seeds {seeds} -->\n\n| {' | '.join(head)} |\n|" + "---|" * len(head))
+    for _, label in runs.labels(level, grains):
+        rows = runs.errors(level, label, grains, seeds)
+        if not rows:
+            continue
+        mean = {key: mean_and_error([r[key] for r in rows]) for key in rows[0]}
+        folders = [f for s, f in runs.of(level, label, grains).items() if s in seeds]
+        shown = label + ("" if len(rows) == len(seeds) else f" ({len(rows)} of the seeds)")
+        cells = [shown, f"{mean['per_call'][0]:.0f}", f"{mean['cost'][0] / 1e6:.0f}", f"{mean['seconds'][0]:.1f}"]
+        cells += ["–"] * 2 if label == "reference" else [percent(*mean[key]) for key in ("v", "r")]
+        if strong:
+            cells.append("–" if label == "reference" else f"{mean['distance'][0]:.2f}")
+            cells += quantity_cells(folders, spread=False)
+        else:
+            cells += ["–" if label == "reference" else percent(*mean["bias"])]
+            cells.append(" and ".join(f"{read(f)['ru'].max():.2f}" for f in folders))
+        print("| " + " | ".join(cells) + " |")
+
+
+def twins(runs, level):
+    """How far runs part that nothing but a millionth of the motion, or their packings in situ, sets apart."""
+    pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
+             "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
+             "packings in situ at a floor of 0.02 1/s": ("rates 0.02 to 2, own packings", "rates 0.02 to 2")}
+    print(f"\n<!-- twins, {level} -->\n\n| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |")
+    print("|---|---|---|---|---|")
+    for text, (one, other) in pairs.items():
+        one, other = runs.of(level, one), runs.of(level, other)
+        both = sorted(set(one) & set(other))
+        if both:
+            v, r = np.transpose([differences(one[s], other[s]) for s in both])
+            apart = f"{np.mean([runs.distance(one[s], other[s]) for s in both]):.2f}" if level == "strong" else "–"
+            print(f"| {text} | {len(both)} | {percent(*mean_and_error(v))} | {percent(*mean_and_error(r))} | {apart} |")
+
+
+def quantity_cells(folders, spread=True):
+    cells = []
+    values = [quantities(f) for f in folders]
+    for q, (_, _, _, form) in QUANTITIES.items():
+        x = [v[q] for v in values if np.isfinite(v[q])]
+        cells.append(form.format(np.mean(x)) if x else "none")
+        if len(x) > 1 and spread:
+            cells[-1] += " ± " + form.format(np.std(x, ddof=1))
+    return cells
+
+
+def size_table(runs, level):
+    """Scatter between seeds by number of grains, and the mean against that of the largest packings."""
+    groups = runs.groups(level, "grains")
+    if len(groups) < 2:
+        return
+    largest = groups[max(groups)]
+    groups["3 × 250"] = list(runs.of(level, "mean of 3").values())
+    head = ["grains", "seeds", "10⁶ grain-steps", "s", "velocity: scatter, %", "r_u: scatter, %"]
+    head += ["velocity: mean against the largest, %", "r_u: mean against the largest, %"] if level == "weak" else \
+        [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
+    print(f"\n<!-- grains, {level} -->\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    for key, folders in groups.items():
+        if not folders:
+            continue
+        cost = np.mean([read(f)["steps"] for f in folders]) * (key if isinstance(key, int) else 250) / 1e6
+        cells = [f"{key:,}" if isinstance(key, int) else key, str(len(folders)), f"{cost:.0f}",
+                 f"{np.mean([read(f)['seconds'] for f in folders]):.1f}"]
+        cells += [percent(x) for x in (scatter(folders) if len(folders) > 1 else (np.nan, np.nan))]
+        if level == "strong":
+            cells += quantity_cells(folders)
+        else:
+            cells += ["–"] * 2 if folders is largest else [percent(x) for x in drift(folders, largest)]
+        print("| " + " | ".join(cells) + " |")
+
+
+def mesh_table(runs, level):
+    """Differences from the finest mesh with the same seeds."""
+    meshes = sorted({c.cells for c, _ in runs.all if c.level == level and c.label == "default"})
+    finest = runs.of(level, cells=meshes[-1]) if meshes else {}
+    if len(meshes) < 2:
+        return
+    head = ["levels", "seeds", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
+    head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()] if level == "strong" else []
+    print(f"\n<!-- mesh, {level} -->\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    for mesh in meshes:
+        own = runs.of(level, cells=mesh)
+        both = sorted(set(own) & set(finest))
+        if not both:
+            continue
+        v, r = np.transpose([differences(own[s], finest[s]) for s in both])
+        cells = [str(mesh), str(len(both)), f"{np.mean([read(own[s])['steps'] for s in both]) * 250 / 1e6:.0f}",
+                 f"{np.mean([read(own[s])['seconds'] for s in both]):.1f}"]
+        cells += ["–"] * 2 if mesh == meshes[-1] else [percent(*mean_and_error(v)), percent(*mean_and_error(r))]
+        cells += quantity_cells([own[s] for s in both]) if level == "strong" else []
+        print("| " + " | ".join(cells) + " |")
+
+
+def grouped(points):
+    """One label for the default and all that lies on it."""
+    x, y = next((p[:2] for p in points if p[2] == "default"), (np.nan, np.nan))
+    near = [p for p in points if abs(p[0] / x - 1) < 0.05 and abs(p[1] / y - 1) < 0.08]
+    return [p for p in points if p not in near] + [
+        (x, y, f"default, and {len(near) - 1} like it" if len(near) > 1 else "default", p[3])
+        for p in near if p[2] == "default"]
+
+
+def panel(axes, runs, level, key, factor, title, label):
+    points = []
+    for family, name in runs.labels(level):
+        rows = runs.errors(level, name)
+        if name.startswith("reference") or not rows or name.endswith("own packings"):
+            continue
+        x, y = np.mean([r["cost"] for r in rows]) / 1e6, mean_and_error([r[key] for r in rows])[0]
+        if not np.isfinite(y):
+            continue
+        colour, marker, _ = LOOK[family]
+        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5, zorder=3 + (marker == "*"))
+        points.append((x, factor * y, name, colour))
+    settings = list(points)
+    points = grouped(points)
+    sizes = {**runs.groups(level, "grains"), 750: list(runs.of(level, "mean of 3").values())}
+    for grains, folders in sizes.items():
+        if len(folders) > 1 and level == "weak":
+            x, y = np.mean([read(f)["steps"] for f in folders]) * grains / 1e6, 100 * scatter(folders)[0]
+            x /= 3 if grains == 750 else 1  # steps are those of all three
+            axes.plot(x, y, LOOK["size"][1], color=LOOK["size"][0], ms=6)
+            points.append((x, y, f"N = {grains:,}" if grains != 750 else "3 × N = 250", LOOK["size"][0]))
+    if level == "strong" and points:
+        axes.axhline(runs.between_seeds(), color=LOOK["size"][0], lw=1)
+        axes.text(0.99, runs.between_seeds() * 1.03, "two seeds", color=LOOK["size"][0], fontsize=7.5, ha="right",
+                  transform=axes.get_yaxis_transform())
+    floor = [r[key] for r in runs.errors(level, "reference, 1 ppm larger")]
+    if floor:
+        axes.axhline(factor * np.mean(floor), color="#1a1a1a", lw=0.7, ls=":")
+        axes.text(0.99, factor * np.mean(floor) / 1.03, "reference, motion 1 ppm larger", fontsize=7.5, ha="right",
+                  va="top", transform=axes.get_yaxis_transform())
+    axes.set(xscale="log", yscale="log", xlabel="cost, 10⁶ grain-steps", ylabel=label)
+    axes.set_title(title, fontsize=9.5, loc="left")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:g}"))
+        axis.set_minor_formatter(ticker.NullFormatter())
+    if not points:
+        return
+    axes.set_xlim(min(p[0] for p in points) / 1.8, max(p[0] for p in points) * 2.4)
+    heights = [p[1] for p in points] + ([runs.between_seeds()] if level == "strong" else [])
+    axes.set_ylim(min(heights) / 1.5, max(heights) * 1.3)
+    front(axes, settings)
+    spread_labels(axes, points)
+
+
+def draw(runs, path):
+    with plt.rc_context({**STYLE, "savefig.dpi": 150}):
+        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.4))
+        figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
+        panel(left, runs, "weak", "v", 100, "(a) weak motion, far from liquefaction: surface velocity", "rms error, % of the rms")
+        panel(right, runs, "strong", "distance", 1, "(b) strong motion: five quantities of the liquefied column",
+              "mean difference, standard deviations between seeds")
+        handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
+                   for c, m, text in LOOK.values()]
+        figure.legend(handles=handles, loc="upper center", ncol=5, fontsize=8, handletextpad=0.2, columnspacing=1.4)
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def write_csv(runs, path):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        out = csv.writer(file)
+        out.writerow(["level", "family", "label", "grains", "cells", "seed", "realisations", "steps", "grain_steps",
+                      "seconds", "error_velocity", "error_ru", *QUANTITIES])
+        for case, folder in runs.all:
+            data, slow = read(folder), runs.of(case.level, "reference", case.grains, case.cells).get(case.seed)
+            error = differences(folder, slow) if slow and case.realisations == 1 else ("", "")
+            out.writerow([case.level, case.family, case.label, case.grains, case.cells, case.seed, case.realisations,
+                          data["steps"], data["steps"] * case.grains, data["seconds"], *error, *quantities(folder).values()])
+
+
+def write(there, table, figure):
+    runs = Runs(there)
+    write_csv(runs, table)
+    for level in ("weak", "strong"):
+        for grains in (250, 1000):
+            for seeds in runs.seeds(level, grains):
+                numerics_table(runs, level, seeds, grains)
+        twins(runs, level)
+        size_table(runs, level)
+        mesh_table(runs, level)
+    if len(runs.of("strong")) > 2:
+        print(f"\n<!-- two seeds differ by {runs.between_seeds():.2f} standard deviations -->")
+    if runs.of("weak", "reference") and runs.of("strong", "reference"):
+        draw(runs, figure)
