@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parallel efficiency of a column of grains: 1 rank, 2 ranks, and two runs of 1 rank side by side, in turns.
+"""Parallel efficiency of a column of grains: 1 rank, 2 ranks, 2 threads, two runs of 1 rank side by side, in turns.
 
     rank_efficiency.py BIN SCENE LIBRARY [--rounds 5] [--set key=value ...]
 
-The third case is the machine's own limit: two programs that share nothing but caches and memory. Times are the
+The last case is the machine's own limit: two programs that share nothing but caches and memory. Times are the
 wall clock that soil_column prints, with the reading of packings that were brought to their stress before. Prints medians and ranges; efficiency is
-T(1)/(2 T(2)), the limit T(1)/T(side by side). A quiet machine with two cores, please.
+T(1)/(2 T), the limit T(1)/T(side by side). A quiet machine with two cores, please.
 """
 import argparse
 import os
@@ -16,13 +16,13 @@ import statistics
 import subprocess
 import tempfile
 
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def start(arguments, ranks, folder):
+def start(arguments, ranks, folder, threads=1):
     command = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(arguments.bin / "soil_column"), str(arguments.scene), "-o",
-               folder, "-q", "--no-figures", "--set", f"grains.library={arguments.library.resolve()}"]
+               folder, "-q", "--no-figures", "--threads", str(threads), "--set", f"grains.library={arguments.library.resolve()}"]
     for setting in arguments.set:
         command += ["--set", setting]
     return subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
@@ -36,12 +36,13 @@ def seconds(process):
 
 
 def measure(arguments, cache):
-    times = {"1 rank": [], "2 ranks": [], "two runs side by side": []}
+    cases = {"1 rank": (1, 1, 1), "2 ranks": (2, 1, 1), "1 rank of 2 threads": (1, 2, 1), "two runs side by side": (1, 1, 2)}
+    times = {name: [] for name in cases}
     for _ in range(arguments.rounds):
-        for name, ranks, copies in (("1 rank", 1, 1), ("2 ranks", 2, 1), ("two runs side by side", 1, 2)):
+        for name, (ranks, threads, copies) in cases.items():
             with tempfile.TemporaryDirectory() as folder:
                 arguments.set[0] = f"grains.cache={cache}"
-                running = [start(arguments, ranks, f"{folder}/{k}") for k in range(copies)]
+                running = [start(arguments, ranks, f"{folder}/{k}", threads) for k in range(copies)]
                 times[name].append(max(seconds(process) for process in running))
                 print(f"  {name}: {times[name][-1]:.2f} s", flush=True)
     return times
@@ -63,8 +64,9 @@ def main():
     for name, values in times.items():
         print(f"{name:24} median {statistics.median(values):7.2f} s   ({min(values):.2f} to {max(values):.2f})")
     one = statistics.median(times["1 rank"])
-    print(f"efficiency of 2 ranks    {one / (2 * statistics.median(times['2 ranks'])):.3f}")
-    print(f"limit of the machine     {one / statistics.median(times['two runs side by side']):.3f}")
+    for name in ("2 ranks", "1 rank of 2 threads"):
+        print(f"efficiency: {name:20} {one / (2 * statistics.median(times[name])):.3f}")
+    print(f"limit of the machine             {one / statistics.median(times['two runs side by side']):.3f}")
 
 
 if __name__ == "__main__":
