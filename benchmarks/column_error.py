@@ -45,6 +45,8 @@ NUMERICS = [  # family, label, what differs from the defaults; rates in 1/s, tim
     ("least", "least steps 10", {"least_steps": 10}),
     ("least", "least steps 50", {"least_steps": 50}),
     ("least", "least steps 100", {"least_steps": 100}),
+    ("recommended", "least steps 200", {"least_steps": 200}),
+    ("least", "least steps 400", {"least_steps": 400}),
     ("tolerance", "tolerance 0.003", {"quasi_static_tolerance": 0.003}),
     ("tolerance", "tolerance 0.03", {"quasi_static_tolerance": 0.03}),
     ("rate", "rates 0.02 to 2", {"rate_floor": 0.02}),
@@ -98,6 +100,9 @@ def plan(level):
         cases += [Case(level, f, label, tuple(s.items()), grains=1000, seed=0) for f, label, s in NUMERICS
                   if label in ("reference", "least steps 1", "least steps 5")]
         cases += numerics[2]
+    else:  # and the onset in larger packings?
+        cases += [Case(level, f, label, tuple(s.items()), grains=1000, seed=seed) for seed in range(2)
+                  for f, label, s in NUMERICS if label == "least steps 200"]
     return list(dict.fromkeys(cases))
 
 

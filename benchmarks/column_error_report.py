@@ -15,18 +15,18 @@ from matplotlib import ticker  # noqa: E402
 
 from speed_error.figures import STYLE, front, spread_labels  # noqa: E402
 
-RECOMMENDED = "default"
 LIQUEFIED = 0.95
 LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
-    "default": ("#1a1a1a", "*", "default (recommended)"),
-    "reference": ("#7f7f7f", "P", "next slow after the reference"),
+    "default": ("#1a1a1a", "*", "default: recommended for 1,000 grains"),
+    "recommended": ("#0072b2", "*", "recommended for 250"),
+    "reference": ("#7f7f7f", "P", "next slow"),
     "least": ("#0072b2", "o", "least steps"),
     "tolerance": ("#56b4e9", "o", "tolerance"),
     "rate": ("#d55e00", "s", "bounds of the rate, 1/s"),
     "step": ("#009e73", "^", "FE step"),
-    "fast": ("#e69f00", "D", "tolerance 0.03, to 10 1/s, least steps 10"),
+    "fast": ("#e69f00", "D", "tolerance 0.03, 0.2 to 10 1/s, 10"),
     "size": ("#cc79a7", "h", "scatter of seeds: N grains"),
-    "same": ("#000000", "x", "no other setting: motion 1 ppm larger"),
+    "same": ("#000000", "x", "motion 1 ppm larger"),
 }
 QUANTITIES = {  # of the strong motion
     "t95": ("first r_u > 0.95", "s", 1, "{:.3f}"),
@@ -165,8 +165,9 @@ class Runs:
         rows = []
         for seed in sorted(set(own) & set(self.seeds(level, grains)[0] if seeds is None else seeds)):
             data, (v, r) = read(own[seed]), differences(own[seed], slow[seed])
-            ours, theirs = (quantities(f[seed])["ru"] for f in (own, slow))
-            rows.append({"v": v, "r": r, "bias": ours / theirs - 1, "cost": data["steps"] * grains,
+            ours, theirs = (quantities(f[seed]) for f in (own, slow))
+            rows.append({"v": v, "r": r, "bias": ours["ru"] / theirs["ru"] - 1,
+                         "late": ours["t95"] - theirs["t95"], "cost": data["steps"] * grains,
                          "per_call": data["per_call"], "seconds": data["seconds"],
                          "distance": self.distance(own[seed], slow[seed]) if level == "strong" else np.nan})
         return rows
@@ -206,8 +207,8 @@ def twins(runs, level):
     pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
              "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
              "packings in situ at a floor of 0.02 1/s": ("rates 0.02 to 2, own packings", "rates 0.02 to 2")}
-    print(f"\n<!-- twins, {level} -->\n\n| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |")
-    print("|---|---|---|---|---|")
+    print(f"\n<!-- twins, {level} -->\n\n| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
+          "|---|---|---|---|---|")
     for text, (one, other) in pairs.items():
         one, other = runs.of(level, one), runs.of(level, other)
         both = sorted(set(one) & set(other))
@@ -253,6 +254,17 @@ def size_table(runs, level):
         print("| " + " | ".join(cells) + " |")
 
 
+def onset_table(runs, grains):
+    """First r_u > 0.95 of each seed at the defaults and at 200 least steps."""
+    slow, own = (runs.of("strong", label, grains) for label in ("least steps 200", "default"))
+    if slow:
+        print("\n<!-- onset -->\n\n| seed | default, s | 10⁶ grain-steps | 200 least steps, s | 10⁶ grain-steps |")
+        print("|---|---|---|---|---|")
+    for seed in sorted(set(slow) & set(own)):
+        cells = [f"{quantities(f)['t95']:.3f} | {read(f)['steps'] * grains / 1e6:.0f}" for f in (own[seed], slow[seed])]
+        print(f"| {seed} | {' | '.join(cells)} |")
+
+
 def mesh_table(runs, level):
     """Differences from the finest mesh with the same seeds."""
     meshes = sorted({c.cells for c, _ in runs.all if c.level == level and c.label == "default"})
@@ -275,10 +287,10 @@ def mesh_table(runs, level):
         print("| " + " | ".join(cells) + " |")
 
 
-def grouped(points):
+def grouped(points, wide):
     """One label for the default and all that lies on it."""
     x, y = next((p[:2] for p in points if p[2] == "default"), (np.nan, np.nan))
-    near = [p for p in points if abs(p[0] / x - 1) < 0.05 and abs(p[1] / y - 1) < 0.08]
+    near = [p for p in points if abs(np.log(p[0] / x)) < wide and abs(p[1] / y - 1) < 0.1]
     return [p for p in points if p not in near] + [
         (x, y, f"default, and {len(near) - 1} like it" if len(near) > 1 else "default", p[3])
         for p in near if p[2] == "default"]
@@ -294,26 +306,30 @@ def panel(axes, runs, level, key, factor, title, label):
         if not np.isfinite(y):
             continue
         colour, marker, _ = LOOK[family]
-        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5, zorder=3 + (marker == "*"))
+        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5, zorder=3 + (family in ("default", "recommended")))
         points.append((x, factor * y, name, colour))
     settings = list(points)
-    points = grouped(points)
+    points = grouped(points, 0.05 if level == "weak" else 0.6)
     sizes = {**runs.groups(level, "grains"), 750: list(runs.of(level, "mean of 3").values())}
     for grains, folders in sizes.items():
         if len(folders) > 1 and level == "weak":
-            x, y = np.mean([read(f)["steps"] for f in folders]) * grains / 1e6, 100 * scatter(folders)[0]
-            x /= 3 if grains == 750 else 1  # steps are those of all three
+            x = np.mean([read(f)["steps"] for f in folders]) * (grains if grains != 750 else 250) / 1e6  # of all three
+            y = 100 * scatter(folders)[0]
             axes.plot(x, y, LOOK["size"][1], color=LOOK["size"][0], ms=6)
             points.append((x, y, f"N = {grains:,}" if grains != 750 else "3 × N = 250", LOOK["size"][0]))
-    if level == "strong" and points:
-        axes.axhline(runs.between_seeds(), color=LOOK["size"][0], lw=1)
-        axes.text(0.99, runs.between_seeds() * 1.03, "two seeds", color=LOOK["size"][0], fontsize=7.5, ha="right",
-                  transform=axes.get_yaxis_transform())
+    lines = {}
+    if level == "strong":
+        for grains, folders in runs.groups(level, "grains").items():
+            onset = [quantities(f)["t95"] for f in folders]
+            lines[grains] = np.nanstd(onset, ddof=1) if len(onset) > 2 else np.nan
+            axes.axhline(lines[grains], color=LOOK["size"][0], lw=1)
+            axes.text(0.99, lines[grains] * 1.02, f"seeds, N = {grains:,}", color=LOOK["size"][0], fontsize=7.5,
+                      ha="right", transform=axes.get_yaxis_transform())
     floor = [r[key] for r in runs.errors(level, "reference, 1 ppm larger")]
     if floor:
         axes.axhline(factor * np.mean(floor), color="#1a1a1a", lw=0.7, ls=":")
-        axes.text(0.99, factor * np.mean(floor) / 1.03, "reference, motion 1 ppm larger", fontsize=7.5, ha="right",
-                  va="top", transform=axes.get_yaxis_transform())
+        axes.text(0.01, factor * np.mean(floor) / 1.03, "reference, motion 1 ppm larger", fontsize=7.5, va="top",
+                  transform=axes.get_yaxis_transform())
     axes.set(xscale="log", yscale="log", xlabel="cost, 10⁶ grain-steps", ylabel=label)
     axes.set_title(title, fontsize=9.5, loc="left")
     for axis in (axes.xaxis, axes.yaxis):
@@ -323,8 +339,8 @@ def panel(axes, runs, level, key, factor, title, label):
     if not points:
         return
     axes.set_xlim(min(p[0] for p in points) / 1.8, max(p[0] for p in points) * 2.4)
-    heights = [p[1] for p in points] + ([runs.between_seeds()] if level == "strong" else [])
-    axes.set_ylim(min(heights) / 1.5, max(heights) * 1.3)
+    heights = [p[1] for p in points] + [x for x in lines.values() if np.isfinite(x)]
+    axes.set_ylim(min(heights) / 1.4, max(heights) * 1.3)
     front(axes, settings)
     spread_labels(axes, points)
 
@@ -333,9 +349,9 @@ def draw(runs, path):
     with plt.rc_context({**STYLE, "savefig.dpi": 150}):
         figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.4))
         figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
-        panel(left, runs, "weak", "v", 100, "(a) weak motion, far from liquefaction: surface velocity", "rms error, % of the rms")
-        panel(right, runs, "strong", "distance", 1, "(b) strong motion: five quantities of the liquefied column",
-              "mean difference, standard deviations between seeds")
+        panel(left, runs, "weak", "v", 100, "(a) weak motion, N = 250, far from liquefaction: surface velocity",
+              "rms error, % of the rms")
+        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: first r_u > 0.95", "later than in the reference, s")
         handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
                    for c, m, text in LOOK.values()]
         figure.legend(handles=handles, loc="upper center", ncol=5, fontsize=8, handletextpad=0.2, columnspacing=1.4)
@@ -365,6 +381,7 @@ def write(there, table, figure):
         twins(runs, level)
         size_table(runs, level)
         mesh_table(runs, level)
+    onset_table(runs, 1000)
     if len(runs.of("strong")) > 2:
         print(f"\n<!-- two seeds differ by {runs.between_seeds():.2f} standard deviations -->")
     if runs.of("weak", "reference") and runs.of("strong", "reference"):
