@@ -2,6 +2,7 @@
 #include "base/hdf5.hpp"
 
 #include "base/error.hpp"
+#include "base/hdf5_room.hpp"
 #include "base/replace_file.hpp"
 
 #include <algorithm>
@@ -32,6 +33,8 @@ struct FileState
   }
   void abandon()
   {
+    if (writing() && id >= 0)
+      divert_to_memory(id);
     close();
     std::error_code ignored;
     if (writing())
@@ -43,8 +46,8 @@ struct FileState
 
 namespace
 {
-/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit crashes on a
-/// file that could not be closed because the disk was full; files are closed here, so it is not needed.
+/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit is not needed:
+/// files are closed here.
 void silence()
 {
   [[maybe_unused]] static const bool once = [] {
@@ -261,11 +264,11 @@ File File::create(const fs::path &path)
   auto state = std::make_shared<FileState>();
   state->path = path;
   const fs::path aside = path.string() + ".tmp";
+  state->aside = aside;
   state->id = H5Fcreate(aside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   if (state->id < 0)
     throw RunFailure(fmt::format("{}: cannot create the file{}; the folder must exist, be writable and have free space",
                                  path.string(), library_reason()));
-  state->aside = aside;
   return File(state);
 }
 
@@ -301,10 +304,13 @@ void File::commit()
 {
   FileState &file = *state_;
   assert(file.writing() && file.id >= 0);
+  if (const int code = reserve_room(file.id))
+    fail(file, "the file", std::strerror(code));
   if (H5Fflush(file.id, H5F_SCOPE_GLOBAL) < 0)
     fail(file, "the file", "flushing failed");
-  if (H5Fclose(std::exchange(file.id, -1)) < 0)
+  if (H5Fclose(file.id) < 0)
     fail(file, "the file", "closing failed");
+  file.id = -1;
   replace_file(file.aside, file.path);
   file.aside.clear();
 }

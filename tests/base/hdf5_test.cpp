@@ -10,7 +10,10 @@
 #include <cstring>
 #include <gmock/gmock.h>
 #include <limits>
+#include <sys/mount.h>
 #include <sys/resource.h>
+
+extern "C" int H5close(void); // of HDF5, whose header wants MPI's
 
 namespace isostat
 {
@@ -190,7 +193,7 @@ TEST_F(Hdf5, UnwritablePlacesAreRunFailures)
               HasSubstr("the folder must exist"));
 }
 
-/// A full disk, imitated by a limit on the size of files.
+/// A full disk, imitated by a limit on the size of files: what is lacking is room for the values, or for all there is.
 TEST_F(Hdf5, FullDiskKeepsTheOldFile)
 {
   const std::filesystem::path path = write_some();
@@ -198,20 +201,48 @@ TEST_F(Hdf5, FullDiskKeepsTheOldFile)
   rlimit old{};
   getrlimit(RLIMIT_FSIZE, &old);
   const auto old_signal = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{100000, old.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = message_of<RunFailure>([&] {
-    File file = File::create(path);
-    file.root().write("large", std::vector<double>(100000, 1.0), "m");
-    file.commit();
-  });
-  setrlimit(RLIMIT_FSIZE, &old);
+  for (const rlim_t room : {100000, 3000, 500, 0})
+    {
+      SCOPED_TRACE(room);
+      const rlimit small{room, old.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &small);
+      const std::string message = message_of<RunFailure>([&] {
+        File file = File::create(path);
+        file.root().write("large", std::vector<double>(100000, 1.0), "m");
+        file.root().set_attribute("number", 1.0);
+        file.commit();
+      });
+      setrlimit(RLIMIT_FSIZE, &old);
+      EXPECT_THAT(message, HasSubstr("free space"));
+      EXPECT_EQ(get(path), before);
+      EXPECT_FALSE(std::filesystem::exists(path.string() + ".tmp"));
+    }
   std::signal(SIGXFSZ, old_signal);
-  EXPECT_THAT(message, HasSubstr("free space"));
-  EXPECT_EQ(get(path), before);
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".tmp"));
   write_some(); // and the library still works
   EXPECT_EQ(File::open(path).root().group("group").attribute<double>("number"), 2.5);
+}
+
+using Hdf5DeathTest = Hdf5; // runs first: the tests above leave HDF5 with a file that it cannot close
+
+/// As at the end of a program with MPI. HDF5 would crash then on a file that it could not close.
+TEST_F(Hdf5DeathTest, ShutsDownAfterAFullDisk)
+{
+  const auto end = [&] {
+    (void)message_of<RunFailure>([&] {
+      File file = File::create(folder / "new.h5");
+      for (int k = 0; k < 50; ++k)
+        file.root().create_group(std::to_string(k)).write("values", std::vector<double>(300, 1.0), "m");
+      file.commit();
+    });
+    std::_Exit(H5close() < 0 ? 3 : 0);
+  };
+  for (const char *size : {"size=4k", "size=24k", "size=100k"})
+    {
+      if (::mount("tmpfs", folder.c_str(), "tmpfs", 0, size) != 0)
+        GTEST_SKIP() << "no right to mount a small disk";
+      EXPECT_EXIT(end(), testing::ExitedWithCode(0), "") << size;
+      ::umount2(folder.c_str(), MNT_DETACH);
+    }
 }
 } // namespace
 } // namespace isostat
