@@ -20,7 +20,8 @@ import sys
 import h5py
 import numpy as np
 
-from plots_common import BLACK, BLUE, GREEN, ORANGE, STYLE, BadInput, note, plt, read_history, read_summary
+from plots_common import BLACK, BLUE, GREEN, ORANGE, BadInput, note, plt, read_history, read_summary
+from plots_main import save_figures
 
 PANELS = 5
 
@@ -197,15 +198,7 @@ def main():
     except (BadInput, OSError, KeyError, ValueError) as error:
         note(error)
         return 2
-    plt.rcParams.update(STYLE)
-    for name, draw in FIGURES.items():
-        figure = draw(block)
-        if figure is None:
-            continue
-        figure.suptitle(block.title, fontsize=9.5, x=0.01, ha="left")
-        figure.savefig(out / f"{name}.png")
-        plt.close(figure)
-        print(out / f"{name}.png")
+    save_figures(block, FIGURES, out)
     return 0
 
 

@@ -6,6 +6,21 @@ import pathlib
 from plots_common import STYLE, BadInput, note, plt
 
 
+def save_figures(results, figures, out, undrawn=None):
+    """Draws every figure into the folder `out`; see draw_results."""
+    plt.rcParams.update(STYLE)
+    for name, draw in figures.items():
+        figure = draw(results)
+        if figure is None:
+            if undrawn:
+                undrawn(name, results)
+            continue
+        figure.suptitle(results.title, fontsize=9.5, x=0.01, ha="left")
+        figure.savefig(out / f"{name}.png")
+        plt.close(figure)
+        print(out / f"{name}.png")
+
+
 def draw_results(description, files, read, figures, undrawn=None):
     """Draws every figure of a folder that is named on the command line.
 
@@ -30,15 +45,5 @@ def draw_results(description, files, read, figures, undrawn=None):
     except (BadInput, OSError, ValueError) as error:
         note(error)
         return 2
-    plt.rcParams.update(STYLE)
-    for name, draw in figures.items():
-        figure = draw(results)
-        if figure is None:
-            if undrawn:
-                undrawn(name, results)
-            continue
-        figure.suptitle(results.title, fontsize=9.5, x=0.01, ha="left")
-        figure.savefig(out / f"{name}.png")
-        plt.close(figure)
-        print(out / f"{name}.png")
+    save_figures(results, figures, out, undrawn)
     return 0
