@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of one step of a soil column beside its material: what the finite elements cost, per step and 200 elements.
 // Settings take turns, seven rounds; median and range. The error that goes with it is that of the shear layer's
-// transfer function (tests/fem/shear_layer_test.cpp).
+// transfer function (tests/fem/solve/shear_layer_test.cpp).
 //
 //   column_step [elements]
-#include "fem/dynamics.hpp"
-#include "fem/elastic.hpp"
+#include "fem/material/elastic.hpp"
+#include "fem/solve/dynamics.hpp"
 
 #include <algorithm>
 #include <chrono>

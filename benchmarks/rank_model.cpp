@@ -17,8 +17,8 @@
 // Assumed, not measured: the network, cores as fast as the one measured, and lags. Efficiency is the time of all
 // packings over cores and wall clock.
 #include "apps/common/main_guard.hpp"
-#include "base/hdf5.hpp"
-#include "coupling/placement.hpp"
+#include "base/files/hdf5.hpp"
+#include "coupling/placement/placement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "apps/common/main_guard.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/motion/critical_step.hpp"
-#include "dem/rve.hpp"
+#include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <algorithm>

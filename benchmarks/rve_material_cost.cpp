@@ -10,7 +10,7 @@
 //
 //   rve_material_cost --elements 20 --grains 1000 --rounds 5
 #include "apps/common/main_guard.hpp"
-#include "coupling/rve_material.hpp"
+#include "coupling/batch/rve_material.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 //   rve_tables rotation --grains 1000
 //   rve_tables twisting --grains 1000 --realisations 3
 #include "apps/common/main_guard.hpp"
-#include "dem/rve.hpp"
+#include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <chrono>

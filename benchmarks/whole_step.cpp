@@ -7,8 +7,8 @@
 //   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
 //   whole_step specimen.h5 --copies 10           ten copies in a row in one box
 #include "apps/common/main_guard.hpp"
-#include "base/replace_file.hpp"
-#include "dem/assembly.hpp"
+#include "base/files/replace_file.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/io/text_tables.hpp"

@@ -26,27 +26,59 @@ TOP = {
     "apps": {"apps", "coupling", "fem", "dem", "base"},
 }
 
-# The keys of a scene are one part with dem/scene.hpp, though their files lie in dem/io.
-SCENE_FILES = "io/scene_"
-
-# Part of dem -> parts it may include besides itself. A part is a file or a folder below dem/; a file goes to the
-# longest name that matches it.
-GRAINS = {"packing", "domain", "contact"}
-DEM = {
-    "packing": set(),
-    "domain": {"packing"},
-    "contact": {"packing", "domain"},
-    "scene": {"contact"},
-    "neighbours": GRAINS,
-    "motion": GRAINS,
-    "assembly": GRAINS | {"neighbours", "motion", "measure"},
-    "assembly_views": GRAINS | {"neighbours", "motion", "measure", "assembly"},
-    "measure": GRAINS,
-    "io": GRAINS | {"measure", "scene"},
-    "drive": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io"},
-    "prepare": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
-    "rve_bytes": GRAINS | {"rve"},
-    "rve": GRAINS | {"scene", "neighbours", "motion", "assembly", "measure", "io", "drive"},
+# Library -> its parts, each with the parts it may include besides itself. A part is a folder or a file (without ending)
+# below the library; a file belongs to the longest name that fits.
+GRAINS = {"domain", "state", "contact"}
+STEP = GRAINS | {"neighbours", "motion", "measure", "assembly"}
+INNER = {
+    "base": {
+        "error": set(),
+        "types": set(),
+        "units": {"error"},
+        "files": {"error", "types"},
+        "record": {"error", "files"},
+        "scene": {"error", "units"},
+    },
+    "dem": {
+        "domain": set(),
+        "contact/linear_rolling": set(),
+        "state": {"domain", "contact/linear_rolling"},
+        "contact": {"domain", "state", "contact/linear_rolling"},
+        "neighbours": {"domain", "state"},
+        "motion": GRAINS | {"contact/linear_rolling"},
+        "measure": GRAINS | {"contact/linear_rolling"},
+        "assembly": GRAINS | {"contact/linear_rolling", "neighbours", "motion", "measure"},
+        "scene": {"contact/linear_rolling"},
+        "io": GRAINS | {"measure"},
+        "drive": STEP | {"contact/linear_rolling", "scene", "io"},
+        "prepare": STEP | {"contact/linear_rolling", "scene", "io", "drive"},
+        "rve": STEP | {"contact/linear_rolling", "scene", "io", "drive"},
+    },
+    "fem": {
+        "material": set(),
+        "motion": set(),
+        "space": {"material"},
+        "water": {"material", "space"},
+        "solve": {"material", "motion", "space", "water"},
+    },
+    "coupling": {
+        "placement": set(),
+        "in_situ": set(),
+        "element": {"in_situ"},
+        "batch": {"placement", "in_situ", "element"},
+    },
+    "apps": {
+        "common": set(),
+        "deposit": {"common"},
+        "element_test": {"common"},
+        "liquefaction_resistance": {"common"},
+        "micromechanics": {"common"},
+        "specimen_library": {"common"},
+        "void_ratio_limits": {"common"},
+        "soil_column": {"common", "deposit"},
+        "rve_replay": {"common", "deposit"},
+        "biaxial": {"common", "deposit"},
+    },
 }
 
 # What coupling sees of dem: the RVE is the only door; io stores and reads its state.
@@ -60,7 +92,7 @@ FOREIGN = {
     ],
 }
 HDF5 = re.compile(r"^(hdf5|H5\w*|hdf5_hl)\.(h|hpp)$")
-HDF5_HOME = "base/hdf5.cpp"
+HDF5_HOME = "base/files/hdf5.cpp"
 
 FORBIDDEN_LIBRARIES = ("libdeal", "libpetsc")
 FORBIDDEN_SYMBOLS = ("dealii::", "PetscInitialize", "MatCreate", "VecCreate", "KSPCreate")
@@ -68,13 +100,11 @@ FORBIDDEN_SYMBOLS = ("dealii::", "PetscInitialize", "MatCreate", "VecCreate", "K
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
-def dem_part(path):
-    """The entry of DEM that a path inside the repository belongs to, or None if the table has none."""
-    inner = path.removeprefix("dem/")
-    if inner.startswith(SCENE_FILES):
-        return "scene"
+def part_of(path):
+    """The part in INNER that a path inside the repository belongs to, or None if the table has none."""
+    top, _, inner = path.partition("/")
     stem = inner.rsplit(".", 1)[0]
-    fits = [part for part in DEM if stem == part or inner.startswith(part + "/")]
+    fits = [part for part in INNER.get(top, {}) if stem == part or inner.startswith(part + "/")]
     return max(fits, key=len, default=None)
 
 
@@ -96,17 +126,13 @@ def inner_violation(source, target):
         return None
     if target_top not in TOP[top]:
         return f"{top} must not include {target_top}/"
-    if target_top != "dem":
-        return None
-    part = dem_part(target)
+    own, part = part_of(source), part_of(target)
     if part is None:
-        return f"{target} is in no part of dem; add it to the table in tests/layering.py"
-    if top == "coupling" and part not in COUPLING_SEES:
-        return "coupling enters dem by rve.hpp only"
-    if top == "dem":
-        own = dem_part(source)
-        if own is not None and part != own and part not in DEM[own]:
-            return f"dem/{own} must not include dem/{part}"
+        return f"{target} is in no part of {target_top}; add it to the table in tests/layering.py"
+    if top == "coupling" and target_top == "dem" and part not in COUPLING_SEES:
+        return "coupling enters dem by rve/rve.hpp only"
+    if top == target_top and own is not None and part != own and part not in INNER[top][own]:
+        return f"{top}/{own} must not include {top}/{part}"
     return None
 
 
@@ -117,8 +143,8 @@ def check_file(root, file):
     problems = []
     if len(text) > MAX_LINES:
         problems.append(f"{source}: {len(text)} lines; split files above {MAX_LINES}")
-    if top == "dem" and dem_part(source) is None:
-        problems.append(f"{source}: in no part of dem; add it to the table in tests/layering.py")
+    if top in INNER and part_of(source) is None:
+        problems.append(f"{source}: in no part of {top}; add it to the table in tests/layering.py")
     for number, line in enumerate(text, 1):
         match = INCLUDE.match(line)
         if not match:

@@ -5,8 +5,8 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/deposit/column_instant.hpp"
 #include "base/error.hpp"
-#include "fem/column_instant.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a run of the biaxial block consists of. Lengths m, stresses Pa.
 #pragma once
-#include "fem/column_scene.hpp"
+#include "apps/deposit/column_scene.hpp"
 
 namespace isostat
 {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/biaxial/block_files.hpp"
 
-#include "base/hdf5.hpp"
-#include "base/vtk_xml.hpp"
+#include "apps/deposit/column_instant.hpp"
+#include "base/files/hdf5.hpp"
+#include "base/files/vtk_xml.hpp"
 #include "dem/measure/summary.hpp"
-#include "fem/column_instant.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

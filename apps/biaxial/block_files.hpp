@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/biaxial/block_material.hpp"
-#include "base/pvd.hpp"
-#include "base/recorder.hpp"
-#include "fem/statics.hpp"
+#include "base/files/pvd.hpp"
+#include "base/record/recorder.hpp"
+#include "fem/solve/statics.hpp"
 
 #include <filesystem>
 

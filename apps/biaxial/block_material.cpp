@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/biaxial/block_material.hpp"
 
-#include "fem/column_material.hpp"
-#include "fem/patchwork.hpp"
+#include "apps/deposit/column_material.hpp"
+#include "fem/material/composite.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/biaxial/biaxial_scene.hpp"
-#include "coupling/rve_material.hpp"
-#include "fem/discretisation.hpp"
+#include "coupling/batch/rve_material.hpp"
+#include "fem/space/discretisation.hpp"
 
 namespace isostat
 {

@@ -16,7 +16,7 @@
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
 

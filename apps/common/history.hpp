@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "base/recorder.hpp"
+#include "base/record/recorder.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/measure/summary.hpp"
 

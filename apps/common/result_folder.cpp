@@ -2,7 +2,7 @@
 #include "apps/common/result_folder.hpp"
 
 #include "base/error.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 #include "dem/contact/kernel.hpp"
 
 #include <cstdlib>

@@ -4,7 +4,7 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress_text.hpp"
 #include "base/error.hpp"
-#include "base/hdf5.hpp"
+#include "base/files/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <cstdio>

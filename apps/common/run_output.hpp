@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/common/history.hpp"
-#include "base/pvd.hpp"
+#include "base/files/pvd.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/vtp.hpp"
 

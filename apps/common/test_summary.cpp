@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/test_summary.hpp"
 
-#include "base/csv_table.hpp"
+#include "base/files/csv_table.hpp"
 #include "dem/drive/programme.hpp"
 
 #include <algorithm>

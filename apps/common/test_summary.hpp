@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/drive/drive_state.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <filesystem>
 #include <map>

@@ -17,7 +17,7 @@
 #include "apps/common/run_output.hpp"
 #include "apps/common/scene_options.hpp"
 #include "apps/common/test_summary.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 #include "apps/liquefaction_resistance/campaign.hpp"
 
 #include "apps/common/result_folder.hpp"
-#include "base/csv_table.hpp"
 #include "base/error.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/csv_table.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -17,7 +17,7 @@
 #include "apps/liquefaction_resistance/folder_lock.hpp"
 #include "apps/liquefaction_resistance/progress.hpp"
 #include "apps/liquefaction_resistance/report.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

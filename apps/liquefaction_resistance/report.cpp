@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/report.hpp"
 
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/resistance.hpp"
 
-#include "base/csv_table.hpp"
+#include "base/files/csv_table.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/measure/snapshot.hpp"
+#include "dem/state/snapshot.hpp"
 
 #include <string>
 #include <vector>

@@ -15,7 +15,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/micromechanics/analysis.hpp"
 #include "apps/micromechanics/snapshot_series.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <fmt/format.h>
 #include <map>

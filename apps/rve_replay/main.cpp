@@ -14,7 +14,7 @@
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/rve_replay/replay.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <chrono>
 

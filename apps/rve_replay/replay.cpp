@@ -2,8 +2,8 @@
 #include "apps/rve_replay/replay.hpp"
 
 #include "base/error.hpp"
-#include "coupling/in_situ.hpp"
-#include "coupling/rve_element.hpp"
+#include "coupling/element/rve_element.hpp"
+#include "coupling/in_situ/in_situ.hpp"
 #include "dem/measure/summary.hpp"
 
 #include <chrono>

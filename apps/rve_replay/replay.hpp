@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "coupling/strain_record.hpp"
+#include "coupling/element/strain_record.hpp"
 
 #include <functional>
 #include <optional>

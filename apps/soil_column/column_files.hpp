@@ -2,7 +2,7 @@
 #pragma once
 #include "apps/soil_column/column_history.hpp"
 #include "apps/soil_column/column_peaks.hpp"
-#include "base/pvd.hpp"
+#include "base/files/pvd.hpp"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/column_history.hpp"
 
-#include "fem/column_material.hpp"
+#include "apps/deposit/column_material.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "base/recorder.hpp"
-#include "fem/column_checkpoint.hpp"
-#include "fem/column_scene.hpp"
-#include "fem/output.hpp"
+#include "apps/deposit/column_checkpoint.hpp"
+#include "apps/deposit/column_scene.hpp"
+#include "apps/deposit/output.hpp"
+#include "base/record/recorder.hpp"
 
 namespace isostat
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/column_checkpoint.hpp"
-#include "fem/column_instant.hpp"
-#include "fem/column_line.hpp"
+#include "apps/deposit/column_checkpoint.hpp"
+#include "apps/deposit/column_instant.hpp"
+#include "fem/space/column_line.hpp"
 
 namespace isostat
 {

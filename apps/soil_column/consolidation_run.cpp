@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Consolidation of a column: the load goes on in an instant, then the water leaves.
+#include "apps/deposit/column_material.hpp"
+#include "apps/deposit/timed_material.hpp"
 #include "apps/soil_column/column_progress.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/ranks.hpp"
-#include "apps/soil_column/timed_material.hpp"
-#include "fem/column_material.hpp"
-#include "fem/statics.hpp"
+#include "fem/solve/statics.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/soil_column/soil_material.hpp"
-#include "base/pvd.hpp"
-#include "base/recorder.hpp"
+#include "apps/deposit/column_checkpoint.hpp"
+#include "apps/deposit/soil_material.hpp"
+#include "base/files/pvd.hpp"
+#include "base/record/recorder.hpp"
 #include "dem/measure/summary.hpp"
-#include "fem/column_checkpoint.hpp"
 
 #include <filesystem>
 

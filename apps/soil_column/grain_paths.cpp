@@ -2,7 +2,7 @@
 #include "apps/soil_column/grain_paths.hpp"
 
 #include "apps/soil_column/ranks.hpp"
-#include "coupling/strain_record.hpp"
+#include "coupling/element/strain_record.hpp"
 
 #include <fmt/format.h>
 

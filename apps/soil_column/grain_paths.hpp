@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/soil_column/soil_material.hpp"
-#include "base/recorder.hpp"
-#include "fem/column_checkpoint.hpp"
+#include "apps/deposit/column_checkpoint.hpp"
+#include "apps/deposit/soil_material.hpp"
+#include "base/record/recorder.hpp"
 
 #include <filesystem>
 #include <memory>

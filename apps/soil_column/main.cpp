@@ -17,7 +17,7 @@
 #include "apps/common/scene_options.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/ranks.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
 

@@ -15,7 +15,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/specimen_library/prepare.hpp"
 #include "base/units.hpp"
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/prepare/specimen.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/io/specimen_file.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -15,7 +15,7 @@
 #include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
-#include "base/replace_file.hpp"
+#include "base/files/replace_file.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/prepare/compact.hpp"

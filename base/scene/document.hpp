@@ -30,7 +30,7 @@ namespace isostat
 {
 /// The TOML tree of a scene with the --set overrides in it, which knows where each of its values came from.
 /// Paths are those of the user: "motion.damping", "stage.0.strain".
-/// tested: tests/dem/scene_test.cpp, tests/dem/io/scene_error_test.cpp
+/// tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
 class SceneDocument
 {
 public:

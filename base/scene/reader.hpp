@@ -12,7 +12,7 @@ std::string read_scene_text(const std::string &path);
 /// and range of the schema, what is left out takes its default. Rules between keys are left to check_groups and to the
 /// owner of the schema.
 /// @param scene  of the type that the schema's keys and arrays of tables were made for; with its defaults
-/// @throws InputError      tested: tests/dem/scene_test.cpp, tests/dem/io/scene_error_test.cpp
+/// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
 void fill_scene(const SceneDocument &document, void *scene);
 
 /// Stores one value in its field.  @throws InputError through document.refuse(path, ...)
@@ -20,7 +20,7 @@ void read_value(const SceneDocument &document, const Key &key, const std::string
                 const Field &field);
 
 /// Keys of one group exclude each other, and of some groups one must be given. @param scene  as filled
-/// @throws InputError      tested: tests/dem/io/scene_error_test.cpp, tests/fem/column_scene_error_test.cpp
+/// @throws InputError      tested: tests/dem/scene/scene_error_test.cpp, tests/apps/deposit/column_scene_error_test.cpp
 void check_groups(const SceneDocument &document, void *scene);
 
 /// Number of the kind of a table, by its filled kind key.  @param item  entry of an array of tables, else anything

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/history.hpp"
 #include "dem/contact/virial.hpp"
-#include "dem/packing.hpp"
+#include "dem/state/contact_list.hpp"
+#include "dem/state/packing.hpp"
 
 #include <algorithm>
 #include <string>

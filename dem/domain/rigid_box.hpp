@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/packing.hpp"
+#include "base/types.hpp"
 
 namespace isostat
 {
@@ -20,11 +20,4 @@ struct RigidBox
 
 /// Void ratio e = V / V_s - 1 [-].
 inline double void_ratio(double volume, double solid_volume) { return volume / solid_volume - 1.0; }
-
-/// Distance of a grain's surface from wall 0..5 (x-, x+, y-, y+, z-, z+), m; negative: it overlaps the wall.
-inline double wall_gap(const Packing &packing, const RigidBox &box, std::size_t i, int wall)
-{
-  const double x = packing.position[4 * i + wall / 2];
-  return (wall % 2 ? box.upper[wall / 2] - x : x - box.lower[wall / 2]) - packing.radius(i);
-}
 } // namespace isostat

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
 #include "dem/drive/undrained.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <string>
 

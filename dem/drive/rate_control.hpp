@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 namespace isostat
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
 
 namespace isostat
@@ -24,7 +24,7 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 /// than unstable. It is looked at every 20 steps; shear counts 0.4 of the mean of the three, that of an isotropic net.
 /// @param wanted      stress, Pa, tension positive      @param controlled  symmetric; the other components get 0
 /// @param rate_cap    bound on the strain rate, 1/s
-/// tested: tests/verification/cell_programme_test.cpp, tests/dem/rve_test.cpp
+/// tested: tests/verification/cell_programme_test.cpp, tests/dem/rve/rve_test.cpp
 Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double rate_cap, DriveState &state);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/checkpoint.hpp"
 
-#include "base/checkpoint_folder.hpp"
+#include "base/record/checkpoint_folder.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 namespace isostat

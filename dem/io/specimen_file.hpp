@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "base/hdf5.hpp"
-#include "dem/measure/snapshot.hpp"
+#include "base/files/hdf5.hpp"
+#include "dem/state/snapshot.hpp"
 
 #include <filesystem>
 #include <map>

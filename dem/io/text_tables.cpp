@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/text_tables.hpp"
 
-#include "base/csv_table.hpp"
 #include "base/error.hpp"
+#include "base/files/csv_table.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/vtp.hpp"
 
-#include "base/vtk_xml.hpp"
+#include "base/files/vtk_xml.hpp"
 
 #include <cstring>
 #include <fmt/format.h>

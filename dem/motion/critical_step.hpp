@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/history.hpp"
 #include "dem/domain/rigid_box.hpp"
-#include "dem/packing.hpp"
+#include "dem/state/contact_list.hpp"
+#include "dem/state/packing.hpp"
 
 namespace isostat
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/packing.hpp"
+#include "dem/state/packing.hpp"
 
 namespace isostat
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/history.hpp"
-#include "dem/packing.hpp"
+#include "dem/state/contact_list.hpp"
+#include "dem/state/packing.hpp"
 
 #include <utility>
 

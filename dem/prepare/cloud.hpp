@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/domain/rigid_box.hpp"
-#include "dem/packing.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
+#include "dem/state/packing.hpp"
 
 namespace isostat
 {

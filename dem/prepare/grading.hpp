@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <string>
 #include <vector>

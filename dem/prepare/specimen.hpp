@@ -2,7 +2,7 @@
 #pragma once
 #include "dem/drive/programme.hpp"
 #include "dem/io/specimen_file.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <filesystem>
 

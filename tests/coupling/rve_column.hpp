@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "coupling/rve_material.hpp"
+#include "coupling/batch/rve_material.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "tests/support/periodic.hpp"
 

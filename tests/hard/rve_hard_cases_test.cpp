@@ -2,7 +2,7 @@
 // The states and inputs in which representative volume elements break. Each test asserts what must come out: which
 // increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
 #include "base/error.hpp"
-#include "dem/rve.hpp"
+#include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <gmock/gmock.h>

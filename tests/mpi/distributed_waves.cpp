@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A block of saturated soil of two layers, shaken, on one mesh over all ranks: prints what must not depend on their
 // number. Run by tests/mpi/ranks_test.py.
-#include "fem/dynamics.hpp"
+#include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
 
 #include <cstdio>

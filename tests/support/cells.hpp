@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What tests of periodic packings share: how they are strained, and how two states are compared.
 #pragma once
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "tests/support/specimens.hpp"
 

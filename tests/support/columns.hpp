@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/elastic.hpp"
-#include "fem/soil.hpp"
+#include "fem/material/elastic.hpp"
+#include "fem/material/soil.hpp"
 
 namespace isostat
 {

@@ -2,7 +2,7 @@
 // Order of the time integration in dt: against exact solutions where there are any, else from differences between runs
 // at dt and dt/2, which fall by 2^order. All start from a state at t = 0 that has velocities and histories half a step
 // and a step old, as leapfrog wants them: with v(0) in the place of v(-dt/2) every order would be 1.
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/io/text_tables.hpp"
 #include "tests/support/specimens.hpp"

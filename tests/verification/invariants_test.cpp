@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must hold for any packing: conservation of momentum, the redundancy index of a packing at rest, the trace of the
 // fabric, and the equality of boundary and contact stress in equilibrium.
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/fabric.hpp"
 #include "dem/measure/redundancy.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packings of 1,000 grains against YADE (tests/reference/README.md): constant-volume compression at 5/s from the same
 // state with the same contact history, step by step as long as round-off stays small, along the stress path after that.
-#include "base/csv_table.hpp"
-#include "dem/assembly.hpp"
+#include "base/files/csv_table.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
 

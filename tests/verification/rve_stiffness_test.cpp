@@ -6,7 +6,7 @@
 // the small strains of these tests find an elastic network. How many contacts yield is asserted, not assumed.
 #include "dem/measure/redundancy.hpp"
 #include "dem/motion/critical_step.hpp"
-#include "dem/rve.hpp"
+#include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Threads that share a packing change no bit: 20,000 steps of shear that open and close contacts and rebuild the list.
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "tests/support/specimens.hpp"
 

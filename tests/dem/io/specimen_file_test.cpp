@@ -2,7 +2,7 @@
 #include "dem/io/specimen_file.hpp"
 
 #include "base/error.hpp"
-#include "base/hdf5.hpp"
+#include "base/files/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -2,7 +2,7 @@
 #include "dem/io/specimen_library.hpp"
 
 #include "base/error.hpp"
-#include "dem/scene.hpp"
+#include "dem/scene/scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/pvd.hpp"
+#include "base/files/pvd.hpp"
 #include "dem/io/vtp.hpp"
 
 #include "base/error.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/prepare/space_filling.hpp"
 
-#include "dem/assembly.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <gtest/gtest.h>

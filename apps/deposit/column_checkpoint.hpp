@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/solve/dynamics.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+/// All that a killed run of a column needs to go on to the same bits.
+struct ColumnCheckpoint
+{
+  DynamicsState state;                                ///< of the solver; of statics the same fields
+  std::map<std::string, double> numbers;              ///< rows written, greatest values ...
+  std::map<std::string, std::vector<double>> vectors; ///< greatest values over the depth
+  std::string scene;                                  ///< the resolved scene; a resumed run must have the same
+};
+
+/// As folder/last.h5 with folder/previous.h5 (base/record/checkpoint_folder.hpp).
+/// @throws RunFailure  disk full, not writable: the older ones survive
+void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint);
+
+/// The newest that can be read.
+/// @throws InputError when there is none, naming what is wrong with each
+/// tested: tests/apps/soil_column_resume_test.py
+ColumnCheckpoint read_column_checkpoint(const std::filesystem::path &folder);
+} // namespace isostat

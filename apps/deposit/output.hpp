@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/column_instant.hpp"
+#include "base/files/hdf5.hpp"
+#include "fem/space/column_line.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace isostat
+{
+/// A column for ParaView: displacement and velocity at the nodes, means over each element of excess pore pressure,
+/// r_u, shear strain and effective stress (compression positive; Pa, [-]). Lies along z in any dimension. No date in
+/// it: the same state is the same bytes.
+/// @param vertical_stress  sigma'_v0 of every point, Pa   @pre the mesh is not shared out
+/// @throws RunFailure  the file cannot be written
+/// tested: tests/apps/soil_column_test.py
+template <int dim>
+void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
+                      std::span<const double> vertical_stress);
+
+/// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), `sigma_v0` (Pa), series `time` (n) and,
+/// n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v, p, u (Pa), ru (-), as in the history; at the
+/// end of the run `peak_gamma` (-, at the depths), `node_depth` (m) and `peak_acceleration` (m/s2, at those). Written
+/// aside and renamed; rows wait in memory until flush() or until they outnumber a quarter of those written.
+/// @throws RunFailure  cannot be written
+/// tested: tests/apps/soil_column_test.py
+class ProfileFile
+{
+public:
+  static constexpr std::size_t n_quantities = 9;
+  /// @param resume_rows  rows of an existing file that are kept; InputError if it has fewer, or other depths
+  ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
+              std::size_t resume_rows = 0);
+
+  /// @param values  all depths of the first quantity, then of the second ...
+  void append(double time, std::span<const double> values);
+  void flush();
+  /// Adds the greatest values. Call it once, at the end.
+  void finish(std::span<const double> peak_gamma, std::span<const double> node_depth,
+              std::span<const double> peak_acceleration);
+  std::size_t n_rows() const { return n_rows_; }
+
+private:
+  void load(std::size_t rows);
+  void append_waiting(hdf5::Group root) const;
+  void forget_waiting();
+
+  std::filesystem::path path_;
+  std::vector<double> depths_;
+  std::size_t n_rows_ = 0, n_written_ = 0;
+  std::vector<double> times_;
+  std::array<std::vector<double>, n_quantities> waiting_;
+};
+
+/// What a point shows in tables: compression positive but for the shear pairs, which keep the sign they have in the
+/// soil (gamma_xz drives tau_xz).
+struct PointValues
+{
+  double gamma_xz = 0, gamma_yz = 0, eps_zz = 0;                    ///< [-]
+  double tau_xz = 0, tau_yz = 0, sigma_v = 0, p = 0, u = 0, ru = 0; ///< Pa; ru [-]
+  std::array<double, 9> row() const { return {gamma_xz, gamma_yz, eps_zz, tau_xz, tau_yz, sigma_v, p, u, ru}; }
+};
+inline constexpr std::array<std::pair<const char *, const char *>, 9> point_columns = {{{"gamma_xz", "-"},
+                                                                                        {"gamma_yz", "-"},
+                                                                                        {"eps_zz", "-"},
+                                                                                        {"tau_xz", "Pa"},
+                                                                                        {"tau_yz", "Pa"},
+                                                                                        {"sigma_v", "Pa"},
+                                                                                        {"p", "Pa"},
+                                                                                        {"u", "Pa"},
+                                                                                        {"ru", "-"}}};
+
+/// @param vertical_stress  sigma'_v0 of the point, Pa
+PointValues point_values(const Gradient &gradient, const Stress &stress, double pressure, double vertical_stress);
+
+/// p' of an effective stress, compression positive, Pa.
+inline double mean_effective(const Stress &stress) { return -(stress[0] + stress[1] + stress[2]) / 3; }
+} // namespace isostat

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Profiles over the depth in an HDF5 file.
+#include "apps/deposit/output.hpp"
+
+#include "base/error.hpp"
+#include "base/files/hdf5.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
+                         std::size_t resume_rows)
+    : path_(std::move(path)), depths_(std::move(depths))
+{
+  if (resume_rows > 0)
+    load(resume_rows);
+  hdf5::File file = hdf5::File::create(path_);
+  hdf5::Group root = file.root();
+  const std::size_t m = depths_.size(), chunk = std::max<std::size_t>(1, 4096 / m);
+  root.write("depth", std::span<const double>(depths_), "m");
+  root.write("sigma_v0", std::span<const double>(sigma_v0), "Pa");
+  root.create_series("time", "s");
+  for (const auto &[name, unit] : point_columns)
+    root.create_series(name, unit, m, chunk);
+  append_waiting(root); // with what is kept in the same go: a kill here loses nothing
+  file.commit();
+  forget_waiting();
+}
+
+/// Takes the first rows of a file that is there as rows still to be written.
+void ProfileFile::load(std::size_t rows)
+{
+  const hdf5::File file = hdf5::File::open(path_);
+  const hdf5::Group root = file.root();
+  const std::size_t m = depths_.size();
+  if (root.read<double>("depth") != depths_)
+    throw InputError(fmt::format("{}: has other depths; resume with the scene of the first run", path_.string()));
+  times_ = root.read<double>("time");
+  if (times_.size() < rows)
+    throw InputError(fmt::format("{}: {} rows, the checkpoint expects {}; restore the file or resume from an earlier "
+                                 "checkpoint",
+                                 path_.string(), times_.size(), rows));
+  times_.resize(rows);
+  for (std::size_t k = 0; k < n_quantities; ++k)
+    {
+      waiting_[k] = root.read<double>(point_columns[k].first);
+      waiting_[k].resize(rows * m);
+    }
+  n_rows_ = rows;
+}
+
+void ProfileFile::append(double time, std::span<const double> values)
+{
+  times_.push_back(time);
+  const std::size_t m = depths_.size();
+  for (std::size_t k = 0; k < n_quantities; ++k)
+    waiting_[k].insert(waiting_[k].end(), values.begin() + static_cast<std::ptrdiff_t>(k * m),
+                       values.begin() + static_cast<std::ptrdiff_t>((k + 1) * m));
+  ++n_rows_;
+  if (n_rows_ - n_written_ > std::max<std::size_t>(256, n_written_ / 4))
+    flush();
+}
+
+void ProfileFile::flush()
+{
+  if (times_.empty())
+    return;
+  hdf5::File file = hdf5::File::update(path_);
+  append_waiting(file.root());
+  file.commit();
+  forget_waiting();
+}
+
+void ProfileFile::append_waiting(hdf5::Group root) const
+{
+  root.append("time", times_);
+  for (std::size_t k = 0; k < n_quantities; ++k)
+    root.append(point_columns[k].first, waiting_[k]);
+}
+
+void ProfileFile::forget_waiting()
+{
+  n_written_ = n_rows_;
+  times_.clear();
+  for (std::vector<double> &values : waiting_)
+    values.clear();
+}
+
+void ProfileFile::finish(std::span<const double> peak_gamma, std::span<const double> node_depth,
+                         std::span<const double> peak_acceleration)
+{
+  flush();
+  hdf5::File file = hdf5::File::update(path_);
+  hdf5::Group root = file.root();
+  root.write("peak_gamma", peak_gamma, "-");
+  root.write("node_depth", node_depth, "m");
+  root.write("peak_acceleration", peak_acceleration, "m/s2");
+  file.commit();
+}
+} // namespace isostat

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files/csv_table.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <zlib.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+/// Fields between commas; empty ones count.
+std::vector<std::string_view> split_commas(std::string_view line)
+{
+  std::vector<std::string_view> fields;
+  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1)
+    {
+      end = line.find(',', begin);
+      std::string_view field = line.substr(begin, end == std::string_view::npos ? end : end - begin);
+      while (!field.empty() && field.front() == ' ')
+        field.remove_prefix(1);
+      while (!field.empty() && field.back() == ' ')
+        field.remove_suffix(1);
+      fields.push_back(field);
+    }
+  return fields;
+}
+} // namespace
+
+void reject(const fs::path &file, std::size_t line, const std::string &what)
+{
+  throw InputError(fmt::format("{}:{}: {}", file.string(), line, what));
+}
+
+std::string read_text(const fs::path &path)
+{
+  std::error_code ignored;
+  gzFile file = fs::is_regular_file(path, ignored) ? gzopen(path.c_str(), "rb") : nullptr;
+  if (!file)
+    throw InputError(fmt::format("{}: cannot be opened; check path and permissions", path.string()));
+  std::string text;
+  std::array<char, 1 << 16> buffer;
+  int n = 0;
+  while ((n = gzread(file, buffer.data(), buffer.size())) > 0)
+    text.append(buffer.data(), n);
+  int code = Z_OK;
+  gzerror(file, &code);
+  const int closed = gzclose(file);
+  if (n < 0 || closed != Z_OK || (code != Z_OK && code != Z_STREAM_END))
+    throw InputError(fmt::format("{}: the gzip data are damaged or cut off after {} bytes of text; copy the file again",
+                                 path.string(), text.size()));
+  return text;
+}
+
+std::vector<std::string_view> split_lines(std::string_view text)
+{
+  std::vector<std::string_view> lines;
+  while (!text.empty())
+    {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      std::string_view line = text.substr(0, end);
+      if (!line.empty() && line.back() == '\r')
+        line.remove_suffix(1);
+      lines.push_back(line);
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+  return lines;
+}
+
+std::vector<std::string_view> split_words(std::string_view line)
+{
+  constexpr std::string_view separators = " \t,";
+  std::vector<std::string_view> words;
+  for (std::size_t begin = line.find_first_not_of(separators); begin != std::string_view::npos;)
+    {
+      const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
+      words.push_back(line.substr(begin, end - begin));
+      begin = line.find_first_not_of(separators, end);
+    }
+  return words;
+}
+
+bool parse(std::string_view field, double &value)
+{
+  if (!field.empty() && field.front() == '+')
+    field.remove_prefix(1);
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc() && end == field.data() + field.size();
+}
+
+CsvTable::CsvTable(const fs::path &path, const std::vector<std::string> &columns, const std::string &may_be_nan)
+    : path_(path), n_columns_(columns.size())
+{
+  const std::string text = read_text(path);
+  const std::vector<std::string_view> lines = split_lines(text);
+  if (lines.empty())
+    reject(path, 1, fmt::format("the file is empty; expected a header with the columns {}", fmt::join(columns, ",")));
+  const std::vector<std::string_view> header = split_commas(lines[0]);
+  std::vector<std::size_t> place;
+  for (const std::string &name : columns)
+    {
+      place.push_back(std::find(header.begin(), header.end(), name) - header.begin());
+      if (place.back() == header.size())
+        reject(path, 1,
+               fmt::format("no column \"{}\"; expected {} in the first line, separated by commas", name,
+                           fmt::join(columns, ",")));
+    }
+  for (std::size_t l = 1; l < lines.size(); ++l)
+    {
+      if (split_words(lines[l]).empty())
+        continue;
+      const std::vector<std::string_view> fields = split_commas(lines[l]);
+      if (fields.size() != header.size())
+        reject(
+            path, l + 1,
+            fmt::format("{} values; the header names {} columns. Is the file cut off?", fields.size(), header.size()));
+      lines_.push_back(l + 1);
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        {
+          double value = 0;
+          if (!parse(fields[place[c]], value) ||
+              !(std::isfinite(value) || (std::isnan(value) && columns[c] == may_be_nan)))
+            reject(path, l + 1,
+                   fmt::format("{} = \"{}\"; expected a finite number with a decimal point", columns[c],
+                               fields[place[c]]));
+          values_.push_back(value);
+        }
+    }
+}
+
+std::int64_t CsvTable::integer(std::size_t row, std::size_t column, const char *name) const
+{
+  const double value = (*this)(row, column);
+  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<std::uint32_t>::max())
+    reject(path_, lines_[row], fmt::format("{} = {}; expected a whole number below 2^32", name, value));
+  return static_cast<std::int64_t>(value);
+}
+} // namespace isostat

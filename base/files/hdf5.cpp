@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files/hdf5.hpp"
+
+#include "base/error.hpp"
+#include "base/files/replace_file.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <utility>
+
+namespace isostat::hdf5
+{
+namespace fs = std::filesystem;
+
+struct FileState
+{
+  fs::path path, aside; // aside: where the bytes go until commit(); empty when reading
+  hid_t id = -1;
+
+  bool writing() const { return !aside.empty(); }
+  void close()
+  {
+    if (id >= 0)
+      H5Fclose(id);
+    id = -1;
+  }
+  int descriptor() const
+  {
+    void *found = nullptr;
+    return H5Fget_vfd_handle(id, H5P_DEFAULT, &found) < 0 ? -1 : *static_cast<int *>(found);
+  }
+  /// Room on the disk for all that HDF5 has yet to write: it keeps a file whose last bytes it could not write, and
+  /// crashes on it when it is shut down (MPI does that at its end). @return errno, 0 if there is
+  int reserve() const
+  {
+    hsize_t bytes = 0;
+    return H5Fget_filesize(id, &bytes) < 0 ? 0 : ::posix_fallocate(descriptor(), 0, static_cast<off_t>(bytes));
+  }
+  void abandon()
+  {
+    if (writing() && id >= 0) // what HDF5 still writes goes to memory
+      {
+        const int memory = ::memfd_create("abandoned", 0);
+        ::dup2(memory, descriptor());
+        ::close(memory);
+      }
+    close();
+    std::error_code ignored;
+    if (writing())
+      fs::remove(aside, ignored);
+    aside.clear();
+  }
+  ~FileState() { abandon(); }
+};
+
+namespace
+{
+/// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit is not needed:
+/// files are closed here.
+void silence()
+{
+  [[maybe_unused]] static const bool once = [] {
+    H5dont_atexit();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+}
+
+/// The innermost entry of HDF5's error stack: the reason, not its echoes.
+std::string library_reason()
+{
+  std::string reason;
+  const auto first = [](unsigned n, const H5E_error2_t *error, void *out) -> herr_t {
+    if (n == 0 && error->desc)
+      *static_cast<std::string *>(out) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, first, &reason);
+  H5Eclear2(H5E_DEFAULT);
+  return reason.empty() ? reason : fmt::format(" (HDF5: {})", reason);
+}
+
+[[noreturn]] void fail(const FileState &file, const std::string &item, const std::string &what)
+{
+  if (file.writing())
+    throw RunFailure(fmt::format("{}: cannot write {}: {}{}; check free space and permissions of the folder",
+                                 file.path.string(), item, what, library_reason()));
+  throw InputError(
+      fmt::format("{}: cannot read {}: {}{}; is this the right kind of file, and complete? Write it again.",
+                  file.path.string(), item, what, library_reason()));
+}
+
+/// Owner of one HDF5 identifier.
+class Handle
+{
+public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle &&other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle &operator=(Handle &&) = delete;
+  ~Handle()
+  {
+    if (id_ >= 0)
+      close_(id_);
+  }
+  operator hid_t() const { return id_; }
+
+private:
+  hid_t id_;
+  Close close_;
+};
+
+Handle checked(hid_t id, Handle::Close close, const FileState &file, const std::string &item, const char *what)
+{
+  if (id < 0)
+    fail(file, item, what);
+  return {id, close};
+}
+
+/// Type of T in memory; in files the same, since every machine this runs on is little-endian.
+template <typename T>
+Handle type_of()
+{
+  if constexpr (std::is_same_v<T, double>)
+    return {H5Tcopy(H5T_IEEE_F64LE), H5Tclose};
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return {H5Tcopy(H5T_STD_U64LE), H5Tclose};
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return {H5Tcopy(H5T_STD_U32LE), H5Tclose};
+  else
+    {
+      Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+      H5Tset_size(type, H5T_VARIABLE);
+      H5Tset_cset(type, H5T_CSET_UTF8);
+      return type;
+    }
+}
+
+/// Whether values stored as `stored` arrive unchanged in T.
+template <typename T>
+bool readable_as(hid_t stored)
+{
+  const H5T_class_t kind = H5Tget_class(stored);
+  if constexpr (std::is_same_v<T, double>)
+    return kind == H5T_FLOAT || kind == H5T_INTEGER;
+  else if constexpr (std::is_same_v<T, std::string>)
+    return H5Tis_variable_str(stored) > 0;
+  else
+    return kind == H5T_INTEGER && H5Tget_sign(stored) == H5T_SGN_NONE && H5Tget_size(stored) <= sizeof(T);
+}
+
+template <typename T>
+constexpr const char *kind_name = std::is_same_v<T, double>        ? "real numbers"
+                                  : std::is_same_v<T, std::string> ? "text"
+                                                                   : "unsigned integers";
+
+/// Values of a dataset or attribute whose type and space are given.
+template <typename T, typename Transfer>
+std::vector<T> read_values(const FileState &file, const std::string &item, hid_t stored, hid_t space,
+                           const Transfer &transfer)
+{
+  if (!readable_as<T>(stored))
+    fail(file, item, fmt::format("it does not hold {}", kind_name<T>));
+  const std::size_t n = H5Sget_simple_extent_npoints(space);
+  std::vector<T> values(n);
+  const auto checked_transfer = [&](hid_t type, void *buffer) {
+    if (transfer(type, buffer) < 0)
+      fail(file, item, "reading failed");
+  };
+  if constexpr (std::is_same_v<T, std::string>)
+    {
+      std::vector<char *> texts(n, nullptr);
+      checked_transfer(type_of<T>(), texts.data());
+      for (std::size_t i = 0; i < n; ++i)
+        values[i] = texts[i] ? texts[i] : "";
+      H5Dvlen_reclaim(type_of<T>(), space, H5P_DEFAULT, texts.data());
+    }
+  else
+    checked_transfer(type_of<T>(), values.data());
+  return values;
+}
+
+/// Hands `values` to `transfer(memory type, buffer)` in the form HDF5 wants.
+template <typename T, typename Transfer>
+bool write_values(std::span<const T> values, const Transfer &transfer)
+{
+  const Handle type = type_of<T>();
+  if constexpr (std::is_same_v<T, std::string>)
+    {
+      std::vector<const char *> pointers;
+      for (const std::string &text : values)
+        pointers.push_back(text.c_str());
+      return transfer(type, static_cast<const void *>(pointers.data())) >= 0;
+    }
+  else
+    return transfer(type, static_cast<const void *>(values.data())) >= 0;
+}
+
+Handle open_item(const FileState &file, const std::string &item)
+{
+  assert(file.id >= 0);
+  return checked(H5Oopen(file.id, item.c_str(), H5P_DEFAULT), H5Oclose, file, item, "there is no such item");
+}
+
+Handle open_dataset(const FileState &file, const std::string &item)
+{
+  assert(file.id >= 0);
+  return checked(H5Dopen2(file.id, item.c_str(), H5P_DEFAULT), H5Dclose, file, item, "there is no such dataset");
+}
+
+template <typename T>
+Handle create_dataset(const FileState &file, const std::string &item, hid_t space, hid_t layout)
+{
+  H5Pset_obj_track_times(layout, false); // the same data are the same bytes
+  return checked(H5Dcreate2(file.id, item.c_str(), type_of<T>(), space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose,
+                 file, item, "creating the dataset failed (does it exist already?)");
+}
+
+Shape extent(hid_t dataset)
+{
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  std::vector<hsize_t> dims(std::max(0, H5Sget_simple_extent_ndims(space)));
+  H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+  return dims.empty() ? Shape{1} : Shape(dims.begin(), dims.end());
+}
+
+/// Iteration callback: adds a name to the vector behind `out`.
+template <typename Info>
+herr_t collect(hid_t, const char *name, const Info *, void *out)
+{
+  static_cast<std::vector<std::string> *>(out)->emplace_back(name);
+  return 0;
+}
+
+/// Opens the bytes at `where` in the name of `state.path`.
+void open_existing(FileState &state, const fs::path &where, unsigned mode)
+{
+  state.id = H5Fopen(where.c_str(), mode, H5P_DEFAULT);
+  if (state.id < 0)
+    throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again", state.path.string(),
+                                 library_reason()));
+}
+
+void require_hdf5(const fs::path &path)
+{
+  silence();
+  std::error_code error;
+  const std::string name = path.string();
+  if (!fs::exists(path, error))
+    throw InputError(fmt::format("{}: there is no such file; check the path (relative to {})", name,
+                                 fs::current_path(error).string()));
+  if (!fs::is_regular_file(path, error))
+    throw InputError(fmt::format("{}: not a file; give the name of an HDF5 file (.h5)", name));
+  if (::access(path.c_str(), R_OK) != 0)
+    throw InputError(fmt::format("{}: {}; change its permissions", name, std::strerror(errno)));
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw InputError(
+        fmt::format("{}: not an HDF5 file (its signature is missing); give a file that Isostat wrote (.h5)", name));
+}
+} // namespace
+
+File File::open(const fs::path &path)
+{
+  require_hdf5(path);
+  auto state = std::make_shared<FileState>();
+  state->path = path;
+  open_existing(*state, path, H5F_ACC_RDONLY);
+  return File(state);
+}
+
+File File::create(const fs::path &path)
+{
+  silence();
+  auto state = std::make_shared<FileState>();
+  state->path = path;
+  const fs::path aside = path.string() + ".tmp";
+  state->aside = aside;
+  state->id = H5Fcreate(aside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (state->id < 0)
+    throw RunFailure(fmt::format("{}: cannot create the file{}; the folder must exist, be writable and have free space",
+                                 path.string(), library_reason()));
+  return File(state);
+}
+
+File File::update(const fs::path &path)
+{
+  require_hdf5(path);
+  auto state = std::make_shared<FileState>();
+  state->path = path;
+  state->aside = path.string() + ".tmp";
+  std::error_code error;
+  fs::copy_file(path, state->aside, fs::copy_options::overwrite_existing, error);
+  if (error)
+    fail(*state, "a copy of it", error.message());
+  open_existing(*state, state->aside, H5F_ACC_RDWR);
+  return File(state);
+}
+
+File &File::operator=(File &&other) noexcept
+{
+  if (this != &other && state_)
+    state_->abandon();
+  state_ = std::move(other.state_);
+  return *this;
+}
+
+File::~File()
+{
+  if (state_)
+    state_->abandon();
+}
+
+void File::commit()
+{
+  FileState &file = *state_;
+  assert(file.writing() && file.id >= 0);
+  if (const int code = file.reserve())
+    fail(file, "the file", std::strerror(code));
+  if (H5Fflush(file.id, H5F_SCOPE_GLOBAL) < 0)
+    fail(file, "the file", "flushing failed");
+  if (H5Fclose(file.id) < 0)
+    fail(file, "the file", "closing failed");
+  file.id = -1;
+  replace_file(file.aside, file.path);
+  file.aside.clear();
+}
+
+std::string Group::child(const std::string &name) const
+{
+  if (name == ".")
+    return path_;
+  assert(!name.empty() && name.find('/') == std::string::npos);
+  return path_ == "/" ? "/" + name : path_ + "/" + name;
+}
+
+std::string Group::where() const { return file_->path.string() + ":" + path_; }
+const fs::path &Group::file_path() const { return file_->path; }
+
+bool Group::has(const std::string &name) const
+{
+  assert(file_->id >= 0);
+  return H5Lexists(file_->id, child(name).c_str(), H5P_DEFAULT) > 0;
+}
+
+bool Group::has_attribute(const std::string &name, const std::string &item) const
+{
+  return H5Aexists(open_item(*file_, child(item)), name.c_str()) > 0;
+}
+
+std::vector<std::string> Group::names() const
+{
+  std::vector<std::string> found;
+  H5Literate_by_name(file_->id, path_.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &found,
+                     H5P_DEFAULT);
+  return found;
+}
+
+std::vector<std::string> Group::attribute_names() const
+{
+  std::vector<std::string> found;
+  H5Aiterate2(open_item(*file_, path_), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &found);
+  return found;
+}
+
+Group Group::group(const std::string &name) const
+{
+  const Handle exists = checked(H5Gopen2(file_->id, child(name).c_str(), H5P_DEFAULT), H5Gclose, *file_, child(name),
+                                "there is no such group");
+  return {file_, child(name)};
+}
+
+Group Group::create_group(const std::string &name)
+{
+  assert(file_->id >= 0 && file_->writing());
+  const Handle made = checked(H5Gcreate2(file_->id, child(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                              H5Gclose, *file_, child(name), "creating the group failed (does it exist already?)");
+  return {file_, child(name)};
+}
+
+Shape Group::shape(const std::string &name) const { return extent(open_dataset(*file_, child(name))); }
+
+template <typename T>
+std::vector<T> Group::read(const std::string &name) const
+{
+  const Handle dataset = open_dataset(*file_, child(name));
+  const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  return read_values<T>(*file_, child(name), type, space, [id = hid_t(dataset)](hid_t memory, void *buffer) {
+    return H5Dread(id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
+  });
+}
+
+template <typename T>
+std::vector<T> Group::read(const std::string &name, const Shape &expected) const
+{
+  const Shape found = shape(name);
+  if (found != expected)
+    fail(*file_, child(name), fmt::format("its shape is {}, expected {}", found, expected));
+  return read<T>(name);
+}
+
+template <typename T>
+T Group::attribute(const std::string &name, const std::string &item) const
+{
+  const std::string full = child(item) + "@" + name;
+  const Handle owner = open_item(*file_, child(item));
+  const Handle attribute =
+      checked(H5Aopen(owner, name.c_str(), H5P_DEFAULT), H5Aclose, *file_, full, "there is no such attribute");
+  const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space) != 1)
+    fail(*file_, full, "it is not a single value");
+  return read_values<T>(*file_, full, type, space,
+                        [id = hid_t(attribute)](hid_t memory, void *buffer) { return H5Aread(id, memory, buffer); })[0];
+}
+
+template <typename T>
+void Group::put_attribute(const std::string &name, const T &value, const std::string &item)
+{
+  const std::string full = child(item) + "@" + name;
+  const Handle owner = open_item(*file_, child(item)), space(H5Screate(H5S_SCALAR), H5Sclose);
+  if (H5Aexists(owner, name.c_str()) > 0)
+    H5Adelete(owner, name.c_str());
+  const Handle attribute = checked(H5Acreate2(owner, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
+                                   H5Aclose, *file_, full, "creating the attribute failed");
+  const auto transfer = [id = hid_t(attribute)](hid_t type, const void *buffer) { return H5Awrite(id, type, buffer); };
+  if (!write_values<T>({&value, 1}, transfer))
+    fail(*file_, full, "writing failed");
+}
+
+template <typename T>
+void Group::put(const std::string &name, std::span<const T> values, const std::string &unit, std::size_t n_columns)
+{
+  assert(file_->id >= 0 && file_->writing() && n_columns > 0 && values.size() % n_columns == 0);
+  const hsize_t dims[2] = {values.size() / n_columns, n_columns};
+  const Handle space(H5Screate_simple(n_columns == 1 ? 1 : 2, dims, nullptr), H5Sclose),
+      layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Handle dataset = create_dataset<T>(*file_, child(name), space, layout);
+  const auto transfer = [id = hid_t(dataset)](hid_t type, const void *buffer) {
+    return H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
+  };
+  if (!values.empty() && !write_values<T>(values, transfer))
+    fail(*file_, child(name), "writing failed");
+  put_attribute("unit", unit, name);
+}
+
+void Group::create_series(const std::string &name, const std::string &unit, std::size_t n_columns,
+                          std::size_t rows_per_chunk)
+{
+  assert(file_->id >= 0 && file_->writing() && n_columns > 0 && rows_per_chunk > 0);
+  const hsize_t dims[2] = {0, n_columns}, limits[2] = {H5S_UNLIMITED, n_columns},
+                chunk[2] = {rows_per_chunk, n_columns};
+  const int rank = n_columns == 1 ? 1 : 2;
+  const Handle space(H5Screate_simple(rank, dims, limits), H5Sclose), layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(layout, rank, chunk);
+  const Handle made = create_dataset<double>(*file_, child(name), space, layout);
+  put_attribute("unit", unit, name);
+}
+
+void Group::append(const std::string &name, std::span<const double> values)
+{
+  const Handle dataset = open_dataset(*file_, child(name));
+  const Shape before = extent(dataset);
+  const std::size_t n_columns = before.size() == 2 ? before[1] : 1;
+  assert(values.size() % n_columns == 0);
+  if (values.empty())
+    return;
+  const hsize_t start[2] = {before[0], 0}, count[2] = {values.size() / n_columns, n_columns};
+  resize(name, start[0] + count[0]);
+  const Handle space(H5Dget_space(dataset), H5Sclose), rows(H5Screate_simple(before.size(), count, nullptr), H5Sclose);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr);
+  if (H5Dwrite(dataset, H5T_IEEE_F64LE, rows, space, H5P_DEFAULT, values.data()) < 0)
+    fail(*file_, child(name), "writing failed");
+}
+
+void Group::resize(const std::string &name, std::size_t n_rows)
+{
+  const Handle dataset = open_dataset(*file_, child(name));
+  const Shape now = extent(dataset);
+  const hsize_t wanted[2] = {n_rows, now.size() == 2 ? now[1] : 1};
+  if (H5Dset_extent(dataset, wanted) < 0)
+    fail(*file_, child(name), "changing the number of rows failed (made by create_series?)");
+}
+
+#define ISOSTAT_INSTANTIATE(T) \
+  template std::vector<T> Group::read<T>(const std::string &) const; \
+  template std::vector<T> Group::read<T>(const std::string &, const Shape &) const; \
+  template T Group::attribute<T>(const std::string &, const std::string &) const; \
+  template void Group::put<T>(const std::string &, std::span<const T>, const std::string &, std::size_t); \
+  template void Group::put_attribute<T>(const std::string &, const T &, const std::string &);
+ISOSTAT_INSTANTIATE(double)
+ISOSTAT_INSTANTIATE(std::uint64_t)
+ISOSTAT_INSTANTIATE(std::uint32_t)
+ISOSTAT_INSTANTIATE(std::string)
+} // namespace isostat::hdf5

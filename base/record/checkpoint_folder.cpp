@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/record/checkpoint_folder.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+void write_newest(const fs::path &folder, const std::function<void(hdf5::Group root)> &fill)
+{
+  fs::create_directories(folder);
+  const fs::path last = folder / "last.h5", fresh = folder / "fresh.h5";
+  hdf5::File file = hdf5::File::create(fresh);
+  fill(file.root());
+  file.commit();
+  // each rename is one step; between them previous.h5 and fresh.h5 are whole
+  if (fs::exists(last))
+    fs::rename(last, folder / "previous.h5");
+  fs::rename(fresh, last);
+}
+
+void read_newest(const fs::path &folder, const std::function<void(const fs::path &)> &read)
+{
+  std::string problems;
+  for (const char *name : {"fresh.h5", "last.h5", "previous.h5"})
+    {
+      const fs::path path = folder / name;
+      if (!fs::exists(path))
+        continue;
+      try
+        {
+          read(path);
+          return;
+        }
+      catch (const InputError &error)
+        {
+          problems += std::string("\n  ") + error.what();
+        }
+    }
+  throw InputError(fmt::format("{}: no checkpoint to resume from{}", folder.string(),
+                               problems.empty() ? ": none was written. Start anew with --overwrite." : problems));
+}
+
+void set_format(hdf5::Group root, const std::string &format, std::uint64_t version)
+{
+  root.set_attribute("format", format);
+  root.set_attribute("schema_version", version);
+}
+
+void expect_format(const hdf5::Group &root, const std::string &format, std::uint64_t version)
+{
+  const std::string path = root.file_path().string();
+  if (!root.has_attribute("format") || root.attribute<std::string>("format") != format)
+    throw InputError(fmt::format("{}: not a checkpoint of Isostat (no attribute format = \"{}\")", path, format));
+  const auto found = root.attribute<std::uint64_t>("schema_version");
+  if (found != version)
+    throw InputError(
+        fmt::format("{}: checkpoint schema {} was written by another version; this one reads {}. Finish the "
+                    "run with the version that began it.",
+                    path, found, version));
+}
+} // namespace isostat

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/files/hdf5.hpp"
+
+#include <functional>
+
+namespace isostat
+{
+/// Writes folder/last.h5 aside and renames it; what was last becomes folder/previous.h5, so that two are kept and one
+/// is whole at any moment.
+/// @param fill  puts the content into the empty file
+/// @throws RunFailure  disk full, not writable: the older ones survive
+void write_newest(const std::filesystem::path &folder, const std::function<void(hdf5::Group root)> &fill);
+
+/// Reads the newest checkpoint of a folder that can be read: a damaged last.h5 gives way to previous.h5.
+/// @param read  takes one file, throws InputError if it is damaged or not one of its own
+/// @throws InputError when there is none, naming what is wrong with each
+/// tested: tests/dem/io/checkpoint_test.cpp
+void read_newest(const std::filesystem::path &folder, const std::function<void(const std::filesystem::path &)> &read);
+
+/// Marks a file as one of a format, and refuses one that is not.
+/// @throws InputError from expect_format()
+void set_format(hdf5::Group root, const std::string &format, std::uint64_t version);
+void expect_format(const hdf5::Group &root, const std::string &format, std::uint64_t version);
+} // namespace isostat

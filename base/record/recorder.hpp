@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace isostat
+{
+/// One quantity of a time series.
+struct RecordColumn
+{
+  std::string name;       ///< e.g. "p"; no commas, slashes or line breaks
+  std::string unit = "-"; ///< e.g. "Pa"; "-" if dimensionless
+};
+
+/// The time series of a run, one row at a time, in two forms in the run folder:
+///
+///     history.csv   header `name (unit)`, 10 significant digits; rows are added behind, always whole lines
+///     history.h5    group `history`, one dataset per column with all digits and attribute `unit`; written aside,
+///     renamed
+///
+/// Rows reach the CSV every `rows_per_line_flush` rows and at flush(); both files agree after flush(). Call flush()
+/// before a checkpoint is written and store n_rows() in it: a resumed run then continues both files as if never
+/// interrupted. history.h5 is also renewed whenever the waiting rows outnumber a quarter of the written ones (at least
+/// 4096), so that memory stays bounded and the total copying linear. Failure to write is a RunFailure; the CSV keeps
+/// its whole lines and the rows still waiting are tried again later. tested: tests/base/record/recorder_test.cpp
+class Recorder
+{
+public:
+  static constexpr std::size_t rows_per_line_flush = 64;
+
+  /// @param folder  made if it is missing
+  /// @param resume_rows  0: start anew, replacing what is there. Otherwise both files are cut to their first
+  /// resume_rows
+  ///                     rows; InputError if they hold fewer, or other columns
+  Recorder(std::filesystem::path folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0);
+  /// Flushes; a failure is lost here, so call flush() where it matters.
+  ~Recorder();
+  Recorder(const Recorder &) = delete;
+  Recorder &operator=(const Recorder &) = delete;
+
+  /// @pre row.size() == number of columns
+  void append(std::span<const double> row);
+  /// Brings both files up to the last row.
+  void flush();
+
+  std::size_t n_rows() const { return n_rows_; }
+  const std::vector<RecordColumn> &columns() const { return columns_; }
+
+private:
+  void start_anew();
+  void resume();
+  std::uintmax_t bytes_of_lines() const; ///< of header and first n_rows_ rows in the CSV
+  void resume_hdf5();
+  void flush_lines();
+  void flush_hdf5();
+  std::string header() const;
+
+  std::filesystem::path csv_, hdf5_;
+  std::vector<RecordColumn> columns_;
+  std::size_t n_rows_ = 0, n_rows_in_hdf5_ = 0, n_waiting_lines_ = 0;
+  std::uintmax_t csv_bytes_ = 0; ///< whole lines on the disk
+  std::string waiting_lines_;    ///< for the CSV
+  std::vector<double> waiting_;  ///< for the HDF5 file, row by row
+};
+} // namespace isostat

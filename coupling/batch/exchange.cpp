@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/batch/exchange.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace isostat
+{
+namespace
+{
+constexpr int tag = 6017;
+constexpr std::size_t longest_message = std::size_t{1} << 30; // MPI counts with int
+} // namespace
+
+Exchange::Exchange(MPI_Comm comm) : comm_(comm)
+{
+  MPI_Comm_rank(comm_, &rank_);
+  MPI_Comm_size(comm_, &size_);
+}
+
+void Exchange::share(std::span<const std::size_t> ids, const Owners &owners, std::size_t width,
+                     std::span<double> rows) const
+{
+  if (size_ == 1 || ids.empty())
+    return;
+  std::vector<int> counts(size_, 0), begins(size_, 0);
+  for (std::size_t id : ids)
+    counts[owners[id]] += static_cast<int>(width);
+  for (int r = 1; r < size_; ++r)
+    begins[r] = begins[r - 1] + counts[r - 1];
+  std::vector<double> mine, all(rows.size());
+  mine.reserve(counts[rank_]);
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    if (owners[ids[k]] == rank_)
+      mine.insert(mine.end(), &rows[width * k], &rows[width * k] + width);
+  MPI_Allgatherv(mine.data(), counts[rank_], MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, comm_);
+  std::vector<int> next = begins;
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    {
+      int &at = next[owners[ids[k]]];
+      std::copy_n(&all[at], width, &rows[width * k]);
+      at += static_cast<int>(width);
+    }
+}
+
+void Exchange::stop_together(const std::optional<Failure> &mine) const
+{
+  constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t own = mine ? mine->element : none;
+  std::uint64_t first = own;
+  int speaker = 0;
+  Failure failure = mine.value_or(Failure{});
+  if (size_ > 1)
+    {
+      MPI_Allreduce(&own, &first, 1, MPI_UINT64_T, MPI_MIN, comm_);
+      if (first == none)
+        return;
+      const int candidate = own == first ? rank_ : size_;
+      MPI_Allreduce(&candidate, &speaker, 1, MPI_INT, MPI_MIN, comm_);
+      Bytes text(failure.message.size() + 1, std::byte{failure.bad_input});
+      std::memcpy(text.data() + 1, failure.message.data(), failure.message.size());
+      broadcast(text, speaker);
+      failure.bad_input = text[0] != std::byte{0};
+      failure.message.assign(reinterpret_cast<const char *>(text.data()) + 1, text.size() - 1);
+    }
+  if (first == none)
+    return;
+  if (failure.bad_input)
+    throw InputError(failure.message);
+  throw RunFailure(failure.message);
+}
+
+void Exchange::broadcast(Bytes &bytes, int root) const
+{
+  if (size_ == 1)
+    return;
+  std::uint64_t n = bytes.size();
+  MPI_Bcast(&n, 1, MPI_UINT64_T, root, comm_);
+  bytes.resize(n);
+  for (std::size_t at = 0; at < n; at += longest_message)
+    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(longest_message, n - at)), MPI_BYTE, root, comm_);
+}
+
+void Exchange::send(const Bytes &bytes, int to, std::vector<MPI_Request> &pending) const
+{
+  if (bytes.size() > longest_message)
+    throw RunFailure("an element of more than 1 GiB cannot go to another rank");
+  MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, comm_, &pending.emplace_back());
+}
+
+Bytes Exchange::receive(int from) const
+{
+  MPI_Status status;
+  MPI_Probe(from, tag, comm_, &status);
+  int n = 0;
+  MPI_Get_count(&status, MPI_BYTE, &n);
+  Bytes bytes(n);
+  MPI_Recv(bytes.data(), n, MPI_BYTE, from, tag, comm_, MPI_STATUS_IGNORE);
+  return bytes;
+}
+
+std::vector<Bytes> Exchange::gather(const Bytes &mine) const
+{
+  if (size_ == 1)
+    return {mine};
+  std::vector<Bytes> all;
+  std::vector<MPI_Request> pending;
+  if (rank_ == 0)
+    {
+      all.push_back(mine);
+      for (int r = 1; r < size_; ++r)
+        all.push_back(receive(r));
+    }
+  else
+    send(mine, 0, pending);
+  MPI_Waitall(static_cast<int>(pending.size()), pending.data(), MPI_STATUSES_IGNORE);
+  return all;
+}
+
+std::vector<Bytes> Exchange::move(const std::vector<Bytes> &sent, const Owners &from, const Owners &to) const
+{
+  std::vector<MPI_Request> pending;
+  pending.reserve(sent.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (from[i] == rank_ && to[i] != rank_)
+      send(sent[next++], to[i], pending);
+  std::vector<Bytes> received;
+  for (std::size_t i = 0; i < from.size(); ++i) // messages of one rank arrive in the order they were sent
+    if (from[i] != rank_ && to[i] == rank_)
+      received.push_back(receive(from[i]));
+  MPI_Waitall(static_cast<int>(pending.size()), pending.data(), MPI_STATUSES_IGNORE);
+  return received;
+}
+} // namespace isostat

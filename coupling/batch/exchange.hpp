@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "coupling/placement/placement.hpp"
+
+#include <cstdint>
+#include <mpi.h>
+#include <optional>
+#include <string>
+
+namespace isostat
+{
+using Bytes = std::vector<std::byte>;
+
+/// What goes between ranks. Every call is collective on the communicator, in the same order on all ranks; nothing is
+/// summed by MPI, so no bit hangs on the number of ranks. One rank alone makes no MPI call but those for its number.
+/// tested: tests/mpi/rve_material_mpi.cpp
+class Exchange
+{
+public:
+  /// @pre MPI is initialised; `comm` stays valid as long as this
+  explicit Exchange(MPI_Comm comm);
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+  /// Rows of `width` numbers, one for each of the elements `ids` (rising): the owner has filled in its own, afterwards
+  /// everybody has all.   cost one MPI_Allgatherv
+  void share(std::span<const std::size_t> ids, const Owners &owners, std::size_t width, std::span<double> rows) const;
+
+  /// An element that failed, on the rank where it did.
+  struct Failure
+  {
+    std::uint64_t element = 0; ///< the lowest one of this rank
+    std::string message;
+    bool bad_input = false; ///< of the user's making
+  };
+  /// Stops all ranks alike: if any rank has a failure, every rank throws that of the lowest element.
+  /// @throws InputError, RunFailure  the same message everywhere
+  void stop_together(const std::optional<Failure> &mine) const;
+
+  /// `bytes` of `root` on every rank.
+  void broadcast(Bytes &bytes, int root) const;
+  /// The bytes of each rank, in the order of ranks, on rank 0; nothing elsewhere.
+  std::vector<Bytes> gather(const Bytes &mine) const;
+  /// Brings elements from one placement to another. @param send  bytes of elements that leave this rank, in the order
+  /// of their numbers     @return those that come, likewise
+  std::vector<Bytes> move(const std::vector<Bytes> &send, const Owners &from, const Owners &to) const;
+
+private:
+  void send(const Bytes &bytes, int to, std::vector<MPI_Request> &pending) const;
+  Bytes receive(int from) const;
+
+  MPI_Comm comm_;
+  int rank_ = 0, size_ = 1;
+};
+} // namespace isostat

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/element/rve_element.hpp"
+
+#include "base/error.hpp"
+
+#include <utility>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::uint64_t steps_between_copies = 500;
+
+/// sqrt(I + H) - I to fourth order.
+Mat3 half_of(const Mat3 &h)
+{
+  const Mat3 h2 = h * h;
+  return 0.5 * h - 0.125 * h2 + 0.0625 * h2 * h;
+}
+
+/// An element in the same state that has cost nothing yet.
+Rve newborn(const Rve &rve, const RveState &state)
+{
+  RveSettings plain; // bytes hold no settings
+  Rve fresh(rve.assembly().snapshot(), plain);
+  fresh.restore(state);
+  return fresh;
+}
+} // namespace
+
+RveElement::RveElement(Rve rve, bool constant_volume, unsigned halvings)
+    : rve_(std::move(rve)), constant_volume_(constant_volume), halvings_(halvings)
+{
+  keep_copy();
+}
+
+ElementTrial RveElement::trial(const Mat3 &displacement_gradient)
+{
+  rollback();
+  ElementTrial result;
+  result.accepted = displacement_gradient.isZero(0) || advance(displacement_gradient, halvings_, result);
+  result.stress = rve_.stress();
+  return result;
+}
+
+RveResponse RveElement::strain(const Mat3 &h) { return constant_volume_ ? rve_.undrained(h) : rve_.advance(h); }
+
+bool RveElement::advance(const Mat3 &h, unsigned halvings, ElementTrial &result)
+{
+  const RveResponse response = strain(h);
+  result.steps += response.steps;
+  if (response.outcome == RveOutcome::accepted)
+    {
+      trial_.push_back(h);
+      return true;
+    }
+  if (halvings == 0 || !h.allFinite())
+    {
+      result.reason = response.reason;
+      return false;
+    }
+  const Mat3 half = half_of(h);
+  return advance(half, halvings - 1, result) && advance(half, halvings - 1, result);
+}
+
+void RveElement::commit()
+{
+  since_copy_.insert(since_copy_.end(), trial_.begin(), trial_.end());
+  trial_.clear();
+  const bool old = rve_.assembly().step() - copy_.grains.step > steps_between_copies;
+  if (std::exchange(went_back_, false) ? !since_copy_.empty() : old)
+    keep_copy();
+}
+
+void RveElement::rollback()
+{
+  if (trial_.empty())
+    return;
+  go_back();
+  trial_.clear();
+}
+
+void RveElement::go_back()
+{
+  went_back_ = true;
+  rve_.restore(copy_);
+  if (since_copy_.empty())
+    return;
+  for (const Mat3 &h : since_copy_)
+    if (const RveResponse again = strain(h); again.outcome != RveOutcome::accepted)
+      throw RunFailure("an increment that was accepted before is rejected when it is run again: " + again.reason);
+  keep_copy();
+}
+
+void RveElement::keep_copy()
+{
+  copy_ = rve_.save();
+  since_copy_.clear();
+}
+
+std::vector<std::byte> RveElement::pack()
+{
+  return at_committed([&](const Rve &rve) { return pack_of(rve.save()); });
+}
+
+std::vector<std::byte> RveElement::pack_of(const RveState &state) const { return newborn(rve_, state).pack(); }
+
+void RveElement::restart(const RveState &state)
+{
+  rve_.restore(state);
+  trial_.clear();
+  went_back_ = false;
+  keep_copy();
+}
+} // namespace isostat

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/record/recorder.hpp"
+#include "dem/rve/rve.hpp"
+#include "fem/material/material.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+/// What one element went through at its Gauss point, with all that is needed to send it the same way again, alone.
+/// In a folder: packing.h5 (how it started, and how it is run), and history.csv and .h5 (a row for each increment).
+/// tested: tests/apps/grain_column_test.py
+struct StrainRecord
+{
+  double depth = 0;               ///< of the point below the surface, m
+  std::vector<std::byte> packing; ///< Rve::pack() before the first increment
+  RveSettings settings;
+  bool undrained = true; ///< volume strain was stripped
+  unsigned halvings = 0; ///< of a rejected increment, see RveElement
+
+  std::vector<double> time;         ///< at the end of each increment, s
+  std::vector<Gradient> increments; ///< of the displacement gradient, row by row
+  std::vector<Stress> stresses;     ///< effective stress after it, Pa, tension positive: xx yy zz yz xz xy
+};
+
+/// Columns of history.csv: step, time, H_xx ... H_zz, sigma_xx, sigma_yy, sigma_zz, sigma_yz, sigma_xz, sigma_xy, and
+/// the time steps that the packing took.
+std::vector<RecordColumn> strain_record_columns();
+std::vector<double> strain_record_row(std::uint64_t step, double time, const Gradient &h, const Stress &stress,
+                                      double steps_of_packing);
+
+/// Writes packing.h5.     @throws RunFailure  not writable
+void write_strain_record_start(const std::filesystem::path &folder, const StrainRecord &record);
+
+/// @throws InputError  a file is missing, damaged or of another version
+StrainRecord read_strain_record(const std::filesystem::path &folder);
+} // namespace isostat

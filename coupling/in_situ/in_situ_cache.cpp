@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/in_situ/in_situ_cache.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+#include <utility>
+
+namespace isostat
+{
+namespace
+{
+std::string name_of(const std::string &recipe)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  for (unsigned char c : recipe)
+    hash = (hash ^ c) * 1099511628211ull;
+  return fmt::format("i{:016x}", hash);
+}
+
+Specimen described(const InSituState &state)
+{
+  const Rve rve = Rve::unpack(state.packed, {});
+  const Mat3 stress = -rve.stress();
+  Specimen specimen;
+  specimen.state = specimen_of(state.packed);
+  specimen.provenance = {{"recipe", state.recipe}, {"consolidation", "in situ"}};
+  if (!state.source.empty())
+    specimen.provenance["source"] = state.source;
+  specimen.numbers = {{"grains", static_cast<double>(specimen.state.grains.n_grains())},
+                      {"void_ratio", rve.void_ratio()},
+                      {"pressure_Pa", stress.trace() / 3},
+                      {"vertical_stress_Pa", stress(1, 1)},
+                      {"K0", 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1)}};
+  return specimen;
+}
+} // namespace
+
+InSituCache::InSituCache(std::filesystem::path path) : path_(std::move(path))
+{
+  if (!path_.empty() && std::filesystem::exists(path_))
+    entries_ = list_library(path_);
+}
+
+std::optional<Snapshot> InSituCache::find(const std::string &recipe) const
+{
+  const std::string name = name_of(recipe);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const LibraryEntry &e) { return e.name == name; });
+  if (found == entries_.end() || found->text("recipe") != recipe)
+    return std::nullopt;
+  return read_library_entry(path_, name).state;
+}
+
+void InSituCache::add(const std::vector<InSituState> &states) const
+{
+  if (path_.empty() || states.empty())
+    return;
+  std::set<std::string> taken;
+  if (std::filesystem::exists(path_)) // as it is now, another program may have added something
+    for (const LibraryEntry &e : list_library(path_))
+      taken.insert(e.name);
+  LibraryWriter writer = std::filesystem::exists(path_) ? LibraryWriter::append(path_) : LibraryWriter::create(path_);
+  for (const InSituState &state : states)
+    if (taken.insert(name_of(state.recipe)).second)
+      writer.add(name_of(state.recipe), described(state));
+  writer.commit();
+}
+} // namespace isostat

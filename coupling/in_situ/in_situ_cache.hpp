@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "coupling/in_situ/in_situ.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace isostat
+{
+/// A specimen brought to its stress in situ, on its way to the cache.
+struct InSituState
+{
+  std::string recipe;            ///< in_situ_recipe()
+  std::string source;            ///< entry of the library it came from; may be empty
+  std::vector<std::byte> packed; ///< bring_to_stress()
+};
+
+/// Specimens at their stress in situ, kept from run to run: a specimen library (specimen_library.hpp) whose entries are
+/// named by a hash of their recipe, which stands in `provenance` and is compared as well. Any entry can be the specimen
+/// of an element test.
+/// tested: tests/coupling/in_situ/in_situ_test.cpp
+class InSituCache
+{
+public:
+  /// @param path  need not exist; empty: nothing is kept     @throws InputError  not a specimen library
+  explicit InSituCache(std::filesystem::path path);
+
+  std::optional<Snapshot> find(const std::string &recipe) const;
+  /// Adds what is not there yet, aside and renamed.   @throws RunFailure  cannot be written: the file is as before
+  void add(const std::vector<InSituState> &states) const;
+
+private:
+  std::filesystem::path path_;
+  std::vector<LibraryEntry> entries_;
+};
+} // namespace isostat

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
+
+namespace isostat
+{
+namespace
+{
+constexpr double yield_margin = 1 - 1e-9;
+
+/// First-order rotation of history with the contact, z1 = z - z x a ; z2 = z1 - z1 x s
+///                                                       = z - z x (a + s) + a (s.z), because a.s = 0.
+/// The last term is kept for the twisting moment, which is along s; forces and moments normal to it have none.
+Vec3 turned(const Vec3 &z, const Vec3 &tilt, const Vec3 &twist) { return z - z.cross(tilt + twist); }
+
+Vec3 returned_to(const Vec3 &trial, double limit)
+{
+  const double norm = trial.norm();
+  return norm > limit ? Vec3(trial * (limit / norm)) : trial;
+}
+} // namespace
+
+ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt, ContactHistory &history)
+{
+  ContactForce result;
+  const Vec3 branch = p.x2 - p.x1;
+  const double distance = branch.norm();
+  const double overlap = p.r1 + p.r2 - distance;
+  if (!(overlap > 0))
+    {
+      history = {};
+      return result;
+    }
+  const LawFeatures on = law.active();
+  const ContactStiffness k = contact_stiffness(law, p.r1, p.r2);
+  const Vec3 n = branch / distance;
+  const double fn = k.normal * overlap;
+  result.touching = true;
+  result.overlap = overlap;
+  result.normal_force = fn;
+  result.force = fn * n;
+  if (!on.friction)
+    {
+      history = {};
+      history.normal = n;
+      return result;
+    }
+
+  const Vec3 &n0 = history.normal;
+  const Vec3 tilt = n0.cross(n);
+  const Vec3 twist = 0.5 * dt * n0.dot(p.w1 + p.w2) * n0;
+  const double alpha = (p.r1 + p.r2) / distance;
+  const Vec3 vr = alpha * (p.v2 - p.v1) - p.w2.cross(p.r2 * n) - p.w1.cross(p.r1 * n);
+  const Vec3 du = (vr - vr.dot(n) * n) * dt;
+  history.shear_force = returned_to(turned(history.shear_force, tilt, twist) - k.shear * du, law.friction * fn);
+
+  const Vec3 dw = p.w2 - p.w1;
+  const Vec3 dw_twist = n.dot(dw) * n;
+  const Vec3 dw_bend = dw - dw_twist;
+  if (on.rolling)
+    history.bending_moment = returned_to(turned(history.bending_moment, tilt, twist) - k.rolling * dt * dw_bend,
+                                         rolling_length(law, p.r1, p.r2) * fn);
+  if (on.twisting)
+    history.twisting_moment = turned(history.twisting_moment, tilt, twist) + tilt * twist.dot(history.twisting_moment) -
+                              k.twisting * dt * dw_twist;
+  history.normal = n;
+
+  result.force += history.shear_force;
+  const Vec3 moment = history.bending_moment + history.twisting_moment;
+  const Vec3 arm1 = (p.r1 - 0.5 * overlap) * n, arm2 = -(p.r2 - 0.5 * overlap) * n;
+  result.torque1 = arm1.cross(-result.force) - moment;
+  result.torque2 = arm2.cross(result.force) + moment;
+  return result;
+}
+
+bool is_sliding(double shear_force, double normal_force, const LawParams &law)
+{
+  return law.active().friction && shear_force >= yield_margin * law.friction * normal_force;
+}
+
+bool is_rolling(double bending_moment, double normal_force, double rolling_length, const LawParams &law)
+{
+  return law.active().rolling && bending_moment >= yield_margin * rolling_length * normal_force;
+}
+} // namespace isostat

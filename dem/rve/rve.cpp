@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/rve/rve.hpp"
+
+#include "base/error.hpp"
+#include "dem/drive/rate_control.hpp"
+#include "dem/drive/servo.hpp"
+#include "dem/drive/time_step.hpp"
+#include "dem/measure/stress.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double rate_interval = 50;
+constexpr std::uint64_t servo_interval = 20;
+constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
+constexpr int settled = 3;                          ///< looks in a row with stresses on target
+constexpr double least_reference = 1e-7;            ///< of the contact modulus: p0 of a specimen without contacts
+
+/// ln(I + H) to fourth order: what acts at a constant rate over the increment.
+Mat3 logarithm(const Mat3 &h) { return h - 0.5 * h * h + h * h * h / 3; }
+
+/// What the rate control counts as strain: the difference of the extreme principal strains, or the largest alone.
+double strain_measure(const Mat3 &gradient)
+{
+  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
+  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(strain, Eigen::EigenvaluesOnly).eigenvalues();
+  return std::max(principal[2] - principal[0], principal.cwiseAbs().maxCoeff());
+}
+
+const Snapshot &periodic(const Snapshot &specimen)
+{
+  if (!specimen.cell)
+    throw InputError("a representative volume element wants a periodic packing, but this one stands in a box. Prepare "
+                     "it with specimen.domain = \"periodic-cell\".");
+  return specimen;
+}
+} // namespace
+
+void RveSettings::check() const
+{
+  if (!((frame.transpose() * frame - Mat3::Identity()).norm() < 1e-9 && frame.determinant() > 0))
+    throw InputError("the frame of a representative volume element must be a rotation: orthogonal, determinant +1");
+  if (!(greatest_increment > 0 && greatest_increment <= 0.1))
+    throw InputError(fmt::format("greatest_increment = {} of a representative volume element; allowed is (0, 0.1]",
+                                 greatest_increment));
+  if (greatest_steps == 0)
+    throw InputError("greatest_steps of a representative volume element must be positive");
+  if (least_steps == 0 || least_steps > greatest_steps)
+    throw InputError(
+        fmt::format("least_steps = {} of a representative volume element; allowed is 1 to greatest_steps = {}",
+                    least_steps, greatest_steps));
+}
+
+Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
+{
+  settings_.check();
+  assembly_.damping = settings_.motion.damping;
+  assembly_.threads = 1; // a host runs elements side by side
+  drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
+  update_time_step(settings_.motion, true, assembly_, drive_);
+  assembly_.compute_forces();
+  drive_.p0 = std::max(mean_stress(), least_reference * assembly_.law().young);
+  keep_safe();
+}
+
+double Rve::mean_stress() const { return -assembly_.stress().trace() / 3; }
+
+Mat3 Rve::to_own(const Mat3 &laboratory) const { return settings_.frame.transpose() * laboratory * settings_.frame; }
+
+Mat3 Rve::stress() const { return settings_.frame * assembly_.stress() * settings_.frame.transpose(); }
+
+Mat3 Rve::kinetic_stress() const
+{
+  return settings_.frame * isostat::kinetic_stress(assembly_.snapshot()) * settings_.frame.transpose();
+}
+
+Snapshot Rve::snapshot() const { return turned(assembly_.snapshot(), settings_.frame); }
+
+Mat6 Rve::stiffness(Sliding sliding) const { return condensed_stiffness(snapshot(), sliding); }
+
+double Rve::dry_density() const { return assembly_.packing().density * assembly_.solid_volume() / assembly_.volume(); }
+
+double Rve::saturated_density(double water) const
+{
+  return dry_density() + water * (1 - assembly_.solid_volume() / assembly_.volume());
+}
+
+void Rve::review()
+{
+  if (std::fmod(drive_.steps_in_stage, rate_interval) == 0)
+    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_);
+  update_time_step(settings_.motion, true, assembly_, drive_);
+}
+
+void Rve::step(const Mat3 &own_gradient)
+{
+  assembly_.deform(own_gradient);
+  drive_.steps_in_stage += 1;
+  ++cost_.steps;
+  assembly_.compute_forces();
+}
+
+void Rve::run_strain(const Mat3 &own_gradient)
+{
+  const double size = strain_measure(own_gradient);
+  double left = 1, least = static_cast<double>(settings_.least_steps);
+  for (bool last = own_gradient.isZero(0); !last; least -= 1)
+    {
+      review();
+      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), least);
+      if (!(whole < static_cast<double>(settings_.greatest_steps)))
+        throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
+                                     drive_.rate, whole));
+      const double part = left / std::max(1.0, std::ceil(whole));
+      last = part == left;
+      left -= part;
+      step(part * own_gradient);
+    }
+}
+
+void Rve::run_mixed(const MixedIncrement &own)
+{
+  const auto free = own.controlled.cast<double>().array();
+  const Mat3 symmetric = 0.5 * (own.gradient + own.gradient.transpose());
+  const Mat3 prescribed = own.gradient - Mat3(symmetric.array() * free);
+  const double size = strain_measure(prescribed);
+  double left = prescribed.isZero(0) ? 0 : 1;
+  drive_.servo_step.setZero();
+  drive_.servo_shear.setZero();
+  int on_target = 0;
+  for (std::uint64_t n = 0;; ++n)
+    {
+      review();
+      const double scale = std::max(mean_stress(), 0.05 * drive_.p0);
+      const double error = ((assembly_.stress() - own.stress).array() * free).abs().maxCoeff();
+      if (left == 0 && n % servo_interval == 0)
+        on_target = error < own.tolerance * scale ? on_target + 1 : 0;
+      if (left == 0 && on_target >= settled)
+        return;
+      if (n >= settings_.greatest_steps)
+        throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
+      const double part =
+          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.rate * assembly_.time_step)));
+      left = part == left ? 0 : left - part;
+      step(part * prescribed + stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.rate, drive_));
+    }
+}
+
+void Rve::roll_back()
+{
+  const RveState safe = safe_;
+  const std::vector<Mat3> done = std::move(since_safe_);
+  restore(safe);
+  for (const Mat3 &own_gradient : done)
+    run_strain(own_gradient); // as before, to the bit
+  since_safe_ = done;
+}
+
+template <typename Run>
+RveResponse Rve::guarded(double size, const Run &run)
+{
+  RveResponse response;
+  const double before = assembly_.stress().trace() / 3;
+  const std::uint64_t steps = cost_.steps;
+  const auto begin = std::chrono::steady_clock::now();
+  try
+    {
+      if (!std::isfinite(size))
+        response.reason = "the increment asked for is not a number";
+      else if (!(size <= settings_.greatest_increment))
+        response.reason =
+            fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
+                        settings_.greatest_increment);
+      else
+        run();
+    }
+  catch (const RunFailure &failure)
+    {
+      roll_back();
+      response.reason = failure.what();
+    }
+  if (!response.reason.empty())
+    {
+      response.outcome = RveOutcome::rejected;
+      cost_.steps = steps;
+    }
+  cost_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  ++cost_.advances;
+  response.steps = cost_.steps - steps;
+  response.stress = stress();
+  response.mean_stress_change = assembly_.stress().trace() / 3 - before;
+  response.indicator = drive_.indicator;
+  return response;
+}
+
+RveResponse Rve::strain(const Mat3 &displacement_gradient, bool constant_volume)
+{
+  return guarded(displacement_gradient.norm(), [&] {
+    Mat3 own = logarithm(to_own(displacement_gradient));
+    if (constant_volume)
+      own -= own.trace() / 3 * Mat3::Identity();
+    run_strain(own);
+    since_safe_.push_back(own);
+    if (assembly_.step() - safe_.grains.step > steps_between_copies)
+      keep_safe();
+  });
+}
+
+RveResponse Rve::advance(const Mat3 &displacement_gradient) { return strain(displacement_gradient, false); }
+
+RveResponse Rve::undrained(const Mat3 &displacement_gradient) { return strain(displacement_gradient, true); }
+
+RveResponse Rve::advance(const MixedIncrement &increment)
+{
+  return guarded(increment.gradient.norm(), [&] {
+    if (increment.controlled != increment.controlled.transpose())
+      throw RunFailure("stress control must be asked for symmetrically: controlled(i,j) = controlled(j,i)");
+    if (!(increment.stress.allFinite() && increment.tolerance > 0))
+      throw RunFailure("the stress asked for is not a number, or its tolerance is not positive");
+    if (settings_.frame != Mat3::Identity())
+      throw RunFailure(
+          "mixed control works along the axes of the specimen: it wants an element whose frame is identity");
+    run_mixed(increment);
+    keep_safe();
+  });
+}
+
+RveState Rve::save() const { return {assembly_.save(), drive_}; }
+
+void Rve::keep_safe()
+{
+  safe_ = save();
+  since_safe_.clear();
+}
+
+void Rve::restore(const RveState &state)
+{
+  assembly_.restore(state.grains);
+  drive_ = state.drive;
+  safe_ = state;
+  since_safe_.clear();
+}
+} // namespace isostat

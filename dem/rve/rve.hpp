@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/assembly/assembly.hpp"
+#include "dem/drive/drive_state.hpp"
+#include "dem/measure/stiffness.hpp"
+#include "dem/scene/scene.hpp"
+
+#include <span>
+#include <string>
+
+namespace isostat
+{
+/// How a representative volume element is run.
+struct RveSettings
+{
+  MotionSpec motion;             ///< damping, rate control, time step: as in the element tests
+  Mat3 frame = Mat3::Identity(); ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
+  /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
+  /// each in a step or two, without time for its grains to find their places.
+  std::uint64_t least_steps = 1;
+  double greatest_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
+  std::uint64_t greatest_steps = 10'000'000; ///< of one advance()
+
+  /// tested: tests/dem/rve/rve_test.cpp
+  void check() const; ///< @throws InputError  frame is no rotation, a limit is not positive
+};
+
+/// Strain where it is given, stress where it is wanted: one increment of a laboratory test.
+struct MixedIncrement
+{
+  Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; symmetric parts under stress control are ignored
+  Mat3 stress = Mat3::Zero();   ///< wanted Cauchy effective stress, Pa, tension positive, where `controlled`
+  Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false); ///< symmetric
+  double tolerance = 1e-3; ///< |stress - wanted| / max(p', 0.05 p0) at the end
+};
+
+enum class RveOutcome
+{
+  accepted,
+  rejected ///< nothing has changed: the state is that before the call
+};
+
+/// What an increment gave.
+struct RveResponse
+{
+  RveOutcome outcome = RveOutcome::accepted;
+  std::string reason;         ///< why it was rejected, in words; empty otherwise
+  Mat3 stress = Mat3::Zero(); ///< Cauchy effective stress after it, Pa, tension positive, laboratory, symmetric
+  /// tr(stress)/3 minus what it was before, Pa, tension positive. An undrained element under constant total mean stress
+  /// changes its pore pressure (compression positive) by just this much.
+  double mean_stress_change = 0;
+  std::uint64_t steps = 0; ///< time steps it took
+  double indicator = 0;    ///< quasi-static error indicator of the last control, see rate_control.hpp
+};
+
+/// What elements have cost since they were made, or unpacked.
+struct RveCost
+{
+  std::uint64_t steps = 0, advances = 0;
+  double seconds = 0; ///< wall clock in advance() and undrained()
+};
+
+/// All that an element goes on from. Of the size of 15 numbers a grain and 13 a contact.
+struct RveState
+{
+  AssemblyState grains;
+  DriveState drive;
+  std::size_t bytes() const { return grains.bytes() + sizeof(DriveState); }
+};
+
+/// Representative volume element: a periodic packing as a material point, the only door through which others (finite
+/// elements, any host code) see grains.
+///
+///     dH ---> [ n steps of dH/n, n from the rate control ] ---> sigma'
+///
+/// It stands still between calls, contact forces in force: what a call returns is the stress of the grains as they are.
+/// Every step is that of the element tests: the same contact loop, damping, critical step (reviewed every 2,000 steps)
+/// and rate control (every 50 steps). The strain of a call is passed on as the strain rate gamma_1 - gamma_3 (largest
+/// minus smallest principal stretching; in simple shear d gamma/dt) that the rate control asks for, in equal steps.
+/// Results depend on nothing but the sequence of calls: not on the lists, on saving, restoring or moving the element.
+/// @throws RunFailure  never from advance(): a failed run is a rejected increment
+/// tested: tests/dem/rve/rve_test.cpp, tests/verification/rve_*_test.cpp, tests/hard/rve_hard_cases_test.cpp
+class Rve
+{
+public:
+  /// @param specimen  a periodic packing at rest
+  /// @throws InputError  a packing in a box; settings out of range
+  /// @throws RunFailure  a cell too narrow for its grains; a fixed time step that is unstable
+  Rve(const Snapshot &specimen, const RveSettings &settings);
+
+  /// Strains the element by the displacement gradient dH (laboratory, relative to its present shape): F <- (I + dH) F.
+  /// A rotation in dH turns stress and grains with it and costs no step of its own.
+  RveResponse advance(const Mat3 &displacement_gradient);
+  /// The same without the volumetric part of ln(I + dH): an element whose pores are closed.
+  RveResponse undrained(const Mat3 &displacement_gradient);
+  /// Prescribed strain and wanted stress side by side: drained, K0, constant p' and other tests.
+  RveResponse advance(const MixedIncrement &increment);
+
+  /// Cauchy effective stress, Pa, tension positive, laboratory.
+  Mat3 stress() const;
+  /// Stress carried by the fluctuating motion, Pa: small while the element is quasi-static.
+  Mat3 kinetic_stress() const;
+  /// Instantaneous elastic stiffness of the contact network in the laboratory, see measure/stiffness.hpp.
+  Mat6 stiffness(Sliding sliding = Sliding::elastic) const;
+  double void_ratio() const { return isostat::void_ratio(assembly_.volume(), assembly_.solid_volume()); }
+  /// Density of the grain skeleton, and with water in the pores, kg/m3.
+  double dry_density() const;
+  double saturated_density(double water = 1000) const;
+  Snapshot snapshot() const; ///< for micromechanics and figures, laboratory frame
+  const RveCost &cost() const { return cost_; }
+
+  RveState save() const;
+  /// @pre a state of this element, or of one with the same grains
+  void restore(const RveState &state);
+
+  /// The element as bytes for another process on the same type of machine, and back to the same bits.
+  std::vector<std::byte> pack() const;
+  /// @throws InputError  bytes of another version, cut short or damaged
+  static Rve unpack(std::span<const std::byte> bytes, const RveSettings &settings);
+
+  const Assembly &assembly() const { return assembly_; }
+
+private:
+  void keep_safe();
+  void roll_back();
+  template <typename Run>
+  RveResponse guarded(double size, const Run &run);
+  RveResponse strain(const Mat3 &displacement_gradient, bool constant_volume);
+  void run_strain(const Mat3 &own_gradient);
+  void run_mixed(const MixedIncrement &own);
+  void step(const Mat3 &own_gradient);
+  void review();
+  double mean_stress() const; ///< compression positive, Pa
+  Mat3 to_own(const Mat3 &laboratory) const;
+
+  RveSettings settings_;
+  Assembly assembly_;
+  DriveState drive_;
+  RveCost cost_;
+  /// What a failed increment goes back to: a copy made every 500 steps, and the strains taken since, to be run again.
+  RveState safe_;
+  std::vector<Mat3> since_safe_;
+};
+} // namespace isostat

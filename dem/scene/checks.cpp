@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rules that bind several keys of a scene.
+#include "base/scene/reader.hpp"
+#include "dem/scene/schema.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+/// Throws for what a rigid box cannot do.
+void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, const std::string &path,
+               std::string_view otherwise)
+{
+  if (specimen.domain != "periodic-cell")
+    document.refuse(path, fmt::format("needs the periodic cell, but specimen.domain is \"{}\" ({}). Give domain = "
+                                      "\"periodic-cell\" in [specimen], or {}.",
+                                      specimen.domain, document.where("specimen.domain"), otherwise));
+}
+
+void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
+{
+  if (specimen.consolidation == "k0")
+    {
+      need_cell(document, specimen, "specimen.consolidation", "leave consolidation out");
+      if (document.find("specimen.file"))
+        document.refuse("specimen.consolidation",
+                        fmt::format("excludes specimen.file ({}): the file says how it was consolidated. Leave "
+                                    "consolidation out, or add a stage of kind \"k0-compress\".",
+                                    document.where("specimen.file")));
+    }
+  if (specimen.e_min >= specimen.e_max)
+    document.refuse(document.find("specimen.e_min") ? "specimen.e_min" : "specimen.e_max",
+                    fmt::format("e_min must be below e_max, but they are {} and {}. Correct one of them.",
+                                number_text(specimen.e_min), number_text(specimen.e_max)));
+  if (document.find("specimen.file") && specimen.file.empty())
+    document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
+}
+
+void check_contact(const SceneDocument &document, const Scene &scene)
+{
+  for (const char *path : {"contact.rolling", "contact.twisting"})
+    if (document.find(path) && !document.find("contact.friction"))
+      document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (scene.stages[i].friction > 0 && !scene.contact.features.friction)
+      document.refuse(fmt::format("stage.{}.friction", i),
+                      "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
+}
+
+void check_stages(const SceneDocument &document, const Scene &scene)
+{
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    switch (scene.stages[i].kind)
+      {
+      case StageKind::k0_compress:
+      case StageKind::undrained_simple_shear:
+      case StageKind::undrained_cyclic_simple_shear:
+        need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
+        break;
+      default:
+        break;
+      }
+}
+
+void check_motion(const SceneDocument &document, const MotionSpec &motion)
+{
+  if (motion.rate_floor > motion.rate_ceiling)
+    document.refuse(document.find("motion.rate_floor") ? "motion.rate_floor" : "motion.rate_ceiling",
+                    fmt::format("rate_floor must not exceed rate_ceiling, but they are {} 1/s and {} 1/s. Correct one "
+                                "of them.",
+                                number_text(motion.rate_floor), number_text(motion.rate_ceiling)));
+}
+} // namespace
+
+void check_scene(const SceneDocument &document, Scene &scene)
+{
+  check_groups(document, &scene);
+  check_specimen(document, scene.specimen);
+  check_contact(document, scene);
+  check_stages(document, scene);
+  check_motion(document, scene.motion);
+}
+} // namespace isostat

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/scene/scene.hpp"
+
+#include "base/scene/reader.hpp"
+#include "base/scene/writer.hpp"
+#include "dem/scene/schema.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+namespace
+{
+bool equal(const LawParams &a, const LawParams &b)
+{
+  return a.young == b.young && a.stiffness_ratio == b.stiffness_ratio && a.friction == b.friction &&
+         a.rolling_stiffness == b.rolling_stiffness && a.rolling_limit == b.rolling_limit &&
+         a.twisting_stiffness == b.twisting_stiffness && a.features == b.features;
+}
+
+Scene checked_scene(const SceneDocument &document)
+{
+  Scene scene;
+  fill_scene(document, &scene);
+  if (!document.find("contact.friction"))
+    scene.contact.friction = 0;
+  scene.contact.features.friction = scene.contact.friction > 0;
+  if (document.find("grading.table"))
+    scene.grading.curve.clear();
+  check_scene(document, scene);
+  return scene;
+}
+} // namespace
+
+SpecimenPlace specimen_place(const std::string &file)
+{
+  const std::size_t ending = file.rfind(".h5#");
+  return ending == std::string::npos ? SpecimenPlace{file, ""}
+                                     : SpecimenPlace{file.substr(0, ending + 3), file.substr(ending + 4)};
+}
+
+bool Scene::operator==(const Scene &other) const
+{
+  return title == other.title && grading == other.grading && equal(contact, other.contact) &&
+         specimen == other.specimen && motion == other.motion && stages == other.stages && output == other.output;
+}
+
+Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)
+{
+  return checked_scene(SceneDocument(scene_schema(), text, name, overrides));
+}
+
+Scene read_scene(const std::string &path, const std::vector<std::string> &overrides)
+{
+  const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
+  Scene scene = checked_scene(document);
+  std::error_code ignored;
+  const std::string file = specimen_place(scene.specimen.file).path;
+  if (!file.empty() && !std::filesystem::exists(file, ignored))
+    document.refuse("specimen.file", "is not there. Paths count from the working directory; prepare the specimen first "
+                                     "or correct the path.");
+  if (scene.output.folder.empty())
+    scene.output.folder = "results/" + std::filesystem::path(path).stem().string();
+  return scene;
+}
+
+std::string to_toml(const Scene &scene) { return write_scene(scene_schema(), &scene); }
+
+std::string default_scene() { return write_defaults(scene_schema()); }
+
+std::string scene_manual() { return write_manual(scene_schema()); }
+} // namespace isostat

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The keys of a scene file. A new key is one entry here, one field in dem/scene/scene.hpp and, if it takes part in a
+// rule that binds several keys, a line in dem/scene/checks.cpp.
+#include "dem/scene/schema.hpp"
+
+namespace isostat
+{
+namespace
+{
+constexpr const char *curve_choices[] = {"karlsruhe-fine-sand"};
+constexpr const char *domain_choices[] = {"rigid-box", "periodic-cell"};
+constexpr const char *consolidation_choices[] = {"isotropic", "k0"};
+constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
+constexpr const char *direction_choices[] = {"compression", "extension"};
+constexpr const char *kind_choices[] = {"compress",
+                                        "friction",
+                                        "rebalance",
+                                        "undrained-monotonic",
+                                        "undrained-cyclic",
+                                        "drained",
+                                        "constant-p",
+                                        "hold",
+                                        "k0-compress",
+                                        "undrained-simple-shear",
+                                        "undrained-cyclic-simple-shear"};
+
+constexpr Section sections[] = {
+    {.name = "grading",
+     .text = "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from."},
+    {.name = "contact",
+     .text = "The contact law. What is left out here costs nothing: without `friction` the contacts are frictionless, "
+             "without the table `rolling` or `twisting` that part of the law is not compiled into the loop that runs."},
+    {.name = "specimen",
+     .text = "How the specimen is made. Exactly one of `relative_density`, `void_ratio`, `preparation_friction` and "
+             "`file` is to be given."},
+    {.name = "motion",
+     .text = "Equations of motion and their time step. The rate of loading follows from a tolerance, from an inertial "
+             "number, or is fixed."},
+    {.name = "stage",
+     .text =
+         "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "
+         "only prepares its specimen. A key that does not belong to the kind of its stage is an error. Axes: y is "
+         "vertical, the axis of the triaxial kinds; simple shear moves planes normal to y along x, its strain is "
+         "gamma_xy and its stress tau = sigma_xy.",
+     .kind_key = "kind",
+     .items = items_of<&Scene::stages>,
+     .empty_remedy = "Leave it out if the scene only prepares a specimen.",
+     .default_kind = "undrained-cyclic",
+     .set_example = "strain=0.02",
+     .kinds_title = "Stage kinds"},
+    {.name = "output", .text = "What is written, and how often. Output never changes a trajectory."},
+};
+
+constexpr unsigned bit(StageKind kind) { return 1u << static_cast<unsigned>(kind); }
+constexpr unsigned axial_cyclic = bit(StageKind::undrained_cyclic);
+constexpr unsigned axial_monotonic =
+    bit(StageKind::undrained_monotonic) | bit(StageKind::drained) | bit(StageKind::constant_p);
+constexpr unsigned simple_cyclic = bit(StageKind::undrained_cyclic_simple_shear);
+constexpr unsigned simple_monotonic = bit(StageKind::undrained_simple_shear);
+constexpr unsigned cyclic = axial_cyclic | simple_cyclic;
+constexpr unsigned undrained = bit(StageKind::undrained_monotonic) | simple_monotonic | cyclic;
+constexpr unsigned shear = axial_monotonic | simple_monotonic | cyclic;
+constexpr unsigned pressed = bit(StageKind::compress) | bit(StageKind::rebalance) | bit(StageKind::k0_compress);
+constexpr unsigned balanced = pressed | bit(StageKind::hold);
+constexpr unsigned stepped = shear | balanced;
+constexpr unsigned any_kind = stepped | bit(StageKind::friction);
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+constexpr Range fraction{0, 1, true, true};      // (0, 1)
+constexpr Range to_one{0, 1, true, false};       // (0, 1]
+constexpr Range to_ten{0, 10, true, false};      // (0, 10]
+constexpr Range right_angle{0, 90, false, true}; // degrees
+constexpr const char *because_tan = "because tan() is used";
+constexpr const char *because_shear_strain = "because this is a shear strain, not percent: 1 is 100 percent";
+constexpr const char *because_damping = "because at 1 no grain would get moving";
+
+// clang-format off
+constexpr Key keys[] = {
+  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
+   .field = [](Scene &s) -> Field { return &s.title; }},
+
+  {.path = "grading.curve", .kind = Kind::choice, .value = "karlsruhe-fine-sand", .choices = curve_choices,
+   .group = "size_curve", .text = "Grading curve by name; excludes `table`.",
+   .field = [](Scene &s) -> Field { return &s.grading.curve; }},
+  {.path = "grading.table", .kind = Kind::size_curve, .dimension = Dimension::length, .unit = "mm",
+   .presence = Presence::optional, .value = "[[\"0.1 mm\", 0], [\"0.2 mm\", 100]]", .group = "size_curve",
+   .text = "Grading curve as rows of diameter and percent finer by mass, both rising, the last at 100; excludes "
+           "`curve`.",
+   .field = [](Scene &s) -> Field { return &s.grading.table; }},
+  {.path = "grading.truncate", .kind = Kind::percent_pair, .value = "[0, 100]", .range = {0, 100},
+   .reason = "because these are percentages finer",
+   .text = "Percentages finer between which the curve is kept; the tails beyond are cut and the rest is rescaled.",
+   .field = [](Scene &s) -> Field
+   { return PercentPair{&s.grading.finest_percent, &s.grading.coarsest_percent}; }},
+  {.path = "grading.grains", .kind = Kind::integer, .value = "10000", .range = {2, 1e8},
+   .reason = "because one grain makes no packing and more do not fit in memory", .text = "Number of spheres.",
+   .field = [](Scene &s) -> Field { return &s.grading.grains; }},
+  {.path = "grading.cloud_edge", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
+   .value = "10 mm", .range = positive, .text = "Edge of the cube that holds the cloud.",
+   .field = [](Scene &s) -> Field { return &s.grading.cloud_edge; }},
+  {.path = "grading.solid_fraction", .value = "0.33", .range = {0, 0.5, true},
+   .reason = "because a denser cloud cannot be filled at random",
+   .text = "Solid volume of the cloud over that of its cube; with the edge it sets by how much the grains are "
+           "scaled up.",
+   .field = [](Scene &s) -> Field { return &s.grading.solid_fraction; }},
+  {.path = "grading.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
+   .value = "2650 kg/m3", .range = positive, .text = "Density of the grains.",
+   .field = [](Scene &s) -> Field { return &s.grading.density; }},
+  {.path = "grading.seed", .kind = Kind::integer, .value = "1",
+   .text = "Realisation: the same seed gives the same specimen on any number of threads.",
+   .field = [](Scene &s) -> Field { return &s.grading.seed; }},
+
+  {.path = "contact.young", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
+   .value = "10 GPa", .range = positive, .text = "Contact modulus E; the normal stiffness is 2 E R1 R2/(R1+R2).",
+   .field = [](Scene &s) -> Field { return &s.contact.young; }},
+  {.path = "contact.stiffness_ratio", .value = "0.3", .range = positive,
+   .reason = "because without tangential stiffness friction does not act (leave friction out instead)",
+   .text = "Tangential over normal stiffness, ks/kn.",
+   .field = [](Scene &s) -> Field { return &s.contact.stiffness_ratio; }},
+  {.path = "contact.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .presence = Presence::experiment, .value = "18 deg", .range = right_angle, .reason = because_tan,
+   .text = "Angle of friction between grains while the specimen is tested; left out or 0 deg: frictionless, and "
+           "then without rolling and twisting resistance too. Walls are always frictionless.",
+   .field = [](Scene &s) -> Field { return &s.contact.friction; }},
+  {.path = "contact.rolling", .kind = Kind::table, .presence = Presence::experiment,
+   .value = "{ stiffness = 0.3, limit = 0.5 }", .text = "Rolling resistance; left out: none.",
+   .field = [](Scene &s) -> Field { return &s.contact.features.rolling; }},
+  {.path = "contact.rolling.stiffness", .value = "0.3", .range = positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "alpha_r: rolling stiffness over R1 R2 ks.",
+   .field = [](Scene &s) -> Field { return &s.contact.rolling_stiffness; }},
+  {.path = "contact.rolling.limit", .value = "0.5", .range = positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "eta_r: the rolling moment stays below eta_r min(R1,R2) times the normal force.",
+   .field = [](Scene &s) -> Field { return &s.contact.rolling_limit; }},
+  {.path = "contact.twisting", .kind = Kind::table, .presence = Presence::experiment, .value = "{ stiffness = 0.3 }",
+   .text = "Twisting resistance, elastic without limit; left out: none.",
+   .field = [](Scene &s) -> Field { return &s.contact.features.twisting; }},
+  {.path = "contact.twisting.stiffness", .value = "0.3", .range = positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "alpha_t: twisting stiffness over R1 R2 ks; not given in the paper.",
+   .field = [](Scene &s) -> Field { return &s.contact.twisting_stiffness; }},
+
+  {.path = "specimen.domain", .kind = Kind::choice, .value = "rigid-box", .choices = domain_choices,
+   .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z.",
+   .field = [](Scene &s) -> Field { return &s.specimen.domain; }},
+  {.path = "specimen.consolidation", .kind = Kind::choice, .value = "isotropic", .choices = consolidation_choices,
+   .text = "How it is compressed: with equal stresses on all axes, or along y without lateral strain (k0, in the "
+           "periodic-cell only; not together with `file`).",
+   .field = [](Scene &s) -> Field { return &s.specimen.consolidation; }},
+  {.path = "specimen.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "200 kPa", .range = positive,
+   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one.",
+   .field = [](Scene &s) -> Field { return &s.specimen.pressure; }},
+  {.path = "specimen.relative_density", .presence = Presence::experiment, .value = "0.64", .range = {0, 1},
+   .reason = "because D_r is 0 at e_max and 1 at e_min", .group = "preparation",
+   .text = "D_r = (e_max-e)/(e_max-e_min) to be reached; the preparation friction is searched for.",
+   .field = [](Scene &s) -> Field { return &s.specimen.relative_density; }},
+  {.path = "specimen.void_ratio", .presence = Presence::optional, .value = "0.67", .range = {0, 3, true},
+   .reason = "because a packing of spheres in contact has no other", .group = "preparation",
+   .text = "Void ratio e to be reached; the preparation friction is searched for.",
+   .field = [](Scene &s) -> Field { return &s.specimen.void_ratio; }},
+  {.path = "specimen.preparation_friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .presence = Presence::optional, .value = "10 deg", .range = right_angle, .reason = because_tan,
+   .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out.",
+   .field = [](Scene &s) -> Field { return &s.specimen.preparation_friction; }},
+  {.path = "specimen.file", .kind = Kind::text, .presence = Presence::optional, .value = "specimens/dr64.h5",
+   .group = "preparation", .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables.",
+   .field = [](Scene &s) -> Field { return &s.specimen.file; }},
+  {.path = "specimen.e_min", .value = "0.568", .range = positive, .text = "Void ratio at D_r = 1.",
+   .field = [](Scene &s) -> Field { return &s.specimen.e_min; }},
+  {.path = "specimen.e_max", .value = "0.841", .range = positive, .text = "Void ratio at D_r = 0.",
+   .field = [](Scene &s) -> Field { return &s.specimen.e_max; }},
+  {.path = "specimen.density_tolerance", .value = "0.01", .range = fraction,
+   .text = "Error allowed in the D_r reached.",
+   .field = [](Scene &s) -> Field { return &s.specimen.density_tolerance; }},
+  {.path = "specimen.damping", .value = "0.3", .range = {0, 1, false, true}, .reason = because_damping,
+   .text = "Local damping coefficient during preparation.",
+   .field = [](Scene &s) -> Field { return &s.specimen.damping; }},
+  {.path = "specimen.compaction_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "30 1/s", .range = positive, .text = "Ceiling of the strain rate at which the cloud is compacted.",
+   .field = [](Scene &s) -> Field { return &s.specimen.compaction_rate; }},
+  {.path = "specimen.cache", .kind = Kind::text, .value = "specimens",
+   .text = "Folder of prepared specimens, counted from the parent of the output folder.",
+   .field = [](Scene &s) -> Field { return &s.specimen.cache; }},
+
+  {.path = "motion.damping", .value = "0.2", .range = {0, 1, false, true}, .reason = because_damping,
+   .text = "Local (non-viscous) damping coefficient.",
+   .field = [](Scene &s) -> Field { return &s.motion.damping; }},
+  {.path = "motion.quasi_static_tolerance", .value = "0.01", .range = fraction, .group = "rate",
+   .text = "Error that inertia may add to the stresses; the rate of loading is chosen to keep it.",
+   .field = [](Scene &s) -> Field { return &s.motion.quasi_static_tolerance; }},
+  {.path = "motion.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .group = "rate",
+   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the tolerance.",
+   .field = [](Scene &s) -> Field { return &s.motion.strain_rate; }},
+  {.path = "motion.inertial_number", .presence = Presence::optional, .value = "1e-4", .range = fraction,
+   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
+   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate (in simple shear that of "
+           "gamma_xy) is I sqrt(p_r / density) / d50 with p_r = max(p', 0.05 p0'), renewed every 50 steps, without "
+           "floor or ceiling.",
+   .field = [](Scene &s) -> Field { return &s.motion.inertial_number; }},
+  {.path = "motion.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "0.2 1/s", .range = positive, .text = "Lowest rate the tolerance may lead to.",
+   .field = [](Scene &s) -> Field { return &s.motion.rate_floor; }},
+  {.path = "motion.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "2 1/s", .range = positive, .text = "Highest rate the tolerance may lead to.",
+   .field = [](Scene &s) -> Field { return &s.motion.rate_ceiling; }},
+  {.path = "motion.time_step_safety", .value = "0.8", .range = to_one,
+   .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",
+   .field = [](Scene &s) -> Field { return &s.motion.time_step_safety; }},
+  {.path = "motion.time_step", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "ns",
+   .presence = Presence::optional, .value = "50 ns", .range = positive,
+   .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts.",
+   .field = [](Scene &s) -> Field { return &s.motion.time_step; }},
+
+  {.path = "stage.kind", .kind = Kind::choice, .presence = Presence::required, .value = "undrained-monotonic",
+   .choices = kind_choices, .kinds = any_kind,
+   .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain periodic-cell.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.kind; }},
+  {.path = "stage.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .presence = Presence::optional, .value = "200 kPa", .range = positive, .kinds = pressed,
+   .text = "Isotropic pressure of the servo; in k0-compress the vertical effective stress; left out: that of the "
+           "specimen.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.pressure; }},
+  {.path = "stage.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .presence = Presence::required, .value = "18 deg", .range = right_angle, .reason = because_tan,
+   .kinds = bit(StageKind::friction), .text = "Angle of friction between grains from here on.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.friction; }},
+  {.path = "stage.direction", .kind = Kind::choice, .value = "compression", .choices = direction_choices,
+   .kinds = shear,
+   .text = "First direction of axial loading; in simple shear compression is towards positive gamma_xy, extension "
+           "towards negative.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.extension; }},
+  {.path = "stage.strain", .presence = Presence::required, .value = "0.05", .range = to_one,
+   .reason = "because this is a strain, not percent; the sign comes from direction", .kinds = axial_monotonic,
+   .text = "Axial strain (logarithmic, its amount) at which the stage ends.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
+  {.path = "stage.strain", .presence = Presence::required, .value = "0.2", .range = to_ten,
+   .reason = because_shear_strain, .kinds = simple_monotonic,
+   .text = "Shear strain gamma_xy (its amount) at which the stage ends.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
+  {.path = "stage.deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "60 kPa", .range = positive, .kinds = axial_cyclic, .text = "q_amp: loading turns when |q| reaches it.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.deviator_amplitude; }},
+  {.path = "stage.stress_ratio", .value = "0.15", .range = to_one,
+   .reason = "because this is a ratio of stresses that friction has to carry", .kinds = simple_cyclic,
+   .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns when |tau| "
+           "reaches tau_amp.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.stress_ratio; }},
+  {.path = "stage.liquefaction_ratio", .value = "0.01", .range = fraction, .kinds = undrained,
+   .text = "p'/p0' below which the specimen counts as liquefied.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.liquefaction_ratio; }},
+  {.path = "stage.until", .kind = Kind::table, .presence = Presence::optional,
+   .value = "{ reversals_after_liquefaction = 10 }", .kinds = cyclic,
+   .text = "When the stage ends: at whichever of its conditions comes first.",
+   .field = [](Scene &, Stage &) -> Field { return {}; }},
+  {.path = "stage.until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9}, .kinds = cyclic,
+   .text = "After so many cycles.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_cycles; }},
+  {.path = "stage.until.reversals_after_liquefaction", .kind = Kind::integer, .value = "10", .kinds = cyclic,
+   .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.reversals_after_liquefaction; }},
+  {.path = "stage.until.strain", .value = "0.15", .range = to_one, .reason = "because this is a strain, not percent",
+   .kinds = axial_cyclic, .text = "When the amount of the axial strain exceeds this.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
+  {.path = "stage.until.strain", .value = "0.15", .range = to_ten, .reason = because_shear_strain,
+   .kinds = simple_cyclic, .text = "When the amount of the shear strain gamma_xy exceeds this.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
+  {.path = "stage.balance", .value = "1e-4", .range = fraction, .kinds = balanced,
+   .text = "Unbalanced-force ratio at which the stage ends.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.balance; }},
+  {.path = "stage.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .kinds = shear,
+   .text = "Fixed axial strain rate of this stage, in simple shear that of gamma_xy, instead of what `[motion]` says.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain_rate; }},
+  {.path = "stage.max_steps", .kind = Kind::integer, .value = "0", .kinds = stepped,
+   .text = "Ends the stage after so many time steps; 0: no limit.",
+   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_steps; }},
+
+  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file.",
+   .field = [](Scene &s) -> Field { return &s.output.folder; }},
+  {.path = "output.record_stress", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "1 kPa", .range = positive,
+   .text = "A row of the history is due whenever p' or q (in simple shear p' or tau) has moved by this much.",
+   .field = [](Scene &s) -> Field { return &s.output.record_stress; }},
+  {.path = "output.record_strain", .value = "1e-4", .range = positive,
+   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much.",
+   .field = [](Scene &s) -> Field { return &s.output.record_strain; }},
+  {.path = "output.record_steps", .kind = Kind::integer, .value = "5000", .range = {1, 1e18},
+   .text = "A row of the history is due after so many time steps at the latest.",
+   .field = [](Scene &s) -> Field { return &s.output.record_steps; }},
+  {.path = "output.snapshots", .kind = Kind::choice, .value = "reversals", .choices = snapshot_choices,
+   .text = "Whole packings are stored never, at reversals and ends of stages, or by strain.",
+   .field = [](Scene &s) -> Field { return &s.output.snapshots; }},
+  {.path = "output.snapshot_strain", .value = "0.01", .range = positive,
+   .text = "Spacing in axial strain (in simple shear in gamma_xy) of the snapshots by strain.",
+   .field = [](Scene &s) -> Field { return &s.output.snapshot_strain; }},
+  {.path = "output.paraview", .kind = Kind::boolean, .value = "true", .text = "Write snapshots for ParaView too.",
+   .field = [](Scene &s) -> Field { return &s.output.paraview; }},
+  {.path = "output.energy", .kind = Kind::boolean, .value = "false",
+   .text = "Energy balance in the history; runs the loop that sums dissipation.",
+   .field = [](Scene &s) -> Field { return &s.output.energy; }},
+  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
+   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
+   .field = [](Scene &s) -> Field { return &s.output.checkpoint_minutes; }},
+};
+// clang-format on
+
+constexpr KeyGroup groups[] = {{"size_curve"}, {"preparation", "relative_density = 0.64"}, {"rate"}};
+
+constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::angle,   Dimension::rate,
+                                    Dimension::time,   Dimension::density,  Dimension::interval};
+
+// clang-format off
+constexpr const char *defaults_head =
+    "An Isostat scene with the defaults of every key. A line \"# key = value\" is a key without default, with an "
+    "example. What makes the experiment (friction, rolling, twisting, the density, the stages) has no default and "
+    "shows an example.";
+
+constexpr const char *manual_head =
+R"(# Scene reference
+
+A scene is one TOML file that says all about a run. This page is generated from the table in
+`dem/scene/schema.cpp` (`scene_manual()`); a test compares them. Ready scenes are in `apps/scenes`.
+
+- Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
+  A bare number, or the unit of something else, is an error. What has no dimension is a plain number.
+- Friction is an angle in files (`deg`, `rad`, or its tangent as `"0.325 tan"`) and a coefficient tan(phi) inside.
+- An unknown key is an error, and so is a key twice. Stresses are effective; compression is positive.
+- A key written `rolling.limit` is `limit` in the table `rolling`: `rolling = { limit = 0.5 }`, or `rolling.limit = 0.5`.
+- `--set key=value` on the command line overrides the file: `--set motion.damping=0.3`,
+  `--set specimen.pressure="200 kPa"`, `--set stage.0.strain=0.02`. Of keys that exclude each other, the one set this
+  way replaces the one in the file.
+
+)";
+// clang-format on
+
+/// A rigid box is always consolidated isotropically. Not writing it keeps the recipes of specimens that are in caches.
+bool goes_without_saying(const Key &key, const void *scene)
+{
+  return std::string_view(key.path) == "specimen.consolidation" &&
+         static_cast<const Scene *>(scene)->specimen.domain == "rigid-box";
+}
+
+constexpr SceneSchema schema{.keys = keys,
+                             .sections = sections,
+                             .groups = groups,
+                             .dimensions = dimensions,
+                             .set_example = "motion.damping=0.3",
+                             .defaults_head = defaults_head,
+                             .manual_head = manual_head,
+                             .goes_without_saying = goes_without_saying};
+} // namespace
+
+const SceneSchema &scene_schema() { return schema; }
+std::span<const char *const> stage_kind_names() { return kind_choices; }
+} // namespace isostat

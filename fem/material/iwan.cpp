@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/material/iwan.hpp"
+
+#include "base/files/bytes.hpp"
+#include "fem/material/elastic.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace isostat
+{
+namespace
+{
+constexpr double root3 = 1.7320508075688772;
+std::array<double, 16> as_numbers(const IwanParameters &p)
+{
+  return {p.shear_modulus,      p.poisson_ratio,     p.exponent,
+          p.reference_pressure, p.strength_ratio,    p.phase_transformation_ratio,
+          p.contraction,        p.dilation,          p.fabric_limit,
+          p.fabric_rate,        p.critical_pressure, p.residual_ratio,
+          p.least_pressure,     p.loosening_limit,   p.substep,
+          double(p.elements)};
+}
+
+void require(bool holds, const char *name, double value, const char *range)
+{
+  if (!holds || !std::isfinite(value))
+    throw InputError(std::string("iwan: ") + name + " = " + std::to_string(value) + "; must be " + range);
+}
+
+void check(const IwanParameters &p)
+{
+  require(p.shear_modulus > 0, "shear_modulus", p.shear_modulus, "above 0 Pa");
+  require(p.poisson_ratio > -1 && p.poisson_ratio < 0.5, "poisson_ratio", p.poisson_ratio, "in (-1, 0.5)");
+  require(p.exponent >= 0 && p.exponent <= 1, "exponent", p.exponent, "in [0, 1]");
+  require(p.reference_pressure > 0, "reference_pressure", p.reference_pressure, "above 0 Pa");
+  require(p.strength_ratio > 0, "strength_ratio", p.strength_ratio, "above 0");
+  require(p.phase_transformation_ratio > 0, "phase_transformation_ratio", p.phase_transformation_ratio, "above 0");
+  require(p.contraction >= 0, "contraction", p.contraction, "0 or more");
+  require(p.dilation >= 0 && p.dilation <= 1, "dilation", p.dilation,
+          "in [0, 1] because plastic work would be negative above");
+  require(p.fabric_limit >= 0, "fabric_limit", p.fabric_limit, "0 or more");
+  require(p.fabric_rate >= 0, "fabric_rate", p.fabric_rate, "0 or more");
+  require(p.critical_pressure > 0, "critical_pressure", p.critical_pressure, "above 0 Pa");
+  require(p.residual_ratio >= 0 && p.residual_ratio < 1, "residual_ratio", p.residual_ratio, "in [0, 1)");
+  require(p.least_pressure > 0, "least_pressure", p.least_pressure, "above 0 Pa because moduli are divided by it");
+  require(p.loosening_limit >= 0, "loosening_limit", p.loosening_limit, "0 or more");
+  require(p.substep >= 1e-6 && p.substep <= 1e-3, "substep", p.substep, "in [1e-6, 1e-3]");
+}
+
+std::string at_point(std::size_t i) { return "iwan: point " + std::to_string(i) + ": "; }
+} // namespace
+
+Backbone fit_hyperbola(unsigned n)
+{
+  require(n >= 4 && n <= 32, "elements", n, "4 to 32");
+  // lift, first and last node: those of the least greatest error, found by search for n = 8 ... 20
+  const double lift = 0.018 * std::pow(12.0 / n, 1.35), ratio = std::pow(1.2 / (lift * lift), 1.0 / (n - 1));
+  std::vector<double> x(n + 1, 0.0), f(n + 1, 0.0);
+  for (unsigned k = 1; k <= n; ++k)
+    {
+      x[k] = lift * std::pow(ratio, k - 1.0);
+      f[k] = (1 + lift) * x[k] / (1 + x[k]);
+    }
+  f[1] = x[1];
+  f[n] = 1;
+  Backbone b;
+  for (unsigned k = 1; k <= n; ++k)
+    {
+      const double slope = (f[k] - f[k - 1]) / (x[k] - x[k - 1]);
+      b.weights.push_back(slope - (k < n ? (f[k + 1] - f[k]) / (x[k + 1] - x[k]) : 0));
+      b.yield_strains.push_back(x[k]);
+    }
+  return b;
+}
+
+Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : parameters_(p), n_points_(n_points)
+{
+  check(p);
+  const Backbone b = fit_hyperbola(p.elements);
+  width_ = (p.elements + lanes - 1) / lanes * lanes;
+  stride_ = elements + 5 * width_;
+  bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();
+  weights_.assign(width_, 0.0); // padding bears nothing and yields never
+  yields_.assign(width_, 1.0);
+  for (unsigned k = 0; k < p.elements; ++k)
+    {
+      weights_[k] = b.weights[k];
+      yields_[k] = p.strength_ratio * b.weights[k] * b.yield_strains[k];
+    }
+  committed_.resize(n_points * stride_);
+  trial_.resize(n_points * stride_);
+  increments_.resize(n_points);
+  const double s = -p.reference_pressure;
+  set_initial_stress(std::vector<Stress>(n_points, Stress{s, s, s, 0, 0, 0}));
+}
+
+double Iwan::reference_strain(double p) const { return parameters_.strength_ratio * p / shear_modulus(p); }
+double Iwan::mean_pressure(std::size_t i) const { return committed_[i * stride_ + pressure]; }
+double Iwan::loosening(std::size_t i) const { return committed_[i * stride_ + loose]; }
+
+void Iwan::set_initial_stress(std::span<const Stress> effective)
+{
+  assert(effective.size() == n_points_);
+  std::vector<double> states(committed_.size(), 0.0);
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      const Stress &t = effective[i];
+      const double p = -(t[0] + t[1] + t[2]) / 3;
+      const Shear s{(t[0] - t[1]) / 2, (2 * t[2] - t[0] - t[1]) / (2 * root3), t[3], t[4], t[5]};
+      const double size = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
+      if (!(p > 0) || !std::isfinite(p))
+        throw InputError(at_point(i) + "initial mean effective stress = " + std::to_string(p) +
+                         " Pa; must be above 0 (compression); give the surface a load");
+      if (!(size <= parameters_.strength_ratio * p))
+        throw InputError(at_point(i) + "initial stress ratio = " + std::to_string(size / p) +
+                         "; must not be above strength_ratio; choose k0 nearer to 1");
+      double *state = &states[i * stride_];
+      state[pressure] = p;
+      state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.least_pressure));
+      for (int c = 0; c < 5; ++c)
+        {
+          state[deviator + c] = s[c];
+          for (std::size_t k = 0; k < parameters_.elements; ++k)
+            state[elements + c * width_ + k] = s[c] * (yields_[k] / parameters_.strength_ratio);
+        }
+    }
+  committed_ = std::move(states);
+  has_trial_ = false;
+}
+
+void Iwan::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
+{
+  assert(increments.size() == n_points_ && stresses.size() == n_points_);
+  has_trial_ = false;
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      double *to = &trial_[i * stride_];
+      integrate(&committed_[i * stride_], increment(increments[i], i), to);
+      stresses[i] = stress(to);
+      increments_[i] = increments[i];
+    }
+  has_trial_ = true;
+}
+
+void Iwan::commit()
+{
+  if (has_trial_)
+    std::swap(committed_, trial_);
+  has_trial_ = false;
+}
+
+void Iwan::rollback() { has_trial_ = false; }
+
+void Iwan::stiffness(std::span<Stiffness> tangents) const
+{
+  for (std::size_t i = 0; i < n_points_; ++i)
+    tangents[i] = tangent(i);
+}
+
+void Iwan::wave_moduli(std::span<WaveModuli> moduli) const
+{
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      const double shear = shear_modulus(mean_pressure(i));
+      moduli[i] = {(bulk_per_shear_ + 4.0 / 3.0) * shear, shear};
+    }
+}
+
+std::vector<std::byte> Iwan::pack() const
+{
+  ByteWriter out;
+  out.text(name());
+  out.numbers(as_numbers(parameters_));
+  out.count(n_points_);
+  out.numbers(committed_);
+  return out.take();
+}
+
+void Iwan::unpack(std::span<const std::byte> bytes)
+{
+  ByteReader in(bytes, name());
+  in.expect(in.text(), name());
+  auto stored = as_numbers(parameters_);
+  in.numbers(stored, "parameters");
+  if (stored != as_numbers(parameters_))
+    in.fail("its parameters are others");
+  in.expect(in.count(), n_points_, "points");
+  std::vector<double> states(committed_.size());
+  in.numbers(states, "numbers");
+  in.expect_end();
+  committed_ = std::move(states);
+  has_trial_ = false;
+}
+} // namespace isostat

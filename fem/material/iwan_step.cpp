@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.hpp"
+#include "fem/material/elastic.hpp"
+#include "fem/material/iwan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat
+{
+namespace
+{
+constexpr double root3 = 1.7320508075688772;
+
+/// (p/p_ref)^n, without pow() for the usual exponents: that is most of the time of a step.
+double power(double ratio, double exponent)
+{
+  if (exponent == 0.5)
+    return std::sqrt(ratio);
+  if (exponent == 0 || exponent == 1)
+    return exponent == 0 ? 1.0 : ratio;
+  return std::pow(ratio, exponent);
+}
+
+/// Sum of a_k b_k, n a multiple of four, four partial sums.
+double sum_of_products(const double *a, const double *b, std::size_t n)
+{
+  double sum[4] = {};
+  for (std::size_t k = 0; k < n; k += 4)
+    for (int l = 0; l < 4; ++l)
+      sum[l] += a[k + l] * b[k + l];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+} // namespace
+
+double Iwan::shear_modulus(double p) const
+{
+  return parameters_.shear_modulus * power(p / parameters_.reference_pressure, parameters_.exponent);
+}
+
+Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
+{
+  const auto e = strain(h);
+  Increment d{{e[0] - e[1], (2 * e[2] - e[0] - e[1]) / root3, e[3], e[4], e[5]}, -(e[0] + e[1] + e[2]), 0};
+  double square = d.volumetric * d.volumetric;
+  for (double g : d.shear)
+    square += g * g;
+  if (!(square <= 1))
+    throw RunFailure("iwan: point " + std::to_string(i) + ": strain increment = " + std::to_string(std::sqrt(square)) +
+                     "; must be a number of at most 1; take smaller steps");
+  const double steps = std::sqrt(square) / parameters_.substep;
+  d.steps = static_cast<unsigned>(steps);
+  d.steps += d.steps < steps; // rounded up
+  if (d.steps > 1)
+    {
+      for (double &g : d.shear)
+        g /= d.steps;
+      d.volumetric /= d.steps;
+    }
+  return d;
+}
+
+/// Pressure, loosening: d p' = K (d eps_v - d eps_vp), moduli and stress ratio of the beginning.
+void Iwan::change_pressure(const double *from, const Shear &flow, double volumetric, double shear, double *to) const
+{
+  const double p = from[pressure], bulk = bulk_per_shear_ * shear;
+  double square = 0, along = 0;
+  for (int c = 0; c < 5; ++c)
+    {
+      square += flow[c] * flow[c];
+      along += from[deviator + c] * flow[c];
+    }
+  double plastic = parameters_.phase_transformation_ratio * std::sqrt(square) - along / p;
+  plastic *= plastic > 0 ? parameters_.contraction * (1 + from[fabric])
+                         : parameters_.dilation * std::max(0.0, 1 - p / parameters_.critical_pressure);
+  // a gap, and what closes it, are volumetric strain that changes no stress
+  double elastic = volumetric - plastic - from[loose], gap = std::max(0.0, -elastic);
+  if (from[loose] > 0 && elastic < 0)
+    elastic = 0; // still open, at the floor
+  else
+    gap = 0;
+  double next = p + bulk * elastic;
+  if (next < from[floor_pressure])
+    {
+      gap = (from[floor_pressure] - next) / bulk;
+      next = from[floor_pressure];
+    }
+  const double growth = std::min(1.0, parameters_.fabric_rate * std::max(0.0, -plastic));
+  to[fabric] = from[fabric] + growth * (parameters_.fabric_limit - from[fabric]);
+  to[pressure] = next;
+  to[loose] = std::min(gap, parameters_.loosening_limit);
+  to[floor_pressure] = from[floor_pressure];
+}
+
+/// One sub-step; `to` may be `from`. Elements yield with the p' of the beginning, which gives flow and the new p', and
+/// are then returned to the yield of the new one. Sums run over `lanes` elements side by side, in a fixed order.
+void Iwan::step(const double *from, const Increment &d, double *to) const
+{
+  const double p = from[pressure], shear = shear_modulus(p), compliance = 1 / shear;
+  const std::size_t n = width_;
+  Shear g = d.shear, flow{};
+  for (double &x : g)
+    x *= shear;
+  double above[max_elements], inverse[max_elements];
+  double s[5][max_elements]; // apart from `to`, which could be `from`
+  for (std::size_t k = 0; k < n; k += lanes)
+    {
+      double square[lanes] = {};
+      for (int c = 0; c < 5; ++c)
+        for (std::size_t l = 0; l < lanes; ++l)
+          {
+            const double t = from[elements + c * n + k + l] + weights_[k + l] * g[c];
+            s[c][k + l] = t;
+            square[l] += t * t;
+          }
+      for (std::size_t l = 0; l < lanes; ++l)
+        {
+          inverse[k + l] = yields_[k + l] / std::sqrt(square[l]);               // infinite without stress
+          above[k + l] = 1 - (p * inverse[k + l] < 1 ? p * inverse[k + l] : 1); // part above yield
+        }
+    }
+  for (int c = 0; c < 5; ++c)
+    flow[c] = compliance * sum_of_products(above, s[c], n);
+  change_pressure(from, flow, d.volumetric, shear, to);
+  const double p_new = to[pressure];
+  for (std::size_t k = 0; k < n; ++k)
+    inverse[k] = p_new * inverse[k] < 1 ? p_new * inverse[k] : 1;
+  for (int c = 0; c < 5; ++c)
+    {
+      to[deviator + c] = sum_of_products(inverse, s[c], n);
+      for (std::size_t k = 0; k < n; ++k)
+        to[elements + c * n + k] = inverse[k] * s[c][k];
+    }
+}
+
+void Iwan::integrate(const double *from, const Increment &d, double *to) const
+{
+  if (d.steps == 0)
+    std::copy(from, from + stride_, to);
+  for (unsigned k = 0; k < d.steps; ++k)
+    step(k == 0 ? from : to, d, to);
+}
+
+Stress Iwan::stress(const double *state) const
+{
+  const double p = state[pressure], a = state[deviator], b = state[deviator + 1] / root3;
+  return {a - b - p, -a - b - p, 2 * b - p, state[deviator + 2], state[deviator + 3], state[deviator + 4]};
+}
+
+Stiffness Iwan::tangent(std::size_t i) const
+{
+  const double *from = &committed_[i * stride_];
+  const double shear = shear_modulus(from[pressure]);
+  const Increment base = has_trial_ ? increment(increments_[i], i) : Increment{};
+  if (base.steps == 0)
+    return isotropic_stiffness(bulk_per_shear_ * shear, shear);
+  constexpr double tiny = 1e-10;
+  constexpr int entry[6] = {0, 4, 8, 5, 2, 1}; // of the gradient: xx, yy, zz, yz, xz, xy
+  const auto e = strain(increments_[i]);
+  std::array<double, elements + 5 * max_elements> state{};
+  integrate(from, base, state.data());
+  const Stress here = stress(state.data());
+  Stiffness c;
+  for (int j = 0; j < 6; ++j)
+    {
+      const double sign = e[j] < 0 ? -1 : 1;
+      Gradient h{};
+      h[entry[j]] = sign * tiny;
+      const Increment extra = increment(h, i); // one step
+      Increment d = base;                      // as many sub-steps as before
+      for (int k = 0; k < 5; ++k)
+        d.shear[k] += extra.shear[k] / d.steps;
+      d.volumetric += extra.volumetric / d.steps;
+      integrate(from, d, state.data());
+      const Stress there = stress(state.data());
+      for (int k = 0; k < 6; ++k)
+        c(k, j) = sign * (there[k] - here[k]) / tiny;
+    }
+  return c;
+}
+} // namespace isostat

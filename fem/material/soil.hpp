@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace isostat
+{
+/// One layer of saturated soil.
+struct Layer
+{
+  std::string name;
+  double thickness = 0;    ///< m
+  double density = 2000;   ///< of soil and water together, kg/m3
+  double porosity = 0.4;   ///< [-]
+  double permeability = 0; ///< hydraulic conductivity k, m/s; 0: no water moves
+  double k0 = 0.5;         ///< sigma'_h / sigma'_v in situ [-]
+  unsigned cells = 1;      ///< elements through its thickness
+};
+
+/// What the pore water does.
+enum class Drainage
+{
+  dry,       ///< no water: total stress is effective stress
+  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0, pressure from vertical equilibrium
+  coupled    ///< u-p: displacement and pore pressure
+};
+
+/// Pore water.
+struct Water
+{
+  double density = 1000;       ///< kg/m3
+  double bulk_modulus = 2.2e9; ///< K_f, Pa
+  double gravity = 9.81;       ///< m/s2, also of the soil's weight
+
+  /// Mobility kb = k/(rho_f g), m2/(Pa s).
+  double mobility(double permeability) const { return permeability / (density * gravity); }
+};
+
+/// Layers from the base up; z = 0 at the base, upwards positive, water table at the surface.
+/// tested: tests/fem/material/soil_test.cpp
+struct SoilProfile
+{
+  std::vector<Layer> layers;
+  Water water;
+
+  double height() const;
+  std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
+  /// Vertical effective stress of the soil's own weight and of a uniform load on the surface, compression positive. Pa
+  double vertical_effective_stress(double z, double surcharge = 0) const;
+};
+} // namespace isostat

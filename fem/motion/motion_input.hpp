@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace isostat
+{
+/// A motion in one direction as equally spaced accelerations, m/s2, the first at t = 0. Between samples the
+/// acceleration is linear, so velocity and displacement are exact polynomials:
+///   a = a_i + s tau,  v = v_i + a_i tau + s tau^2/2,  d = d_i + v_i tau + a_i tau^2/2 + s tau^3/6,  tau = t - t_i
+/// Before the first sample all is at rest. After the last the acceleration is 0: the velocity keeps its last value and
+/// the displacement runs away unless that value is 0. Records seldom end at rest; see `corrected`. tested:
+/// tests/fem/motion/motion_input_test.cpp
+class Motion
+{
+public:
+  Motion() = default; ///< rest
+  /// @param accelerations  m/s2, two at least   @param interval  s
+  /// @throws InputError for fewer than two samples, a value that is not finite, interval <= 0
+  Motion(std::vector<double> accelerations, double interval);
+
+  double acceleration(double t) const; ///< m/s2, t in s
+  double velocity(double t) const;     ///< m/s
+  double displacement(double t) const; ///< m
+
+  bool at_rest() const { return accelerations_.empty(); }
+  double duration() const;                      ///< time of the last sample, s; 0 at rest
+  double interval() const { return interval_; } ///< s; 0 at rest
+  double peak() const;                          ///< largest |acceleration|, m/s2; 0 at rest
+  const std::vector<double> &accelerations() const { return accelerations_; }
+
+private:
+  /// Where a time lies: the sample before it and the time since; @pre 0 <= t, not at rest
+  struct Place
+  {
+    std::size_t sample;
+    double since, slope;
+  };
+  Place place(double t) const;
+
+  std::vector<double> accelerations_, velocities_, displacements_;
+  double interval_ = 0;
+};
+
+/// Unit of the accelerations in a file.
+enum class AccelerationUnit
+{
+  m_s2,
+  cm_s2,
+  g
+};
+
+/// Standard acceleration of gravity, m/s2: what "g" in a record means.
+inline constexpr double standard_gravity = 9.80665;
+
+/// Reads a record. Formats, told apart by content:
+///  - two columns, time (s) and acceleration, separated by blanks, tabs or commas; comment lines start with # or %, and
+///    one header line of words may come first. The times must rise by equal intervals (each to 1e-3 of the median); the
+///    first sample becomes t = 0, the interval is the mean one.
+///  - PEER .AT2: a line with NPTS and DT among the first ten ("NPTS= 4000, DT= .005 SEC" or "4000 .005 NPTS, DT"), then
+///    NPTS accelerations in g, any number to a line
+/// Either may be gzipped.
+/// @param unit  of a two-column file; AT2 is always in g, `unit` is ignored
+/// @throws InputError with file:line: missing file, text among the numbers, gaps or steps back in time, not-a-number,
+///         fewer or more values than NPTS, an AT2 file of velocities or displacements, fewer than two samples
+/// tested: tests/fem/motion/motion_file_test.cpp
+Motion read_motion(const std::filesystem::path &path, AccelerationUnit unit);
+
+/// A w(t) sin(2 pi f t), 0 <= t <= duration. w rises as (1 - cos(pi t/ramp))/2 over the first `ramp` seconds and falls
+/// the same way over the last. Samples after `duration`, if it is no multiple of the interval, are 0. Without a ramp
+/// the velocity is A/(2 pi f) (1 - cos(2 pi f t)): a sine that starts at once drifts; a ramp of a few periods ends the
+/// drift.
+/// @param amplitude  m/s2   @param frequency  Hz   @param duration, ramp, interval  s
+/// @throws InputError unless f > 0, duration > 0, 0 <= 2 ramp <= duration, 0 < interval <= 0.1/f
+/// tested: tests/fem/motion/motion_input_test.cpp
+Motion harmonic_motion(double amplitude, double frequency, double duration, double ramp, double interval);
+
+/// Ricker wavelet a = A (1 - 2 b^2) exp(-b^2), b = pi f (t - t0), from 0 to 2 t0 (Ricker 1953); f is the peak of its
+/// spectrum. v = A (t - t0) exp(-b^2), d = -A/(2 pi^2 f^2) exp(-b^2), each but for what is cut off before t = 0.
+/// @param amplitude  m/s2   @param frequency  Hz   @param t0, interval  s
+/// @throws InputError unless f > 0, f t0 >= 1 (less than 1e-3 A is cut off), 0 < interval <= 0.1/f
+/// tested: tests/fem/motion/motion_input_test.cpp
+Motion ricker_motion(double amplitude, double frequency, double t0, double interval);
+
+/// How a record is made ready.
+enum class Baseline
+{
+  none,
+  mean,     ///< takes the mean over time of the acceleration off
+  quadratic ///< takes a parabola c0 + c1 t + c2 t^2 off the acceleration
+};
+
+/// The motion without its drift. Both corrections end with velocity 0 (to round-off), so nothing moves after the
+/// record; neither makes the last displacement 0. The parabola is the one that makes the sum of the squared velocities
+/// at the samples smallest among those that end with velocity 0:
+///   min sum_i v_c(t_i)^2,  v_c(T) = 0,  v_c the exact velocity of a_c,i = a_i - c0 - c1 t_i - c2 t_i^2
+/// Newmark (1973) minimises the mean square velocity with such a parabola (Abaqus Theory Guide, "Baseline correction of
+/// accelerograms"); the condition at the end is added here. The acceleration may jump by c0 at t = 0. Applying a
+/// correction twice changes nothing.
+/// tested: tests/fem/motion/motion_input_test.cpp
+Motion corrected(const Motion &motion, Baseline baseline);
+
+/// All accelerations times peak/motion.peak().
+/// @param peak  m/s2   @throws InputError unless peak > 0, and if the motion is all zero
+Motion scaled_to_peak(const Motion &motion, double peak);
+Motion scaled(const Motion &motion, double factor); ///< all accelerations times `factor`
+
+/// The motion twice: the second time from the first sample on that is `start` or later; where both are going on, their
+/// sum.     @param start  s; rounded up to whole intervals   @throws InputError unless start > 0
+/// tested: tests/fem/motion/motion_input_test.cpp
+Motion repeated(const Motion &motion, double start);
+
+/// S_a(T): peak absolute acceleration of oscillators u'' + 2 xi w u' + w^2 u = -a(t), w = 2 pi/T, that start at rest;
+/// the absolute acceleration is -(2 xi w u' + w^2 u). Each step is the exact solution for linear a (Nigam & Jennings
+/// 1969). Steps are at most T/64 long, which misses at most 0.13 % of a peak (1000 steps between two samples at most,
+/// so below T = interval/16 peaks may be missed); one more period of free vibration follows the record.
+/// @param periods  s; 0 gives the peak of the motion   @param damping  fraction xi of the critical one, [0, 1)
+/// @return m/s2, one for each period   @throws InputError for a negative period, a damping outside [0, 1)
+/// cost: samples * max(1, 64 interval/T) steps for each period       tested:
+/// tests/fem/motion/response_spectrum_test.cpp
+std::vector<double> response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping);
+} // namespace isostat

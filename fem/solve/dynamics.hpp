@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/motion/motion_input.hpp"
+#include "fem/space/discretisation.hpp"
+#include "fem/water/biot.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+
+namespace isostat
+{
+/// What lies under the mesh.
+struct Base
+{
+  bool compliant = false;       ///< false: the base has the given motion. true: elastic rock behind a dashpot
+  double density = 2300;        ///< rho_r, kg/m3
+  double shear_velocity = 800;  ///< V_r, m/s
+  double p_velocity = 1600;     ///< m/s
+  std::array<Motion, 3> motion; ///< along x, y, z: of the base, or of the rock's outcrop if compliant
+};
+
+/// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
+using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
+
+struct DynamicsSettings
+{
+  double time_step = 0;    ///< s; 0: safety times the stable step at the start
+  double safety = 0.8;     ///< of the stable step that may be used
+  double mass_damping = 0; ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
+  Drainage drainage = Drainage::dry;
+  bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
+  Base base = {};
+  SurfaceTraction surface_traction = {}; ///< none: free
+};
+
+/// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
+struct DynamicsState
+{
+  std::uint64_t step = 0;
+  std::map<std::string, std::vector<double>> vectors;
+  std::map<std::string, double> numbers;
+  std::vector<std::byte> material;
+};
+
+/// Energy since the start, J (per m2 of a column).
+struct DynamicsEnergy
+{
+  double kinetic = 0;  ///< v(n-1/2) M v(n+1/2) / 2: with it the balance of central differences is exact
+  double internal = 0; ///< work of effective and pore stress on strains
+  double external = 0; ///< of inertia of the moving base, tractions, dashpot and mass damping
+
+  double residual() const { return kinetic + internal - external; }
+};
+
+/// Waves in a block of saturated soil: central differences in the displacement, effective stress explicit, pore
+/// pressure implicit. One evaluation of the material per step; the system for the pressure is constant and is
+/// factorised once.
+///
+///     M (v+ - v-)/dt + C (v+ + v-)/2 = f - F(sigma') + G^T p                      momentum of the mixture at t_n
+///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt = 0        water, second order backward (BDF2)
+///
+/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. The skeleton alone limits dt; water of any stiffness and permeability
+/// does not (roots of the amplification polynomial on or inside the unit circle for omega dt <= 2). Displacements count
+/// from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969). The state at the start is taken
+/// as in equilibrium: a frozen column stays still to the bit.
+/// tested: tests/fem/solve/dynamics_test.cpp, tests/fem/water/biot_test.cpp
+template <int dim>
+class Dynamics
+{
+public:
+  /// @pre material.n_points() == space.n_points(), initial stress set
+  /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
+  Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings);
+
+  /// One time step.
+  /// @throws RunFailure  the stiffness has risen so that the step is no longer stable, or the motion explodes
+  void step();
+
+  std::uint64_t n_steps() const { return step_; }
+  double time() const { return static_cast<double>(step_) * time_step_; }
+  double time_step() const { return time_step_; }
+  double stable_step() const; ///< of the present stiffness, s
+
+  const Vector &displacement() const { return u_; } ///< at time()
+  const Vector &velocity() const { return v_; }     ///< at time() - dt/2
+  Vector acceleration() const;                  ///< at time() - dt, as the unknown counts it; made anew at each call
+  const Vector &pressure() const { return p_; } ///< excess, at time() - dt; zero unless coupled
+  std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
+  /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
+  /// vertical equilibrium at time(), 0 if dry.
+  std::vector<double> point_pressure() const;
+  /// Sum over all ranks.
+  DynamicsEnergy energy() const;
+  const DynamicsSettings &settings() const { return settings_; }
+
+  /// To the bit.
+  /// @throws InputError  restore() of another mesh, material or step; save() of a mesh shared out over ranks
+  DynamicsState save() const;
+  void restore(const DynamicsState &state);
+
+private:
+  void check_settings() const;
+  void make_coefficients();
+  void find_loads();
+  void start();
+  void find_pressure();
+  template <bool coupled>
+  void move();
+  void strain_points();
+  void add_lagged_compression();
+  void check_motion();
+  double water_compliance(std::size_t point) const; ///< 1/Q, 1/Pa
+
+  const Discretisation<dim> &space_;
+  Material &material_;
+  DynamicsSettings settings_;
+  double time_step_ = 0;
+  std::uint64_t step_ = 0;
+
+  // state
+  Vector u_, v_, next_;          ///< next_: v half a step before v_
+  Vector p_, p_before_, p_next_; ///< p_next_ is scratch
+  std::vector<Stress> stresses_;
+  std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
+  DynamicsEnergy half_way_;             ///< of this rank, at time() - dt/2
+  DynamicsEnergy energy_;               ///< of this rank at time() - dt
+  double exchanged_ = 0;                ///< sum of |external work|, what an explosion is measured by
+
+  // constant
+  Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
+  Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
+  double least_energy_ = 0;               ///< J, that no explosion is judged below
+  std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
+  Vector minus_reference_;                ///< -F of the initial stress
+  std::vector<Stress> initial_stresses_;
+  std::unique_ptr<PressureSystem<dim>> pressure_system_;
+
+  // of one step
+  std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base
+  Vector load_, force_, pore_force_;
+  std::vector<Gradient> increments_;
+  mutable std::vector<WaveModuli> moduli_;
+};
+
+/// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
+/// in an undrained column vertically), tied sides, drained surface.
+template <int dim>
+Supports shaken_supports(bool compliant_base);
+} // namespace isostat

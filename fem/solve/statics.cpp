@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps, their halving and growth. What a sub-step does is in statics_newton.cpp.
+#include "fem/solve/statics.hpp"
+
+#include "base/error.hpp"
+#include "fem/solve/statics_system.hpp"
+#include "fem/water/biot_integrals.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+/// Mean modulus of the skeleton, Pa; 1 for a soil without any.
+double mean_modulus(const Material &material, MPI_Comm communicator)
+{
+  std::vector<WaveModuli> moduli(material.n_points());
+  material.wave_moduli(moduli);
+  double sums[2] = {0, static_cast<double>(moduli.size())};
+  for (const WaveModuli &modulus : moduli)
+    sums[0] += modulus.p;
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, communicator);
+  return sums[0] > 0 ? sums[0] / sums[1] : 1;
+}
+} // namespace
+
+template <int dim>
+Statics<dim>::Statics(const Discretisation<dim> &space, Material &material, StaticsSettings settings)
+    : space_(space), material_(material), settings_(std::move(settings)), u_(space.displacement_vector()),
+      p_(space.pressure_vector()), last_du_(u_), last_dp_(p_), load_(u_), stresses_(space.n_points()),
+      reference_force_(u_), target_u_(u_), du_(u_), dp_(p_), start_du_(u_), start_dp_(p_), step_u_(u_), step_p_(p_),
+      moved_u_(u_), moved_p_(p_), force_(u_), pore_force_(u_), r_u_(u_), r_p_(p_), work_u_(u_), work_p_(p_), p_now_(p_),
+      trial_stresses_(space.n_points()), increments_(space.n_points()), tangents_(space.n_points())
+{
+  check_settings();
+  find_held();
+  std::fill(increments_.begin(), increments_.end(), Gradient{});
+  material_.trial(increments_, stresses_); // no strain: the stress of the start
+  material_.rollback();
+  space_.add_internal_force(stresses_, reference_force_);
+  least_scale_ = std::max(settings_.least_force, 1e-4 * reference_force_.l2_norm());
+  pressure_scale_ = mean_modulus(material_, space_.communicator());
+  if (settings_.pore_water)
+    water_ = std::make_unique<BiotOperator<dim>>(space_);
+  system_ = std::make_unique<StaticsSystem<dim>>(space_, water_.get(), pressure_scale_);
+}
+
+template <int dim>
+Statics<dim>::~Statics() = default;
+
+template <int dim>
+void Statics<dim>::step(double duration)
+{
+  if (settings_.pore_water && duration == 0)
+    throw InputError("step of 0 s with pore water; must be > 0 for water to flow. Use an undrained step for a jump of "
+                     "the load.");
+  advance(duration, settings_.pore_water);
+}
+
+template <int dim>
+void Statics<dim>::step_undrained(double duration)
+{
+  if (!settings_.pore_water)
+    throw InputError("undrained step without pore water; switch pore water on");
+  advance(duration, false);
+}
+
+/// Sizes are powers of 1/2 of the step, so the parts add up to 1 exactly.
+template <int dim>
+void Statics<dim>::advance(double duration, bool flow)
+{
+  if (!(duration >= 0) || !std::isfinite(duration))
+    throw InputError(fmt::format("step of {} s; must be >= 0", duration));
+  const double start_time = time_, smallest = std::ldexp(1.0, -static_cast<int>(settings_.max_halvings));
+  const Vector load_start = load_, held_start = u_;
+  Vector load_end = load_, held_end = u_;
+  find_loads(time_ + duration, load_end, held_end);
+  const auto load_at = [&](double part) {
+    for (std::size_t i = 0; i < u_.locally_owned_size(); ++i)
+      {
+        load_.local_element(i) = (1 - part) * load_start.local_element(i) + part * load_end.local_element(i);
+        target_u_.local_element(i) = (1 - part) * held_start.local_element(i) + part * held_end.local_element(i);
+      }
+  };
+  effort_ = {};
+  flow_ = flow;
+  double done = 0, size = std::min(1.0, 2 * substep_);
+  while (done < 1)
+    {
+      size = std::min(size, 1 - done);
+      load_at(done + size);
+      if (solve_substep(duration * size))
+        {
+          accept(duration * size);
+          done += size;
+          time_ = start_time + done * duration;
+          substep_ = size;
+          size *= 2;
+          continue;
+        }
+      material_.rollback();
+      ++effort_.rejected;
+      if (size / 2 < smallest)
+        {
+          load_at(done);
+          fail(size);
+        }
+      size /= 2;
+    }
+  ++step_;
+}
+
+template <int dim>
+void Statics<dim>::accept(double duration)
+{
+  if (tried_)
+    material_.commit();
+  stresses_ = trial_stresses_;
+  u_ += du_;
+  p_ += dp_;
+  for (unsigned i : held_u_)
+    u_.local_element(i) = target_u_.local_element(i);
+  if (flow_)
+    for (unsigned i : held_p_)
+      p_.local_element(i) = 0;
+  last_du_ = du_;
+  last_dp_ = dp_;
+  duration_before_ = flow_ ? duration : 0;
+  scale_ = trial_scale_;
+  ++effort_.substeps;
+}
+
+template <int dim>
+void Statics<dim>::fail(double size) const
+{
+  throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.3g} of the force scale "
+                               "{:.3g} N, tolerance {:.3g}) in a sub-step of {:.3g} of the step, the smallest that is "
+                               "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps; "
+                               "the load may be more than the soil bears",
+                               step_ + 1, time_, reason_, residual_, trial_scale_, settings_.tolerance, size, time_,
+                               step_));
+}
+
+template class Statics<1>;
+template class Statics<2>;
+template class Statics<3>;
+} // namespace isostat

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/space/discretisation.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace isostat
+{
+template <int dim>
+class BiotOperator;
+template <int dim>
+class StaticsSystem;
+
+using Place = std::array<double, 3>; ///< x, y, z, m
+
+/// Total traction (of soil and water together, tension positive) on a face, Pa. On a face that moves together only the
+/// sum counts, and `place` is that of one of its nodes: traction times area is the force on a rigid plate.
+struct FaceTraction
+{
+  Face face;
+  std::function<std::array<double, 3>(double time, const Place &place)> traction;
+};
+
+/// Displacement since the start of a component of Supports::fixed or Supports::together, m. Of two that meet at a node
+/// the later one holds.
+struct FaceDisplacement
+{
+  FaceComponent of;
+  std::function<double(double time, const Place &place)> displacement;
+};
+
+struct StaticsSettings
+{
+  bool pore_water = false; ///< consolidation; false: dry or fully drained, time is only what loads depend on
+  std::vector<FaceTraction> tractions = {};
+  std::vector<FaceDisplacement> displacements =
+      {};                  ///< components that are fixed and not named here stay where they are
+  double tolerance = 1e-8; ///< of the residual, in units of the force scale (see Statics)
+  double least_force = 0;  ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
+  unsigned max_iterations = 25;        ///< of Newton, per sub-step
+  unsigned iterations_per_tangent = 1; ///< 1: Newton. More: the tangent is kept (modified Newton), within a sub-step
+  unsigned max_halvings = 12;          ///< the smallest sub-step is the step times 2^-max_halvings
+};
+
+/// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
+struct StaticsState
+{
+  std::uint64_t step = 0;
+  std::map<std::string, std::vector<double>> vectors;
+  std::map<std::string, double> numbers;
+  std::vector<std::byte> material;
+};
+
+/// What the last step took.
+struct StaticsEffort
+{
+  unsigned substeps = 0, rejected = 0; ///< that were accepted, that Newton did not solve
+  unsigned iterations = 0;             ///< linear systems solved
+  unsigned trials = 0;                 ///< evaluations of the material
+};
+
+/// Quasi-static loading and consolidation of a block of saturated soil.
+///
+///     F(sigma') - F(sigma'_0) - G^T p = f(t)        equilibrium of the mixture, changes since the start
+///     G du/dt + S dp/dt + H p = 0                   water (fem/water/biot.hpp has the matrices); p = 0 on drained
+///     faces
+///
+/// Time: BDF2 with variable steps, backward Euler where there is no step before: the first one, after a step without
+/// flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett & Wanner,
+/// Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps.
+///
+/// Each step: Newton with the material's tangent and a line search on the norm of the residual. Where Newton fails or
+/// the material refuses, the step is halved, and doubled again after each success; loads and given displacements go
+/// linearly from those of the state to those at the step's end, so a jump is shared out too.
+///
+/// Converged when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as forces
+/// by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
+/// reactions, included), least_force and 1e-4 |F0|.
+///
+/// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
+/// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
+/// mandel_test.cpp
+template <int dim>
+class Statics
+{
+public:
+  /// @pre material.n_points() == space.n_points(), initial stress set
+  /// @throws InputError  other numbers of points, pore water with degree 1, a displacement of a component that is
+  ///         neither fixed nor together, settings out of range
+  Statics(const Discretisation<dim> &space, Material &material, StaticsSettings settings);
+  ~Statics();
+
+  /// On by `duration` seconds; 0 (a jump of the load) is possible without pore water only.
+  /// @throws RunFailure  the smallest sub-step has no solution: step, time, residual, reason. The state is that of the
+  ///         last good sub-step, time() tells
+  /// @throws InputError  negative duration
+  void step(double duration);
+  /// As step(), but no water moves, not even to drained faces: G du + S dp = 0. With duration 0 it puts on the loads of
+  /// this moment in an instant.   @throws as step(); InputError without pore water
+  void step_undrained(double duration = 0);
+
+  std::uint64_t n_steps() const { return step_; } ///< finished steps
+  double time() const { return time_; }           ///< s
+
+  const Vector &displacement() const { return u_; }              ///< since the start, m
+  const Vector &pressure() const { return p_; }                  ///< excess pore pressure, compression positive, Pa
+  std::span<const Stress> stresses() const { return stresses_; } ///< effective, tension positive
+  /// Excess pore pressure at the points, compression positive, Pa.
+  std::vector<double> point_pressure() const;
+  /// Force of the support on the soil since the start: sum of F - F0 - G^T p - f over a face's unknowns of a component,
+  /// over all ranks; + along the axis. An unknown that two faces hold counts on both. N (1 m along axes not meshed)
+  double reaction(FaceComponent of) const;
+  const StaticsEffort &effort() const { return effort_; }
+  double residual() const { return residual_; } ///< of the last trial, in units of the force scale
+
+  /// To the bit. Between steps, or after a failed one.
+  /// @throws InputError  restore() of another mesh or material; save() of a mesh shared out over ranks
+  StaticsState save() const;
+  void restore(const StaticsState &state);
+
+private:
+  // statics_loads.cpp
+  void check_settings() const;
+  void find_held();
+  void find_loads(double time, Vector &load, Vector &held) const;
+  std::vector<unsigned> unknowns_of(FaceComponent of) const;
+  // statics_newton.cpp
+  bool solve_substep(double duration);
+  void start_substep(double duration);
+  bool iterate(unsigned iteration);
+  bool search_line(double merit_before);
+  void set_part(double part);
+  bool evaluate();
+  void find_residual();
+  double merit(double moved_part) const;
+  double squares(const Vector &residual, const Vector &moved, double moved_part, const std::vector<char> &held) const;
+  bool on_every_rank(bool good) const;
+  // statics.cpp
+  void advance(double duration, bool flow);
+  void accept(double duration);
+  [[noreturn]] void fail(double size) const;
+
+  const Discretisation<dim> &space_;
+  Material &material_;
+  StaticsSettings settings_;
+  std::unique_ptr<BiotOperator<dim>> water_;
+  std::unique_ptr<StaticsSystem<dim>> system_;
+
+  // state
+  std::uint64_t step_ = 0;
+  double time_ = 0, duration_before_ = 0; ///< of the last sub-step with flow, 0: none
+  double substep_ = 1;                    ///< part of a step that the last sub-step was
+  double scale_ = 0;                      ///< force scale so far, N
+  double pressure_scale_ = 0;
+  Vector u_, p_, last_du_, last_dp_; ///< last_: increments of the last sub-step
+  Vector load_;
+  std::vector<Stress> stresses_;
+  Vector reference_force_; ///< F0
+  double least_scale_ = 0; ///< N
+
+  // constant
+  std::vector<Place> places_;
+  std::vector<Vector> traction_areas_;
+  std::vector<std::vector<unsigned>> given_; ///< owned unknowns of each of settings_.displacements
+  std::vector<unsigned> held_u_, held_p_;    ///< owned; pressures only while water flows
+  std::vector<char> is_held_u_, is_held_p_;
+
+  // of one sub-step
+  bool flow_ = false, tried_ = false;          ///< tried_: the material has been asked
+  double theta_ = 0;                           ///< duration over the leading coefficient of BDF, s; 0: no flow
+  double last_part_ = 0;                       ///< of the increments before, that BDF counts
+  double left_ = 0;                            ///< part of the way of held unknowns that is left
+  Vector target_u_;                            ///< of held unknowns
+  Vector du_, dp_, start_du_, start_dp_;       ///< increments of the sub-step: now, at the start of an iteration
+  Vector step_u_, step_p_, moved_u_, moved_p_; ///< Newton's, and what residuals lose by held unknowns
+  Vector force_, pore_force_, r_u_, r_p_, work_u_, work_p_, p_now_;
+  std::vector<Stress> trial_stresses_;
+  std::vector<Gradient> increments_;
+  std::vector<Stiffness> tangents_;
+  double trial_scale_ = 0, residual_ = 0;
+  std::string reason_; ///< why Newton failed
+  StaticsEffort effort_;
+};
+} // namespace isostat

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What holds and what loads a block in statics, and the reactions.
+#include "base/error.hpp"
+#include "fem/solve/statics.hpp"
+#include "fem/solve/statics_system.hpp"
+#include "fem/water/biot_integrals.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+std::string name_of(FaceComponent of)
+{
+  constexpr const char *names[] = {"x_low", "x_high", "y_low", "y_high", "base", "surface"};
+  return fmt::format("u_{} of face {}", "xyz"[of.component], names[static_cast<int>(of.face)]);
+}
+
+bool contains(const std::vector<FaceComponent> &list, FaceComponent of)
+{
+  return std::any_of(list.begin(), list.end(), [&](const FaceComponent &entry) {
+    return entry.face == of.face && entry.component == of.component;
+  });
+}
+} // namespace
+
+template <int dim>
+void Statics<dim>::check_settings() const
+{
+  if (material_.n_points() != space_.n_points())
+    throw InputError(fmt::format("the material has {} points, the mesh {}", material_.n_points(), space_.n_points()));
+  if (settings_.pore_water && space_.mesh().degree != 2)
+    throw InputError("pore water with degree 1; pressure of degree 1 needs displacements of degree 2, or it "
+                     "oscillates. Set degree = 2.");
+  for (const FaceDisplacement &given : settings_.displacements)
+    {
+      if (given.of.component > 2)
+        throw InputError(fmt::format("displacement of component {}; must be 0, 1 or 2", given.of.component));
+      if (!contains(space_.supports().fixed, given.of) && !contains(space_.supports().together, given.of))
+        throw InputError(fmt::format("a displacement is given for {}, which is free; add it to the fixed ones, or to "
+                                     "those that move together",
+                                     name_of(given.of)));
+    }
+  if (!(settings_.tolerance > 0) || settings_.tolerance >= 1)
+    throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.tolerance));
+  if (!(settings_.least_force >= 0))
+    throw InputError(fmt::format("least force = {} N; must be >= 0", settings_.least_force));
+  if (settings_.max_iterations == 0 || settings_.iterations_per_tangent == 0)
+    throw InputError("max iterations and iterations per tangent must be >= 1");
+  if (settings_.max_halvings > 40)
+    throw InputError(fmt::format("max halvings = {}; must be <= 40", settings_.max_halvings));
+}
+
+/// Owned unknowns of a component on a face. A rank need not have a cell at all.
+template <int dim>
+std::vector<unsigned> Statics<dim>::unknowns_of(FaceComponent of) const
+{
+  const Vector area = space_.face_area(of.face);
+  std::vector<unsigned> unknowns;
+  for (unsigned i = of.component; i < area.locally_owned_size(); i += 3)
+    if (area.local_element(i) > 0)
+      unknowns.push_back(i);
+  return unknowns;
+}
+
+template <int dim>
+void Statics<dim>::find_held()
+{
+  is_held_u_.assign(u_.locally_owned_size(), 0);
+  is_held_p_.assign(p_.locally_owned_size(), 0);
+  for (unsigned i : space_.fixed_dofs)
+    if (i < is_held_u_.size())
+      is_held_u_[i] = 1;
+  for (const FaceDisplacement &given : settings_.displacements)
+    {
+      given_.push_back(unknowns_of(given.of));
+      for (unsigned i : given_.back())
+        is_held_u_[i] = 1;
+    }
+  for (unsigned i : space_.drained_pressures)
+    if (i < is_held_p_.size())
+      is_held_p_[i] = 1;
+  for (unsigned i = 0; i < is_held_u_.size(); ++i)
+    if (is_held_u_[i])
+      held_u_.push_back(i);
+  for (unsigned i = 0; i < is_held_p_.size(); ++i)
+    if (is_held_p_[i])
+      held_p_.push_back(i);
+  for (const FaceTraction &load : settings_.tractions)
+    traction_areas_.push_back(space_.face_area(load.face));
+  places_ = space_.node_places();
+}
+
+/// Forces on the nodes, and displacements of held unknowns (those without a given one stay).
+template <int dim>
+void Statics<dim>::find_loads(double time, Vector &load, Vector &held) const
+{
+  load = 0;
+  for (std::size_t k = 0; k < traction_areas_.size(); ++k)
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      if (const double area = traction_areas_[k].local_element(i); area > 0)
+        load.local_element(i) += area * settings_.tractions[k].traction(time, places_[i])[i % 3];
+  for (std::size_t k = 0; k < given_.size(); ++k)
+    for (unsigned i : given_[k])
+      held.local_element(i) = settings_.displacements[k].displacement(time, places_[i]);
+}
+
+template <int dim>
+double Statics<dim>::reaction(FaceComponent of) const
+{
+  Vector force = space_.displacement_vector(), pore = force;
+  space_.add_internal_force(stresses_, force);
+  if (water_)
+    water_->add_pore_force(p_, pore);
+  double sum = 0;
+  for (unsigned i : unknowns_of(of))
+    sum += force.local_element(i) - reference_force_.local_element(i) - pore.local_element(i) - load_.local_element(i);
+  if (space_.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  return sum;
+}
+
+template class Statics<1>;
+template class Statics<2>;
+template class Statics<3>;
+} // namespace isostat

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/solve/statics_system.hpp"
+
+#include "fem/space/petsc_check.hpp"
+#include "fem/space/strain_matrix.hpp"
+#include "fem/water/biot_integrals.hpp"
+
+#include <petscmat.h>
+
+namespace isostat
+{
+namespace
+{
+void check(PetscErrorCode code) { petsc_check(code, "system of statics"); }
+} // namespace
+
+template <int dim>
+struct StaticsSystem<dim>::Matrices
+{
+  double pressure_scale = 1, cell_size = 1;
+  std::size_t n_u = 0, n_p = 0;       ///< owned rows
+  std::vector<PetscInt> of_u, of_p;   ///< number in the system of owned and other unknowns
+  std::vector<unsigned> unused, held; ///< owned rows that no cell has; held ones
+  const BiotOperator<dim> *water = nullptr;
+  std::vector<double> values;            ///< entries in the order of preallocate()
+  std::vector<Stiffness> known_tangents; ///< that the factor is of
+  double known_theta = -1;
+  Mat whole = nullptr, with_held = nullptr, factor = nullptr; ///< of all unknowns; held rows and columns removed
+  Vec in = nullptr, out = nullptr;
+
+  ~Matrices()
+  {
+    for (Mat *matrix : {&whole, &with_held, &factor})
+      MatDestroy(matrix);
+    for (Vec *vector : {&in, &out})
+      VecDestroy(vector);
+  }
+};
+
+template <int dim>
+StaticsSystem<dim>::StaticsSystem(const Discretisation<dim> &space, const BiotOperator<dim> *water,
+                                  double pressure_scale)
+    : space_(space), matrices_(std::make_unique<Matrices>())
+{
+  Matrices &m = *matrices_;
+  m.water = water;
+  m.pressure_scale = pressure_scale;
+  double size[2] = {0, static_cast<double>(space.n_cells())};
+  for (double w : space.weight)
+    size[0] += w;
+  if (space.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, size, 2, MPI_DOUBLE, MPI_SUM, space.communicator());
+  m.cell_size = std::pow(size[0] / size[1], 1.0 / dim);
+  number_unknowns();
+  preallocate();
+  hold({}, {});
+}
+
+template <int dim>
+StaticsSystem<dim>::~StaticsSystem() = default;
+
+template <int dim>
+double StaticsSystem<dim>::force_per_volume() const
+{
+  return matrices_->pressure_scale / matrices_->cell_size;
+}
+
+/// Each rank's displacements come first, its pressures behind them.
+template <int dim>
+void StaticsSystem<dim>::number_unknowns()
+{
+  Matrices &m = *matrices_;
+  Vector u = space_.displacement_vector(), p = space_.pressure_vector();
+  m.n_u = u.locally_owned_size();
+  m.n_p = m.water ? p.locally_owned_size() : 0;
+  PetscInt mine = m.n_u + m.n_p, first = 0;
+  MPI_Exscan(&mine, &first, 1, MPIU_INT, MPI_SUM, space_.communicator());
+  const auto number = [&](Vector &x, std::size_t n, PetscInt start, std::vector<PetscInt> &numbers) {
+    for (std::size_t i = 0; i < n; ++i)
+      x.local_element(i) = start + i; // exact: a PetscInt of 32 bits
+    x.update_ghost_values();
+    numbers.assign(x.begin(),
+                   x.begin() + x.get_partitioner()->locally_owned_size() + x.get_partitioner()->n_ghost_indices());
+  };
+  number(u, m.n_u, first, m.of_u);
+  number(p, m.n_p, first + m.n_u, m.of_p);
+  const auto find_unused = [&](Vector uses, const std::vector<unsigned> &of_cells, std::size_t n, unsigned start) {
+    for (unsigned i : of_cells)
+      uses.local_element(i) = 1;
+    uses.compress(dealii::VectorOperation::add);
+    for (unsigned i = 0; i < n; ++i)
+      if (uses.local_element(i) == 0)
+        m.unused.push_back(start + i);
+  };
+  find_unused(space_.displacement_vector(), space_.cell_dofs, m.n_u, 0);
+  find_unused(space_.pressure_vector(), space_.cell_pressures, m.n_p, m.n_u);
+}
+
+/// Entries cell by cell, row by row, then the whole diagonal.
+template <int dim>
+void StaticsSystem<dim>::preallocate()
+{
+  Matrices &m = *matrices_;
+  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
+  std::vector<PetscInt> rows, columns, cell_rows(n_u + n_i);
+  for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
+    {
+      for (std::size_t k = 0; k < n_u; ++k)
+        cell_rows[k] = m.of_u[space_.cell_dofs[cell * n_u + k]];
+      for (std::size_t k = 0; k < n_i; ++k)
+        cell_rows[n_u + k] = m.of_p[space_.cell_pressures[cell * n_i + k]];
+      for (PetscInt row : cell_rows)
+        {
+          rows.insert(rows.end(), cell_rows.size(), row);
+          columns.insert(columns.end(), cell_rows.begin(), cell_rows.end());
+        }
+    }
+  for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
+    {
+      rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
+      columns.push_back(rows.back());
+    }
+  m.values.assign(rows.size(), 0.0);
+  check(MatCreate(space_.communicator(), &m.whole));
+  check(MatSetSizes(m.whole, m.n_u + m.n_p, m.n_u + m.n_p, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(m.whole, MATAIJ));
+  check(MatSetPreallocationCOO(m.whole, rows.size(), rows.data(), columns.data()));
+  check(MatSetValuesCOO(m.whole, m.values.data(), INSERT_VALUES));
+  check(MatDuplicate(m.whole, MAT_DO_NOT_COPY_VALUES, &m.with_held));
+  check(MatSetOption(m.with_held, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  check(MatCreateVecs(m.whole, &m.in, &m.out));
+}
+
+template <int dim>
+void StaticsSystem<dim>::hold(const std::vector<unsigned> &displacements, const std::vector<unsigned> &pressures)
+{
+  Matrices &m = *matrices_;
+  std::vector<bool> is_held(m.n_u + m.n_p, false);
+  for (unsigned i : m.unused)
+    is_held[i] = true;
+  for (unsigned i : displacements)
+    is_held[i] = true;
+  if (m.water)
+    for (unsigned i : pressures)
+      is_held[m.n_u + i] = true;
+  std::vector<unsigned> held;
+  for (unsigned i = 0; i < is_held.size(); ++i)
+    if (is_held[i])
+      held.push_back(i);
+  if (held != m.held)
+    m.known_tangents.clear();
+  m.held = std::move(held);
+}
+
+template <int dim>
+void StaticsSystem<dim>::set_tangent(std::span<const Stiffness> tangents, double theta)
+{
+  Matrices &m = *matrices_;
+  int same = m.known_theta == theta &&
+             std::equal(tangents.begin(), tangents.end(), m.known_tangents.begin(), m.known_tangents.end());
+  if (space_.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, space_.communicator());
+  if (same)
+    return;
+  m.known_tangents.clear();
+  assemble(tangents, theta);
+  factorise();
+  m.known_theta = theta;
+  m.known_tangents.assign(tangents.begin(), tangents.end());
+}
+
+template <int dim>
+void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double theta)
+{
+  Matrices &m = *matrices_;
+  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_q = space_.points_per_cell();
+  const std::size_t n = n_u + (m.water ? space_.pressure_nodes_per_cell() : 0);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, n_u);
+  Eigen::MatrixXd k(n, n);
+  for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
+    {
+      k.setZero();
+      for (std::size_t q = cell * n_q; q < (cell + 1) * n_q; ++q)
+        {
+          strain_matrix(space_, q, b);
+          k.topLeftCorner(n_u, n_u) += space_.weight[q] * b.transpose() * (tangents[q] * b);
+        }
+      if (m.water)
+        {
+          const BiotCell &water = m.water->cell(cell);
+          const double scale = m.pressure_scale;
+          k.bottomLeftCorner(n - n_u, n_u) = -scale * water.g;
+          k.topRightCorner(n_u, n - n_u) = -scale * water.g.transpose();
+          k.bottomRightCorner(n - n_u, n - n_u) = -scale * scale * (water.s + theta * water.h);
+        }
+      Eigen::Map<Eigen::MatrixXd>(&m.values[cell * n * n], n, n) = k.transpose(); // row by row
+    }
+  check(MatSetValuesCOO(m.whole, m.values.data(), INSERT_VALUES));
+  check(MatCopy(m.whole, m.with_held, SAME_NONZERO_PATTERN));
+}
+
+/// The analysis does not look at values: a resumed run has the same pivots.
+template <int dim>
+void StaticsSystem<dim>::factorise()
+{
+  Matrices &m = *matrices_;
+  std::vector<PetscInt> rows;
+  for (unsigned i : m.held)
+    rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
+  check(MatZeroRowsColumns(m.with_held, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
+  MatFactorInfo info;
+  check(MatFactorInfoInitialize(&info));
+  if (!m.factor)
+    {
+      check(MatGetFactor(m.with_held, MATSOLVERMUMPS, MAT_FACTOR_LU, &m.factor));
+      check(MatMumpsSetIcntl(m.factor, 6, 0));   // no permutation by values
+      check(MatMumpsSetIcntl(m.factor, 8, 7));   // scaling found at each factorisation
+      check(MatMumpsSetIcntl(m.factor, 14, 60)); // per cent of spare room for pivots
+      check(MatLUFactorSymbolic(m.factor, m.with_held, nullptr, nullptr, &info));
+    }
+  check(MatLUFactorNumeric(m.factor, m.with_held, &info));
+  MatFactorError error;
+  check(MatFactorGetError(m.factor, &error));
+  if (error != MAT_FACTOR_NOERROR)
+    throw RunFailure("the tangent is singular: a part moves freely, or a soil has no stiffness");
+}
+
+template <int dim>
+void StaticsSystem<dim>::load(const Vector &u, double u_factor, const Vector &p, double p_factor) const
+{
+  const Matrices &m = *matrices_;
+  double *x;
+  check(VecGetArrayWrite(m.in, &x));
+  for (std::size_t i = 0; i < m.n_u; ++i)
+    x[i] = u_factor * u.local_element(i);
+  for (std::size_t i = 0; i < m.n_p; ++i)
+    x[m.n_u + i] = p_factor * p.local_element(i);
+  check(VecRestoreArrayWrite(m.in, &x));
+}
+
+template <int dim>
+void StaticsSystem<dim>::unload(Vector &u, double u_factor, Vector &p, double p_factor) const
+{
+  const Matrices &m = *matrices_;
+  const double *x;
+  check(VecGetArrayRead(m.out, &x));
+  for (std::size_t i = 0; i < m.n_u; ++i)
+    u.local_element(i) = u_factor * x[i];
+  for (std::size_t i = 0; i < m.n_p; ++i)
+    p.local_element(i) = p_factor * x[m.n_u + i];
+  check(VecRestoreArrayRead(m.out, &x));
+}
+
+template <int dim>
+void StaticsSystem<dim>::solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u,
+                               Vector &moved_p) const
+{
+  const Matrices &m = *matrices_;
+  const double scale = m.pressure_scale;
+  Vector given_u = space_.displacement_vector(), given_p = space_.pressure_vector(), rhs_u = r_u, rhs_p = r_p;
+  const auto entry = [&](Vector &u, Vector &p, unsigned i) -> double & {
+    return i < m.n_u ? u.local_element(i) : p.local_element(i - m.n_u);
+  };
+  for (unsigned i : m.held)
+    entry(given_u, given_p, i) = entry(du, dp, i);
+  load(given_u, 1, given_p, 1 / scale);
+  check(MatMult(m.whole, m.in, m.out));
+  unload(moved_u, 1, moved_p, 1 / scale);
+  rhs_u -= moved_u;
+  rhs_p -= moved_p;
+  for (unsigned i : m.held) // their rows say: scale x = scale given
+    entry(rhs_u, rhs_p, i) = entry(given_u, given_p, i) * (i < m.n_u ? scale : 1 / scale);
+  load(rhs_u, 1, rhs_p, scale);
+  check(MatSolve(m.factor, m.in, m.out));
+  unload(du, 1, dp, scale);
+}
+
+template class StaticsSystem<1>;
+template class StaticsSystem<2>;
+template class StaticsSystem<3>;
+} // namespace isostat

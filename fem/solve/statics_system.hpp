@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/water/biot_integrals.hpp"
+
+namespace isostat
+{
+/// The linear system of a Newton step of statics, symmetric for a symmetric tangent:
+///
+///     [  K     -G^T        ] [du]   [r_u]      K = int B^T C B
+///     [ -G   -(S + theta H)] [dp] = [r_p]      theta: time step over the leading coefficient of BDF, s
+///
+/// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
+/// size. Assembled with PETSc, factorised by MUMPS without symmetry (no tangent of a soil need have it). Held unknowns
+/// take given increments. The factor is kept as long as tangent, theta and held unknowns are the same numbers.
+/// tested: tests/fem/solve/statics_test.cpp
+template <int dim>
+class StaticsSystem
+{
+public:
+  /// @param water  null: no pore water; must outlive this   @param pressure_scale  Pa, about the skeleton's modulus
+  StaticsSystem(const Discretisation<dim> &space, const BiotOperator<dim> *water, double pressure_scale);
+  ~StaticsSystem();
+
+  /// Owned unknowns that are held from now on; others that no cell has are so anyway.
+  void hold(const std::vector<unsigned> &displacements, const std::vector<unsigned> &pressures);
+  /// @throws RunFailure  the tangent is singular: a body that moves freely, or a soil without stiffness
+  void set_tangent(std::span<const Stiffness> tangents, double theta);
+
+  /// du, dp of residuals r_u (N), r_p (m3) and of the increments that du, dp hold at held unknowns when called.
+  /// @param moved_u,moved_p  what the residuals lose by the held increments alone
+  void solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u, Vector &moved_p) const;
+
+  /// r_p counts in a residual as this force, N/m3: pressure scale over the size of a cell.
+  double force_per_volume() const;
+
+private:
+  struct Matrices;
+  void number_unknowns();
+  void preallocate();
+  void assemble(std::span<const Stiffness> tangents, double theta);
+  void factorise();
+  void load(const Vector &u, double u_factor, const Vector &p, double p_factor) const;
+  void unload(Vector &u, double u_factor, Vector &p, double p_factor) const;
+
+  const Discretisation<dim> &space_;
+  std::unique_ptr<Matrices> matrices_;
+};
+} // namespace isostat

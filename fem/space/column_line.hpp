@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/space/discretisation.hpp"
+
+namespace isostat
+{
+/// The vertical line of nodes and points nearest to x = y = 0, from the surface down: where profiles are taken. In a
+/// column these are all its points.   @pre the mesh is not shared out
+struct ColumnLine
+{
+  std::vector<std::size_t> points;  ///< numbers of the points
+  std::vector<double> point_depths; ///< m
+  std::vector<unsigned> nodes;      ///< displacement unknown along x of each node; y and z follow
+  std::vector<double> node_depths;  ///< m
+};
+
+/// tested: tests/apps/soil_column_test.py
+template <int dim>
+ColumnLine column_line(const Discretisation<dim> &space);
+
+/// The point nearest to a depth on that line, of all ranks.
+struct PointAtDepth
+{
+  long point = -1;  ///< number of the point on the rank that has it, -1 on the others
+  double depth = 0; ///< where it is, m
+};
+
+/// Collective.   @param depth  m below the surface
+template <int dim>
+PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth);
+} // namespace isostat

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/space/discretisation.hpp"
+
+#include <memory>
+
+namespace isostat
+{
+/// Coefficients of the pore water in each layer, as the solvers take them.
+struct PorousLayer
+{
+  double storage = 0;  ///< 1/Q = n/K_f for rigid grains, 1/Pa
+  double mobility = 0; ///< kb = k/(rho_f g), m2/(Pa s)
+};
+std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
+
+/// The implicit pressure of u-p dynamics (see dynamics.hpp). With the water's equation
+///
+///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt + L a_base = 0
+///     G_iA = int N_i div N_A,  S_ij = int N_i N_j/Q,  H_ij = int kb grad N_i grad N_j,  L_iA = int kb rho_f grad N_i
+///     N_A
+///
+/// and the momentum update v+ = v* + D G^T p with a diagonal D, the pressure solves
+///     (3S/(2 dt) + H + (G/2 + L/dt) D G^T) p = S (4p' - p'')/(2 dt) - (G/2 + L/dt) v* - (G/2 - L/dt) v- - L a_base .
+/// The matrix is constant: assembled and factorised once with PETSc (its own LU on one rank, MUMPS on several). Biot's
+/// coefficient is 1 (rigid grains).   tested: tests/fem/water/biot_test.cpp
+template <int dim>
+class PressureSystem
+{
+public:
+  /// @param update  D: v+ per unit force, for each displacement unknown (0 where it is fixed)
+  PressureSystem(const Discretisation<dim> &space, double time_step, const Vector &update);
+  ~PressureSystem();
+
+  /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2
+  void solve(const Vector &v_star, const Vector &v_before, const Vector &p_before, const Vector &p_before_that,
+             const std::array<double, 3> &base_acceleration, Vector &p) const;
+  /// f = G^T p.
+  void force(const Vector &p, Vector &f) const;
+
+private:
+  struct Matrices;
+  void hold(const Discretisation<dim> &space, void *matrix);
+  void make_base_flow(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers);
+
+  std::unique_ptr<Matrices> matrices_;
+};
+} // namespace isostat

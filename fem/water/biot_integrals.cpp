@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/water/biot_integrals.hpp"
+
+#include "fem/space/axes.hpp"
+
+namespace isostat
+{
+namespace
+{
+/// Values of other ranks that a vector's cells use are there while this lives.
+class WithGhosts
+{
+public:
+  explicit WithGhosts(const Vector &vector) : vector_(vector) { vector_.update_ghost_values(); }
+  ~WithGhosts() { vector_.zero_out_ghost_values(); }
+  WithGhosts(const WithGhosts &) = delete;
+  WithGhosts &operator=(const WithGhosts &) = delete;
+
+private:
+  const Vector &vector_;
+};
+
+Eigen::VectorXd gathered(const Vector &x, const unsigned *unknowns, std::size_t n)
+{
+  Eigen::VectorXd local(n);
+  for (std::size_t k = 0; k < n; ++k)
+    local[k] = x.local_element(unknowns[k]);
+  return local;
+}
+
+void scatter_add(const Eigen::VectorXd &local, const unsigned *unknowns, Vector &x)
+{
+  for (Eigen::Index k = 0; k < local.size(); ++k)
+    x.local_element(unknowns[k]) += local[k];
+}
+} // namespace
+
+template <int dim>
+BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, double fluid_density, std::size_t cell)
+{
+  const std::size_t n_a = space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
+  const Eigen::MatrixXd to_u = Eigen::MatrixXd::Zero(n_i, 3 * n_a), to_p = Eigen::MatrixXd::Zero(n_i, n_i);
+  BiotCell c{to_u, to_u, to_p, to_p};
+  for (std::size_t i = 0; i < n_i; ++i)
+    for (std::size_t q = 0; q < n_q; ++q)
+      {
+        const std::size_t point = cell * n_q + q;
+        const double w = space.weight[point], value = space.pressure_shape[q * n_i + i];
+        const double *slope = &space.pressure_gradient[(point * n_i + i) * dim];
+        for (std::size_t j = 0; j < n_i; ++j)
+          {
+            c.s(i, j) += w * layer.storage * value * space.pressure_shape[q * n_i + j];
+            for (int d = 0; d < dim; ++d)
+              c.h(i, j) += w * layer.mobility * slope[d] * space.pressure_gradient[(point * n_i + j) * dim + d];
+          }
+        for (std::size_t a = 0; a < n_a; ++a)
+          for (int d = 0; d < dim; ++d)
+            {
+              const std::size_t column = 3 * a + mesh_axes<dim>[d];
+              c.g(i, column) += w * value * space.gradient[(point * n_a + a) * dim + d];
+              c.l(i, column) += w * layer.mobility * fluid_density * slope[d] * space.shape[q * n_a + a];
+            }
+      }
+  return c;
+}
+
+template <int dim>
+BiotOperator<dim>::BiotOperator(const Discretisation<dim> &space) : space_(space)
+{
+  const SoilProfile &soil = space.mesh().soil;
+  const std::vector<PorousLayer> layers = porous_layers(soil);
+  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
+    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], soil.water.density, cell));
+}
+
+template <int dim>
+void BiotOperator<dim>::add_pore_force(const Vector &p, Vector &f) const
+{
+  const WithGhosts ghosts(p);
+  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = space_.pressure_nodes_per_cell();
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+    scatter_add(cells_[cell].g.transpose() * gathered(p, &space_.cell_pressures[cell * n_i], n_i),
+                &space_.cell_dofs[cell * n_u], f);
+  f.compress(dealii::VectorOperation::add);
+}
+
+template <int dim>
+void BiotOperator<dim>::add_water_volume(const Vector &u, const Vector &p, const Vector &p_now, double theta,
+                                         Vector &r) const
+{
+  const WithGhosts ghosts_u(u), ghosts_p(p), ghosts_now(p_now);
+  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = space_.pressure_nodes_per_cell();
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+    {
+      const BiotCell &c = cells_[cell];
+      const unsigned *dofs = &space_.cell_dofs[cell * n_u], *corners = &space_.cell_pressures[cell * n_i];
+      scatter_add(c.g * gathered(u, dofs, n_u) + c.s * gathered(p, corners, n_i) +
+                      theta * (c.h * gathered(p_now, corners, n_i)),
+                  corners, r);
+    }
+  r.compress(dealii::VectorOperation::add);
+}
+
+template class BiotOperator<1>;
+template class BiotOperator<2>;
+template class BiotOperator<3>;
+template BiotCell biot_cell<1>(const Discretisation<1> &, const PorousLayer &, double, std::size_t);
+template BiotCell biot_cell<2>(const Discretisation<2> &, const PorousLayer &, double, std::size_t);
+template BiotCell biot_cell<3>(const Discretisation<3> &, const PorousLayer &, double, std::size_t);
+} // namespace isostat

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/record/recorder.hpp"
+
+#include "base/error.hpp"
+#include "base/files/hdf5.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+
+const std::vector<RecordColumn> columns{{"time", "s"}, {"p", "Pa"}, {"e"}};
+
+class RecorderFiles : public TemporaryFolder
+{
+protected:
+  static void add(Recorder &recorder, int first, int last)
+  {
+    for (int i = first; i < last; ++i)
+      recorder.append(std::array{0.1 * i, 200e3 / (i + 1), 1.0 / 3});
+  }
+  std::vector<double> stored(const std::string &column) const
+  {
+    const hdf5::File file = hdf5::File::open(folder / "run" / "history.h5");
+    return file.root().group("history").read<double>(column);
+  }
+  std::string csv() const { return get(folder / "run" / "history.csv"); }
+};
+
+TEST_F(RecorderFiles, BothFormsHoldTheRows)
+{
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 3);
+  recorder.flush();
+  EXPECT_EQ(csv(), "time (s),p (Pa),e (-)\n0,200000,0.3333333333\n0.1,100000,0.3333333333\n"
+                   "0.2,66666.66667,0.3333333333\n");
+  EXPECT_EQ(stored("p"), (std::vector<double>{200e3, 100e3, 200e3 / 3}));
+  const hdf5::File file = hdf5::File::open(folder / "run" / "history.h5");
+  EXPECT_EQ(file.root().group("history").unit("p"), "Pa");
+  EXPECT_EQ(file.root().group("history").unit("e"), "-");
+}
+
+TEST_F(RecorderFiles, LinesAppearWholeAndInTime)
+{
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 100);
+  const std::string text = csv();
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + static_cast<int>(Recorder::rows_per_line_flush));
+}
+
+TEST_F(RecorderFiles, DestructorFlushes)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 5);
+  }
+  EXPECT_EQ(stored("e").size(), 5u);
+}
+
+TEST_F(RecorderFiles, LongHistoryReachesHdf5ByItself)
+{
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 5000);
+  EXPECT_EQ(stored("time").size(), 4097u);
+  recorder.flush();
+  EXPECT_EQ(stored("time").size(), 5000u);
+}
+
+TEST_F(RecorderFiles, ResumedEqualsUninterrupted)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 300);
+  }
+  const std::string text = csv();
+  const std::vector<double> p = stored("p");
+  std::ofstream(folder / "run" / "history.csv", std::ios::app) << "0.5,12"; // killed while writing
+  {
+    Recorder recorder(folder / "run", columns, 120);
+    EXPECT_EQ(recorder.n_rows(), 120u);
+    EXPECT_EQ(stored("p").size(), 120u);
+    add(recorder, 120, 300);
+  }
+  EXPECT_EQ(csv(), text);
+  EXPECT_EQ(stored("p"), p);
+}
+
+TEST_F(RecorderFiles, ResumeZeroStartsAnew)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 3);
+  }
+  Recorder recorder(folder / "run", {{"q", "Pa"}}, 0);
+  EXPECT_EQ(csv(), "q (Pa)\n");
+  EXPECT_TRUE(stored("q").empty());
+}
+
+TEST_F(RecorderFiles, WrongResumesAreInputErrorsAndChangeNothing)
+{
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 2); }), HasSubstr("history.csv"));
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 3);
+  }
+  const std::string text = csv();
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 4); }), HasSubstr("3 whole rows"));
+  EXPECT_THAT(message_of<InputError>([&] {
+                Recorder(folder / "run", {{"q", "Pa"}}, 2);
+              }),
+              HasSubstr("expected \"q (Pa)\""));
+  put("run/history.h5", "text");
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 2); }), HasSubstr("not an HDF5 file"));
+  EXPECT_EQ(csv(), text);
+}
+
+TEST_F(RecorderFiles, UnwritableFolderIsARunFailure)
+{
+  const auto file = put("a_file", "x");
+  EXPECT_THAT(message_of<RunFailure>([&] { Recorder(file / "run", columns); }), HasSubstr("cannot make the folder"));
+}
+
+/// A full disk, imitated by a limit on the size of files: whole lines stay, and rows are not lost once there is room.
+TEST_F(RecorderFiles, FullDiskKeepsWholeLinesAndWaitingRows)
+{
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 3);
+  recorder.flush();
+  const std::string before = csv();
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const auto old_signal = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{before.size() + 10, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  add(recorder, 3, 6);
+  const std::string message = message_of<RunFailure>([&] { recorder.flush(); });
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, old_signal);
+  EXPECT_THAT(message, HasSubstr("free space"));
+  EXPECT_EQ(csv(), before);
+  recorder.flush();
+  const std::string after = csv();
+  EXPECT_EQ(std::count(after.begin(), after.end(), '\n'), 7);
+  EXPECT_EQ(stored("p").size(), 6u);
+}
+} // namespace
+} // namespace isostat

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/batch/rve_material.hpp"
+
+#include "base/error.hpp"
+#include "coupling/batch/wave_moduli.hpp"
+#include "fem/material/elastic.hpp"
+#include "tests/coupling/rve_column.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+using test::column_increments;
+
+std::vector<Snapshot> specimens()
+{
+  return {test::soft_specimen(4), test::soft_specimen(9), test::soft_specimen(4, 50e3)};
+}
+
+std::vector<Stress> run(RveMaterial &material, int from, int to)
+{
+  std::vector<Stress> stresses(material.n_points());
+  for (int k = from; k < to; ++k)
+    {
+      material.trial(column_increments(material.n_points(), k), stresses);
+      material.commit();
+    }
+  return stresses;
+}
+
+Mat3 as_matrix(const Gradient &h)
+{
+  Mat3 m;
+  for (int k = 0; k < 9; ++k)
+    m(k / 3, k % 3) = h[k];
+  return m;
+}
+
+RveMaterialSettings drained()
+{
+  RveMaterialSettings settings;
+  settings.undrained = false;
+  return settings;
+}
+} // namespace
+
+TEST(RveMaterial, ABatchIsAsManySingleElements)
+{
+  for (bool undrained : {true, false})
+    {
+      RveMaterialSettings settings;
+      settings.undrained = undrained;
+      RveMaterial material(specimens(), settings, MPI_COMM_SELF);
+      RveSettings element;
+      element.least_steps = settings.least_steps;
+      element.frame << 1, 0, 0, 0, 0, -1, 0, 1, 0; // x = x, y = -z, z = y of the specimen
+      std::vector<Rve> alone;
+      for (const Snapshot &s : specimens())
+        alone.emplace_back(s, element);
+      std::vector<Stress> stresses(3);
+      for (int k = 0; k < 20; ++k)
+        {
+          const auto increments = column_increments(3, k);
+          material.trial(increments, stresses);
+          material.commit();
+          for (int i = 0; i < 3; ++i)
+            {
+              const Mat3 h = as_matrix(increments[i]);
+              const Mat3 s = (undrained ? alone[i].undrained(h) : alone[i].advance(h)).stress;
+              ASSERT_EQ(stresses[i], (Stress{s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2), s(0, 1)})) << k << " " << i;
+            }
+        }
+    }
+}
+
+// So a column's shear xz is the simple shear xy of the element tests to the bit.
+TEST(RveMaterial, ShearOfTheColumnIsThatOfTheElementTests)
+{
+  RveMaterial material({test::soft_specimen(4)}, {}, MPI_COMM_SELF);
+  RveSettings same;
+  same.least_steps = RveMaterialSettings{}.least_steps;
+  Rve test_element(test::soft_specimen(4), same);
+  Mat3 h = Mat3::Zero();
+  h(0, 1) = 1e-5;
+  std::vector<Gradient> increment(1, Gradient{});
+  increment[0][2] = 1e-5;
+  std::vector<Stress> stress(1);
+  for (int k = 0; k < 30; ++k)
+    {
+      material.trial(increment, stress);
+      material.commit();
+      const Mat3 s = test_element.undrained(h).stress;
+      ASSERT_EQ(stress[0], (Stress{s(0, 0), s(2, 2), s(1, 1), -s(1, 2), s(0, 1), -s(0, 2)})) << k;
+    }
+}
+
+TEST(RveMaterial, EachTrialStartsFromTheCommittedState)
+{
+  RveMaterial material(specimens(), {}, MPI_COMM_SELF);
+  std::vector<Stress> first(3), other(3), again(3);
+  for (int k = 0; k < 40; k += 4) // beyond the 500 steps after which the way back is shortened
+    {
+      run(material, k, k + 4);
+      material.trial(column_increments(3, 100 + k), first);
+      material.trial(column_increments(3, 200 + k, 1e-4), other);
+      material.trial(column_increments(3, 100 + k), again);
+      ASSERT_EQ(first, again) << k;
+      ASSERT_NE(first, other) << k;
+    }
+}
+
+TEST(RveMaterial, RollbackLeavesNoTrace)
+{
+  RveMaterial material(specimens(), {}, MPI_COMM_SELF), straight(specimens(), {}, MPI_COMM_SELF);
+  std::vector<Stress> stresses(3);
+  for (int k = 0; k < 30; k += 3)
+    {
+      material.trial(column_increments(3, 300 + k, 1e-4), stresses);
+      material.rollback();
+      material.commit(); // nothing to commit
+      EXPECT_EQ(run(material, k, k + 3), run(straight, k, k + 3));
+    }
+  EXPECT_EQ(material.pack(), straight.pack());
+  material.trial(column_increments(3, 7), stresses);
+  EXPECT_NE(material.element(0)->stress(), straight.element(0)->stress());
+  EXPECT_THROW(material.place(material.owners()), RunFailure);
+  material.rollback();
+  EXPECT_EQ(material.element(0)->stress(), straight.element(0)->stress());
+}
+
+TEST(RveMaterial, BytesGoOnToTheSameBits)
+{
+  RveMaterial material(specimens(), {}, MPI_COMM_SELF), other(specimens(), {}, MPI_COMM_SELF);
+  std::vector<Stress> stresses(3);
+  std::vector<WaveModuli> moduli(3), moduli_after(3);
+  run(material, 0, 10);
+  material.wave_moduli(moduli);
+  const auto committed = material.pack();
+  material.trial(column_increments(3, 77), stresses);
+  EXPECT_EQ(material.pack(), committed); // the trial is not in it
+  run(other, 0, 3);
+  other.unpack(committed);
+  EXPECT_EQ(other.pack(), committed);
+  material.rollback();
+  EXPECT_EQ(run(material, 10, 30), run(other, 10, 30));
+  EXPECT_EQ(material.pack(), other.pack());
+  other.wave_moduli(moduli_after); // kept, not found anew
+  EXPECT_EQ(moduli[1].p, moduli_after[1].p);
+  EXPECT_EQ(other.cost().stiffnesses, 0u);
+}
+
+TEST(RveMaterial, BytesOfAnotherMaterialAreRefused)
+{
+  RveMaterial material(specimens(), {}, MPI_COMM_SELF), two({specimens()[0], specimens()[1]}, {}, MPI_COMM_SELF),
+      live(specimens(), drained(), MPI_COMM_SELF);
+  auto bytes = material.pack();
+  EXPECT_THAT(message_of<InputError>([&] { two.unpack(bytes); }), testing::HasSubstr("3 points, expected 2"));
+  EXPECT_THROW(live.unpack(bytes), InputError);
+  bytes[bytes.size() / 2] ^= std::byte{1};
+  EXPECT_THROW(material.unpack(bytes), InputError);
+  EXPECT_THROW(material.unpack(std::span(bytes).first(bytes.size() - 9)), InputError);
+}
+
+TEST(RveMaterial, ThreadsAndTheirNumberChangeNoBit)
+{
+  RveMaterialSettings two;
+  two.threads = 2;
+  RveMaterial alone(specimens(), {}, MPI_COMM_SELF), shared(specimens(), two, MPI_COMM_SELF);
+  EXPECT_EQ(run(alone, 0, 20), run(shared, 0, 20));
+  EXPECT_EQ(alone.pack(), shared.pack());
+}
+
+TEST(RveMaterial, UndrainedKeepsVolume)
+{
+  RveMaterial closed(specimens(), {}, MPI_COMM_SELF), open(specimens(), drained(), MPI_COMM_SELF);
+  const double e = closed.element(1)->void_ratio();
+  run(closed, 0, 20);
+  EXPECT_NEAR(closed.element(1)->void_ratio(), e, 1e-12);
+  std::vector<Gradient> compressed(3, Gradient{});
+  for (Gradient &h : compressed)
+    h[8] = -1e-4;
+  std::vector<Stress> stresses(3);
+  open.trial(compressed, stresses);
+  open.commit();
+  EXPECT_NEAR(open.element(1)->void_ratio(), e - 1e-4 * (1 + e), 1e-7);
+}
+
+TEST(RveMaterial, RejectedIncrementsAreTakenInParts)
+{
+  RveMaterial material({test::soft_specimen(4)}, drained(), MPI_COMM_SELF);
+  RveSettings element;
+  element.frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  Rve alone(test::soft_specimen(4), element);
+  std::vector<Gradient> large(1, Gradient{});
+  large[0][2] = 0.03; // beyond what an element takes at once
+  std::vector<Stress> stress(1), again(1);
+  material.trial(large, stress);
+  for (int k = 0; k < 4; ++k)
+    alone.advance(Mat3(as_matrix(large[0]) / 4)); // simple shear: powers of H vanish
+  EXPECT_EQ(stress[0][4], alone.stress()(0, 2));
+  material.trial(column_increments(1, 1), again);
+  material.trial(large, again);
+  EXPECT_EQ(stress, again);
+}
+
+TEST(RveMaterial, AFailureNamesThePointAndChangesNothing)
+{
+  RveMaterial material(specimens(), {}, MPI_COMM_SELF);
+  run(material, 0, 3);
+  const auto before = material.pack();
+  auto increments = column_increments(3, 3);
+  increments[1][2] = std::nan("");
+  std::vector<Stress> stresses(3);
+  const std::string message = message_of<RunFailure>([&] { material.trial(increments, stresses); });
+  EXPECT_THAT(message, testing::HasSubstr("rve: point 1: "));
+  EXPECT_THAT(message, testing::HasSubstr("not a number"));
+  increments[1][2] = 0.9; // too large, even in 64 parts
+  increments[2][2] = 0.9;
+  EXPECT_THAT(message_of<RunFailure>([&] { material.trial(increments, stresses); }),
+              testing::HasSubstr("rve: point 1: an increment of displacement gradient of 0.9"));
+  material.commit();
+  EXPECT_EQ(material.pack(), before);
+}
+
+TEST(RveMaterial, RealisationsAreAveraged)
+{
+  RveMaterialSettings pairs;
+  pairs.realisations = 2;
+  const std::vector<Snapshot> four = {test::soft_specimen(4), test::soft_specimen(9), test::soft_specimen(4, 50e3),
+                                      test::soft_specimen(9, 50e3)};
+  RveMaterial mean(four, pairs, MPI_COMM_SELF), single(four, {}, MPI_COMM_SELF);
+  auto increments = column_increments(2, 5);
+  std::vector<Stress> of_two(2), of_four(4), deviation(2);
+  mean.trial(increments, of_two);
+  mean.commit();
+  single.trial(std::vector{increments[0], increments[0], increments[1], increments[1]}, of_four);
+  mean.scatter(deviation);
+  for (int i = 0; i < 2; ++i)
+    for (int c = 0; c < 6; ++c)
+      {
+        EXPECT_EQ(of_two[i][c], (of_four[2 * i][c] + of_four[2 * i + 1][c]) / 2);
+        EXPECT_NEAR(deviation[i][c], std::abs(of_four[2 * i][c] - of_four[2 * i + 1][c]) / std::sqrt(2),
+                    1e-9 * std::abs(of_two[i][2]));
+      }
+  EXPECT_THROW(RveMaterial(specimens(), pairs, MPI_COMM_SELF), InputError); // three cannot be shared out
+}
+
+TEST(RveMaterial, TangentIsThatOfTheElementAndAnswersForSmallTrials)
+{
+  RveMaterial material({test::soft_specimen(4)}, drained(), MPI_COMM_SELF),
+      closed({test::soft_specimen(4)}, {}, MPI_COMM_SELF);
+  std::vector<Stiffness> c(1), cu(1), skeleton(1);
+  material.stiffness(c);
+  EXPECT_EQ(c[0], material.element(0)->stiffness());
+  closed.stiffness(cu);
+  closed.skeleton_stiffness(skeleton);
+  EXPECT_EQ(skeleton[0], c[0]);
+  EXPECT_LT((cu[0] * Stiffness::Identity().leftCols<3>().rowwise().sum()).norm(), 1e-9 * c[0].norm());
+  EXPECT_EQ(cu[0].col(4), c[0].col(4));
+  std::vector<WaveModuli> moduli(1);
+  material.wave_moduli(moduli);
+  EXPECT_GE(moduli[0].p, c[0](2, 2) * (1 - 1e-12));
+  EXPECT_GE(moduli[0].s, std::min(c[0](3, 3), c[0](4, 4)) * (1 - 1e-12));
+  EXPECT_LT(moduli[0].s, moduli[0].p);
+}
+
+TEST(RveMaterial, WaveModuliAreFoundAnewWhenThePressureRises)
+{
+  RveMaterialSettings settings = drained();
+  RveMaterial material({test::soft_specimen(4)}, settings, MPI_COMM_SELF);
+  std::vector<WaveModuli> moduli(1);
+  std::vector<Stress> stress(1);
+  std::vector<Gradient> compressed(1, Gradient{{0, 0, 0, 0, 0, 0, 0, 0, -2e-4}});
+  material.wave_moduli(moduli);
+  material.wave_moduli(moduli);
+  EXPECT_EQ(material.cost().stiffnesses, 1u);
+  material.trial(compressed, stress);
+  material.wave_moduli(moduli); // the committed state is the same
+  EXPECT_EQ(material.cost().stiffnesses, 1u);
+  double p = 0;
+  for (int k = 0; k < 5 && p < 150e3; ++k)
+    {
+      material.trial(compressed, stress);
+      material.commit();
+      p = -(stress[0][0] + stress[0][1] + stress[0][2]) / 3;
+    }
+  ASSERT_GT(p, 126e3);
+  material.wave_moduli(moduli);
+  EXPECT_EQ(material.cost().stiffnesses, 2u);
+}
+
+TEST(WaveModuli, OfIsotropicAndCubicBodies)
+{
+  const WaveModuli isotropic = greatest_wave_moduli(isotropic_stiffness(300e6, 100e6));
+  EXPECT_NEAR(isotropic.p, 300e6 + 400e6 / 3, 1);
+  EXPECT_NEAR(isotropic.s, 100e6, 1);
+  Stiffness cubic = isotropic_stiffness(300e6, 100e6);
+  cubic.diagonal().tail<3>().setConstant(150e6); // stiffest along [111]: (C11 + 2 C12 + 4 C44)/3
+  const double along_111 = (cubic(0, 0) + 2 * cubic(0, 1) + 4 * 150e6) / 3;
+  EXPECT_LE(greatest_wave_moduli(cubic).p, along_111 * (1 + 1e-12));
+  EXPECT_NEAR(greatest_wave_moduli(cubic).p, along_111, 5e-3 * along_111);
+  EXPECT_NEAR(greatest_wave_moduli(cubic).s, 150e6, 1);
+}
+} // namespace isostat

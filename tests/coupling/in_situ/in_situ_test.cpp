@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/in_situ/in_situ.hpp"
+
+#include "base/error.hpp"
+#include "coupling/in_situ/in_situ_cache.hpp"
+#include "tests/coupling/rve_column.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <chrono>
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+
+class InSitu : public TemporaryFolder
+{
+protected:
+  InSitu()
+  {
+    settings.library = folder / "library.h5";
+    settings.cache = folder / "cache.h5";
+    test::write_library(settings.library);
+  }
+  RveMaterialSettings settings;
+};
+
+LibraryEntry entry(const std::string &name, double seed, double density, double vertical, double k0)
+{
+  return {name, {}, {{"seed", seed}, {"relative_density", density}, {"vertical_stress_Pa", vertical}, {"K0", k0}}};
+}
+} // namespace
+
+TEST(NearestEntry, IsNearestInStressOfTheDensityAndSeed)
+{
+  const std::vector<LibraryEntry> entries = {entry("a", 1, 0.50, 50e3, 1),    entry("b", 1, 0.50, 100e3, 1),
+                                             entry("c", 1, 0.50, 100e3, 0.5), entry("d", 7, 0.51, 100e3, 1),
+                                             entry("e", 1, 0.80, 100e3, 1),   entry("f", 1, 0.50, 100e3, 1)};
+  EXPECT_EQ(nearest_entry(entries, {0.5, 0}, 90e3, 90e3).name, "b"); // f is the same, but later
+  EXPECT_EQ(nearest_entry(entries, {0.5, 0}, 90e3, 45e3).name, "c");
+  EXPECT_EQ(nearest_entry(entries, {0.5, 0}, 20e3, 20e3).name, "a");
+  EXPECT_EQ(nearest_entry(entries, {0.5, 1}, 20e3, 20e3).name, "d");
+  EXPECT_EQ(nearest_entry(entries, {0.8, 0}, 20e3, 20e3).name, "e");
+  EXPECT_THAT(message_of<InputError>([&] {
+                nearest_entry(entries, {0.5, 2}, 1e4, 1e4);
+              }),
+              AllOf(HasSubstr("2 realisations of D_r within 0.05 of 0.5, the soil needs 3"), HasSubstr("sigma_v")));
+  EXPECT_THROW(nearest_entry(entries, {0.65, 0}, 1e4, 1e4), InputError);
+}
+
+TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
+{
+  const std::vector<Stress> wanted = {test::in_situ(70e3, 0.5), test::in_situ(40e3, 1), test::in_situ(10e3, 0.6)};
+  const std::vector<SpecimenWish> wishes = {{0.5, 0}, {0.5, 1}, {0.5, 0}};
+  const auto begin = std::chrono::steady_clock::now();
+  RveMaterial first(wishes, settings, MPI_COMM_SELF);
+  first.set_initial_stress(wanted);
+  const auto middle = std::chrono::steady_clock::now();
+  std::vector<Stress> stress(3);
+  first.trial(std::vector<Gradient>(3, Gradient{}), stress);
+  for (int i = 0; i < 3; ++i)
+    for (int c = 0; c < 6; ++c)
+      EXPECT_NEAR(stress[i][c], wanted[i][c], -0.01 * (wanted[i][0] + wanted[i][1] + wanted[i][2]) / 3) << i << c;
+  const auto start = std::chrono::steady_clock::now();
+  RveMaterial second(wishes, settings, MPI_COMM_SELF);
+  second.set_initial_stress(wanted);
+  const double fast = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_EQ(first.pack(), second.pack());
+  std::printf("three elements of 200 grains: %.2f s at first, %.3f s from the cache\n",
+              std::chrono::duration<double>(middle - begin).count(), fast);
+  EXPECT_LT(fast, 0.3 * std::chrono::duration<double>(middle - begin).count());
+  const auto entries = list_library(settings.cache);
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_THAT(entries[0].text("source"), testing::StartsWith("s000"));
+}
+
+TEST_F(InSitu, IsAtRest)
+{
+  const std::vector<Stress> wanted = {test::in_situ(70e3, 0.5), test::in_situ(5e3, 0.5), test::in_situ(2e3, 0.5)};
+  RveMaterial material(std::vector<SpecimenWish>(3), settings, MPI_COMM_SELF);
+  material.set_initial_stress(wanted);
+  std::vector<Stress> before(3), after(3);
+  const std::vector<Gradient> nothing(3, Gradient{}), tiny(3, Gradient{{0, 0, 1e-13, 0, 0, 0, 0, 0, 0}});
+  material.trial(nothing, before);
+  for (int k = 0; k < 1000; ++k) // a time step each
+    {
+      material.trial(tiny, after);
+      material.commit();
+    }
+  double worst = 0;
+  for (int i = 0; i < 3; ++i)
+    {
+      const double p = -(before[i][0] + before[i][1] + before[i][2]) / 3;
+      EXPECT_LT(material.element(i)->kinetic_stress().norm(), 1e-4 * p);
+      for (int c = 0; c < 6; ++c)
+        worst = std::max(worst, std::abs(after[i][c] - before[i][c]) / p);
+    }
+  EXPECT_LT(worst, 0.01);
+  std::printf("after 1,000 time steps at rest no stress has moved by more than %.1e of p'\n", worst);
+  material.set_initial_stress(wanted);
+  material.trial(nothing, after);
+  EXPECT_EQ(before, after);
+}
+
+TEST_F(InSitu, WithoutLateralStrainThePackingChoosesItsK0)
+{
+  settings.in_situ.path = InSituPath::no_lateral_strain;
+  RveMaterial material(std::vector<SpecimenWish>(1), settings, MPI_COMM_SELF);
+  material.set_initial_stress(std::vector{test::in_situ(150e3, 0.5)});
+  const Mat3 stress = material.element(0)->stress();
+  EXPECT_NEAR(stress(2, 2), -150e3, 1500);
+  EXPECT_GT(stress(0, 0), -145e3);
+  const PeriodicCell cell = material.element(0)->save().grains.cell, start = *test::soft_specimen(4, 100e3).cell;
+  EXPECT_NEAR(cell.edges(0, 0) / start.edges(0, 0), 1, 1e-12);
+  EXPECT_LT(cell.edges(1, 1), start.edges(1, 1));
+}
+
+TEST_F(InSitu, GivenElementsGoToTheirStressToo)
+{
+  RveMaterial material({test::soft_specimen(9)}, settings, MPI_COMM_SELF);
+  material.set_initial_stress(std::vector{test::in_situ(120e3, 0.7)});
+  EXPECT_NEAR(material.element(0)->stress()(2, 2), -120e3, 1200);
+}
+
+TEST_F(InSitu, WhatCannotBeIsSaid)
+{
+  RveMaterial material(std::vector<SpecimenWish>(2), settings, MPI_COMM_SELF);
+  const auto with = [&](const Stress &second) {
+    return [&, second] { material.set_initial_stress(std::vector{test::in_situ(70e3, 0.5), second}); };
+  };
+  EXPECT_THAT(message_of<InputError>(with(test::in_situ(100, 0.5))),
+              AllOf(HasSubstr("rve: point 1: sigma'_v = 0.1 kPa"), HasSubstr("below 0.5 kPa")));
+  EXPECT_THAT(message_of<InputError>(with(test::in_situ(-70e3, 0.5))), HasSubstr("compressed in all directions"));
+  settings.in_situ.greatest_steps = 3000;
+  RveMaterial hasty(std::vector<SpecimenWish>(1), settings, MPI_COMM_SELF);
+  EXPECT_THAT(message_of<RunFailure>([&] { hasty.set_initial_stress(std::vector{test::in_situ(60e3, 0.02)}); }),
+              AllOf(HasSubstr("rve: point 0: sigma'_v = 60 kPa"), HasSubstr("not reached from a specimen at")));
+  std::vector<Stress> stress(1);
+  EXPECT_THAT(message_of<RunFailure>([&] { hasty.trial(std::vector<Gradient>(1), stress); }),
+              HasSubstr("set_initial_stress"));
+  RveMaterialSettings lost;
+  lost.library = folder / "none.h5";
+  RveMaterial nowhere(std::vector<SpecimenWish>(1), lost, MPI_COMM_SELF);
+  EXPECT_THAT(message_of<InputError>([&] { nowhere.set_initial_stress(std::vector{test::in_situ(60e3, 1)}); }),
+              HasSubstr("none.h5"));
+}
+} // namespace isostat

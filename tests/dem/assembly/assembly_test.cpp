@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/assembly/assembly.hpp"
+
+#include "base/error.hpp"
+#include "dem/io/text_tables.hpp"
+#include "dem/measure/stress.hpp"
+#include "dem/measure/unbalanced.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <limits>
+
+namespace isostat
+{
+namespace
+{
+constexpr double dt = 5e-8;
+
+/// 1,000 grains at 200 kPa with the history of their contacts.
+Snapshot packing_at_pressure()
+{
+  LawParams law;
+  law.friction = std::tan(18 * M_PI / 180);
+  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/vloose", "comp", "step0", law, 2650);
+}
+
+Assembly make_assembly(const Snapshot &start, bool measure_energy = false)
+{
+  Assembly assembly(start);
+  assembly.time_step = dt;
+  assembly.measure_energy = measure_energy;
+  return assembly;
+}
+
+/// Walls of a fast compression along y at constant volume.
+RigidBox next_box(const RigidBox &box)
+{
+  const Vec3 way = 0.5 * dt * 20 * Vec3(0.5, -1, 0.5).cwiseProduct(box.edges());
+  return {box.lower - way, box.upper + way};
+}
+
+void shear(Assembly &assembly, int steps)
+{
+  for (int step = 0; step < steps; ++step)
+    {
+      assembly.compute_forces();
+      assembly.move(next_box(assembly.box()));
+    }
+}
+
+bool same_bits(const AlignedVector<double> &a, const AlignedVector<double> &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 8 * a.size()) == 0;
+}
+
+void expect_same_motion(const Assembly &a, const Assembly &b)
+{
+  EXPECT_EQ(a.step(), b.step());
+  EXPECT_EQ(a.time(), b.time());
+  EXPECT_EQ(a.box().lower, b.box().lower);
+  EXPECT_EQ(a.box().upper, b.box().upper);
+  EXPECT_TRUE(same_bits(a.packing().position, b.packing().position));
+  EXPECT_TRUE(same_bits(a.packing().velocity, b.packing().velocity));
+  EXPECT_TRUE(same_bits(a.packing().spin, b.packing().spin));
+  EXPECT_EQ(a.wall_forces(), b.wall_forces());
+}
+
+void expect_same_contacts(const Snapshot &a, const Snapshot &b)
+{
+  ASSERT_EQ(a.contacts.size(), b.contacts.size());
+  for (std::size_t c = 0; c < a.contacts.size(); ++c)
+    {
+      EXPECT_EQ(a.contacts[c].first, b.contacts[c].first);
+      EXPECT_EQ(a.contacts[c].second, b.contacts[c].second);
+      EXPECT_EQ(a.contacts[c].history.normal, b.contacts[c].history.normal);
+      EXPECT_EQ(a.contacts[c].history.shear_force, b.contacts[c].history.shear_force);
+      EXPECT_EQ(a.contacts[c].history.bending_moment, b.contacts[c].history.bending_moment);
+      EXPECT_EQ(a.contacts[c].history.twisting_moment, b.contacts[c].history.twisting_moment);
+    }
+}
+
+void expect_same_energy(const EnergyBalance &a, const EnergyBalance &b)
+{
+  EXPECT_EQ(a.boundary_work, b.boundary_work);
+  EXPECT_EQ(a.kinetic, b.kinetic);
+  EXPECT_EQ(a.elastic, b.elastic);
+  EXPECT_EQ(a.sliding, b.sliding);
+  EXPECT_EQ(a.rolling, b.rolling);
+  EXPECT_EQ(a.released, b.released);
+  EXPECT_EQ(a.damping, b.damping);
+  EXPECT_EQ(a.created, b.created);
+}
+
+/// The run that stopped, taken up from what a checkpoint keeps.
+Assembly resumed(const Assembly &stopped)
+{
+  Assembly next = make_assembly(stopped.checkpoint(), stopped.measure_energy);
+  next.damping = stopped.damping;
+  next.tally = stopped.tally;
+  next.set_boundary_memory(stopped.boundary_memory());
+  return next;
+}
+
+std::string failure_of(Snapshot start, int steps_before)
+{
+  start.step = 40;
+  Assembly assembly = make_assembly(start);
+  try
+    {
+      for (int step = 0; step <= steps_before; ++step)
+        {
+          assembly.compute_forces();
+          assembly.move(assembly.box());
+        }
+    }
+  catch (const RunFailure &failure)
+    {
+      return failure.what();
+    }
+  return "no failure";
+}
+} // namespace
+
+TEST(Assembly, StressesAreThoseOfTheMeasures)
+{
+  Assembly assembly = make_assembly(packing_at_pressure());
+  for (const int steps : {0, 300})
+    {
+      shear(assembly, steps);
+      assembly.compute_forces();
+      const Snapshot s = assembly.snapshot();
+      const Vec3 wall = wall_stress(s), contact = contact_stress(s).diagonal();
+      const double wall_error = (assembly.wall_stress() - wall).norm() / wall.norm();
+      const double contact_error = (assembly.contact_stress() - contact).norm() / contact.norm();
+      std::printf("after %d steps: wall stress %.1e, contact stress %.1e\n", steps, wall_error, contact_error);
+      EXPECT_LE(wall_error, 1e-12);
+      EXPECT_LE(contact_error, 1e-12);
+      assembly.move(next_box(assembly.box()));
+    }
+}
+
+TEST(Assembly, UnbalancedForceIsThatOfTheMeasure)
+{
+  Assembly assembly = make_assembly(packing_at_pressure());
+  for (const int steps : {0, 300})
+    {
+      shear(assembly, steps);
+      assembly.compute_forces();
+      const double measured = unbalanced_force(assembly.snapshot());
+      // at rest it is a difference of nearly equal forces: round-off counts against 1
+      EXPECT_NEAR(assembly.unbalanced_force_ratio(), measured, 1e-12) << "after " << steps << " steps";
+      assembly.move(next_box(assembly.box()));
+    }
+}
+
+TEST(Assembly, SnapshotHoldsEveryTouchingPair)
+{
+  Assembly assembly = make_assembly(packing_at_pressure());
+  shear(assembly, 100);
+  assembly.compute_forces();
+  const Snapshot s = assembly.snapshot();
+  std::size_t touching = 0;
+  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
+    for (std::size_t j = i + 1; j < s.grains.n_grains(); ++j)
+      touching += (s.grains.centre(j) - s.grains.centre(i)).norm() < s.grains.radius(i) + s.grains.radius(j);
+  EXPECT_EQ(s.contacts.size(), touching);
+  double push = 0;
+  for (const WallContact &c : s.wall_contacts)
+    push += c.normal_force;
+  double walls = 0;
+  for (double force : assembly.wall_forces())
+    walls += force;
+  EXPECT_NEAR(push, walls, 1e-12 * walls);
+}
+
+TEST(Assembly, TwoRunsAreEqualToTheBit)
+{
+  Assembly a = make_assembly(packing_at_pressure(), true), b = make_assembly(packing_at_pressure(), true);
+  shear(a, 700);
+  shear(b, 700);
+  a.compute_forces();
+  b.compute_forces();
+  expect_same_motion(a, b);
+  expect_same_contacts(a.snapshot(), b.snapshot());
+  expect_same_energy(a.energy(), b.energy());
+}
+
+TEST(Assembly, MeasuringChangesNoBit)
+{
+  Assembly plain = make_assembly(packing_at_pressure()), watched = make_assembly(packing_at_pressure(), true);
+  shear(plain, 300);
+  for (int step = 0; step < 300; ++step)
+    {
+      watched.compute_forces();
+      if (step % 10 == 0)
+        {
+          watched.snapshot();
+          watched.energy();
+          watched.contact_stress();
+          watched.unbalanced_force_ratio();
+        }
+      watched.move(next_box(watched.box()));
+    }
+  expect_same_motion(plain, watched);
+}
+
+TEST(Assembly, GoesOnFromACheckpointToTheBit)
+{
+  for (const bool measure_energy : {false, true})
+    {
+      Assembly whole = make_assembly(packing_at_pressure(), measure_energy);
+      shear(whole, 700);
+      Assembly after = resumed(whole);
+      // another list of pairs: built here, not 700 steps ago, and with the first skin
+      const std::uint64_t rebuilds = whole.verlet_list().n_rebuilds();
+      EXPECT_NE(after.contacts().n_pairs(), whole.contacts().n_pairs());
+      shear(whole, 500);
+      shear(after, 500);
+      EXPECT_GT(whole.verlet_list().n_rebuilds(), rebuilds);
+      whole.compute_forces();
+      after.compute_forces();
+      expect_same_motion(whole, after);
+      expect_same_contacts(whole.snapshot(), after.snapshot());
+      expect_same_energy(whole.energy(), after.energy());
+    }
+}
+
+TEST(Assembly, SwitchingFrictionOffForgetsAndOnStartsAnew)
+{
+  Assembly assembly = make_assembly(packing_at_pressure());
+  LawParams frictionless = assembly.law();
+  frictionless.friction = 0;
+  assembly.set_law(frictionless);
+  assembly.compute_forces();
+  for (const Contact &c : assembly.snapshot().contacts)
+    EXPECT_EQ(c.history.shear_force, Vec3::Zero());
+  EXPECT_TRUE(assembly.checkpoint().contacts.empty());
+}
+
+TEST(Assembly, GravityAcceleratesAFreeGrain)
+{
+  Snapshot s;
+  s.grains = make_packing({Vec3(0.5, 0.5, 0.5)}, {1e-3}, 2650);
+  s.box.upper = Vec3::Ones();
+  Assembly assembly = make_assembly(s);
+  assembly.damping = 0;
+  assembly.gravity = Vec3(0, 0, -9.81);
+  shear(assembly, 100);
+  EXPECT_NEAR(assembly.packing().linear_velocity(0).z(), -9.81 * 100 * dt, 1e-15);
+}
+
+TEST(Assembly, FailureNamesStepAndGrain)
+{
+  using testing::HasSubstr;
+  Snapshot fast = packing_at_pressure();
+  for (std::uint32_t &id : fast.grains.id)
+    id += 5000; // the number in the specimen, not the place in memory
+  fast.grains.set_linear_velocity(321, Vec3(0, 500, 0));
+  EXPECT_THAT(failure_of(fast, 0), HasSubstr("step 40: grain 5321 moves at"));
+
+  Snapshot undefined = packing_at_pressure();
+  undefined.grains.set_linear_velocity(17, Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0));
+  EXPECT_THAT(failure_of(undefined, 0), HasSubstr("step 40: the velocity of grain 17 is not a number"));
+
+  // a spin that is not a number stops the run in its own step
+  Snapshot spinning = packing_at_pressure();
+  spinning.grains.set_angular_velocity(spinning.contacts[0].first,
+                                       Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+  EXPECT_THAT(failure_of(spinning, 0), HasSubstr("is not a number"));
+
+  EXPECT_EQ(failure_of(packing_at_pressure(), 20), "no failure");
+}
+
+TEST(Assembly, StateTakesAtMost400BytesPerGrainWhenEachTouchesFive)
+{
+  const Assembly assembly = [] {
+    Assembly a = make_assembly(packing_at_pressure());
+    a.compute_forces();
+    return a;
+  }();
+  const double grains = static_cast<double>(assembly.packing().n_grains());
+  const double contacts = static_cast<double>(assembly.snapshot().contacts.size());
+  const MemoryUse memory = assembly.memory();
+  const double per_contact = 8 + 8 * 12, per_grain = 3 * 32 + 4, padding = 2 * 3 * 32;
+  EXPECT_EQ(static_cast<double>(memory.state), per_grain * grains + padding + per_contact * contacts);
+  EXPECT_LE(per_grain + per_contact * 5 / 2, 400);
+  EXPECT_LE(static_cast<double>(memory.working), 400 * grains);
+}
+
+TEST(Assembly, ComputingForcesTwiceIsTheSameAsOnce)
+{
+  Assembly once = make_assembly(packing_at_pressure()), twice = once;
+  shear(once, 50);
+  for (int step = 0; step < 50; ++step)
+    {
+      twice.compute_forces();
+      twice.unbalanced_force_ratio();
+      twice.compute_forces();
+      twice.move(next_box(twice.box()));
+    }
+  expect_same_motion(once, twice);
+}
+} // namespace isostat

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/rve/rve.hpp"
+
+#include "base/error.hpp"
+#include "dem/measure/stress.hpp"
+#include "tests/support/periodic.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace isostat
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+const Snapshot &specimen() { return test::periodic_specimen(300, 8); }
+
+Mat3 simple_shear(double gamma)
+{
+  Mat3 h = Mat3::Zero();
+  h(0, 1) = gamma;
+  return h;
+}
+
+/// A history with shear in three planes, extension and rotation: no two increments alike.
+Mat3 increment(int k)
+{
+  Mat3 h;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      h(i, j) = 2e-5 * std::sin(1.0 + 0.7 * k + 2.1 * i + 3.7 * j);
+  return h;
+}
+
+void run(Rve &rve, int from, int to)
+{
+  for (int k = from; k < to; ++k)
+    ASSERT_EQ(rve.undrained(increment(k)).outcome, RveOutcome::accepted);
+}
+
+void expect_same_bits(const RveState &a, const RveState &b)
+{
+  EXPECT_EQ(a.grains.grains, b.grains.grains);
+  EXPECT_EQ(a.grains.pairs, b.grains.pairs);
+  EXPECT_EQ(a.grains.history, b.grains.history);
+  EXPECT_EQ(a.grains.virial, b.grains.virial);
+  EXPECT_EQ(a.grains.cell.edges, b.grains.cell.edges);
+  EXPECT_EQ(a.grains.cell.rotation, b.grains.cell.rotation);
+  EXPECT_EQ(a.grains.step, b.grains.step);
+  EXPECT_EQ(a.grains.time, b.grains.time);
+  EXPECT_EQ(a.drive.rate, b.drive.rate);
+  EXPECT_EQ(a.drive.steps_in_stage, b.drive.steps_in_stage);
+}
+} // namespace
+
+TEST(Rve, StressIsThatOfTheGrainsAsTheyAre)
+{
+  Rve rve(specimen(), {});
+  run(rve, 0, 3);
+  const Mat3 sigma = contact_stress(rve.snapshot());
+  EXPECT_LT((sigma - sigma.transpose()).norm(), 1e-4 * sigma.norm()); // moments are not quite in balance
+  EXPECT_LT((rve.stress() - 0.5 * (sigma + sigma.transpose())).norm(), 1e-9 * sigma.norm());
+  EXPECT_LT(rve.kinetic_stress().norm(), 1e-3 * sigma.norm());
+}
+
+TEST(Rve, RestoreGoesOnToTheSameBits)
+{
+  Rve rve(specimen(), {});
+  run(rve, 0, 5);
+  const RveState safe = rve.save();
+  run(rve, 5, 40);
+  const std::uint64_t steps = rve.assembly().step() - safe.grains.step;
+  EXPECT_GT(steps, 1000u);
+  const RveState once = rve.save();
+  rve.restore(safe);
+  expect_same_bits(rve.save(), safe);
+  run(rve, 5, 40);
+  expect_same_bits(rve.save(), once);
+}
+
+TEST(Rve, SavingAndLookingChangeNothing)
+{
+  Rve watched(specimen(), {}), alone(specimen(), {});
+  for (int k = 0; k < 10; ++k)
+    {
+      run(watched, k, k + 1);
+      const RveState state = watched.save();
+      (void)watched.stress();
+      (void)watched.snapshot();
+      watched.restore(state);
+      run(alone, k, k + 1);
+    }
+  expect_same_bits(watched.save(), alone.save());
+}
+
+TEST(Rve, BytesGoOnToTheSameBits)
+{
+  Rve rve(specimen(), {});
+  run(rve, 0, 5);
+  Rve copy = Rve::unpack(rve.pack(), {});
+  expect_same_bits(copy.save(), rve.save());
+  EXPECT_EQ(copy.cost().steps, rve.cost().steps);
+  run(rve, 5, 40);
+  run(copy, 5, 40);
+  expect_same_bits(copy.save(), rve.save());
+  EXPECT_EQ(copy.stress(), rve.stress());
+}
+
+// Runs only in the process that BytesGoOnInAnotherProcess starts.
+TEST(RveChild, GoesOnFromAFile)
+{
+  const char *path = std::getenv("ISOSTAT_PACKED_RVE");
+  if (!path)
+    GTEST_SKIP() << "started by RveProcess.BytesGoOnInAnotherProcess";
+  std::ifstream in(path, std::ios::binary);
+  const std::vector<char> read((std::istreambuf_iterator<char>(in)), {});
+  Rve rve = Rve::unpack(std::as_bytes(std::span(read)), {});
+  run(rve, 5, 40);
+  const RveState state = rve.save();
+  std::ofstream out(std::string(path) + ".out", std::ios::binary);
+  out.write(reinterpret_cast<const char *>(state.grains.grains.data()),
+            static_cast<std::streamsize>(8 * state.grains.grains.size()));
+}
+
+TEST(RveProcess, BytesGoOnInAnotherProcess)
+{
+  Rve rve(specimen(), {});
+  run(rve, 0, 5);
+  const fs::path path = fs::temp_directory_path() / ("isostat_rve_" + std::to_string(::getpid()));
+  const std::vector<std::byte> bytes = rve.pack();
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char *>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const std::string self = fs::read_symlink("/proc/self/exe").string();
+  const std::string command = "ISOSTAT_PACKED_RVE='" + path.string() + "' '" + self +
+                              "' --gtest_filter=RveChild.GoesOnFromAFile >/dev/null 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  run(rve, 5, 40);
+  const RveState here = rve.save();
+  std::vector<double> there(here.grains.grains.size());
+  std::ifstream in(path.string() + ".out", std::ios::binary);
+  in.read(reinterpret_cast<char *>(there.data()), static_cast<std::streamsize>(8 * there.size()));
+  EXPECT_EQ(in.gcount(), static_cast<std::streamsize>(8 * there.size()));
+  EXPECT_EQ(there, here.grains.grains);
+  fs::remove(path);
+  fs::remove(path.string() + ".out");
+}
+
+TEST(Rve, DamagedBytesAreRefused)
+{
+  const Rve rve(specimen(), {});
+  const std::vector<std::byte> whole = rve.pack();
+  std::vector<std::byte> damaged = whole;
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  EXPECT_THROW(Rve::unpack(damaged, {}), InputError);
+  EXPECT_THROW(Rve::unpack(std::span(whole).first(whole.size() - 8), {}), InputError);
+  EXPECT_THROW(Rve::unpack(std::span(whole).first(10), {}), InputError);
+  EXPECT_THROW(Rve::unpack({}, {}), InputError);
+  damaged = whole;
+  damaged[0] ^= std::byte{1};
+  EXPECT_THROW(Rve::unpack(damaged, {}), InputError);
+}
+
+TEST(Rve, AxisPermutationsGiveTheRotatedStressToTheBit)
+{
+  Mat3 about_z, about_y, about_111;
+  about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  about_y << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  about_111 << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  for (const Mat3 &q : {about_z, about_y, about_111})
+    {
+      RveSettings settings;
+      settings.frame = q;
+      Rve turned_element(specimen(), settings), plain(specimen(), {});
+      for (int k = 0; k < 10; ++k)
+        {
+          const Mat3 h = increment(k);
+          const RveResponse a = plain.advance(h), b = turned_element.advance(q * h * q.transpose());
+          ASSERT_EQ(a.outcome, RveOutcome::accepted);
+          ASSERT_EQ(Mat3(q * a.stress * q.transpose()), b.stress) << "increment " << k;
+        }
+    }
+}
+
+TEST(Rve, ARotatedFrameGivesTheRotatedStress)
+{
+  const Mat3 q = Eigen::AngleAxisd(0.7, Vec3(1, 2, -3).normalized()).toRotationMatrix();
+  RveSettings settings;
+  settings.frame = q;
+  const Snapshot &dense = test::periodic_specimen(500, 4);
+  Rve framed(dense, settings);       // axes turned
+  Rve rotated(turned(dense, q), {}); // every grain, contact and edge turned
+  Rve plain(dense, {});
+  double worst_framed = 0, worst_rotated = 0;
+  for (int k = 0; k < 100; ++k)
+    {
+      const Mat3 h = simple_shear(1e-5);
+      const Mat3 expected = q * plain.undrained(h).stress * q.transpose();
+      const double scale = expected.norm();
+      worst_framed = std::max(worst_framed, (framed.undrained(q * h * q.transpose()).stress - expected).norm() / scale);
+      worst_rotated =
+          std::max(worst_rotated, (rotated.undrained(q * h * q.transpose()).stress - expected).norm() / scale);
+    }
+  EXPECT_LT(worst_framed, 1e-3);
+  EXPECT_LT(worst_rotated, 1e-3);
+  std::printf("to 0.1 %% shear: turned frame off by %.2e, turned packing by %.2e\n", worst_framed, worst_rotated);
+}
+
+TEST(Rve, ARotationTurnsStressAndCostsNoStrain)
+{
+  Rve rve(specimen(), {});
+  const RveState before = rve.save();
+  const Mat3 sigma = rve.stress();
+  constexpr int n = 400;
+  const Mat3 spin = Eigen::AngleAxisd(M_PI / 2 / n, Vec3::UnitZ()).toRotationMatrix() - Mat3::Identity();
+  for (int k = 0; k < n; ++k)
+    ASSERT_EQ(rve.advance(spin).outcome, RveOutcome::accepted);
+  const Mat3 q = Eigen::AngleAxisd(M_PI / 2, Vec3::UnitZ()).toRotationMatrix();
+  // what the grains did meanwhile at rest in their own frame is far below this
+  EXPECT_LT((rve.stress() - q * sigma * q.transpose()).norm(), 1e-3 * sigma.norm());
+  EXPECT_LT((rve.save().grains.cell.edges - before.grains.cell.edges).norm(), 1e-6 * before.grains.cell.edges.norm());
+}
+
+TEST(Rve, UndrainedKeepsVolumeAndReportsTheMeanStress)
+{
+  Rve rve(specimen(), {});
+  const double e = rve.void_ratio();
+  Mat3 h = simple_shear(1e-4);
+  h.diagonal() = Vec3(-5e-5, -1e-4, 2e-5); // its volumetric part is taken off
+  double sum = 0;
+  const double start = rve.stress().trace() / 3;
+  for (int k = 0; k < 20; ++k)
+    sum += rve.undrained(h).mean_stress_change;
+  EXPECT_NEAR(rve.void_ratio(), e, 1e-12);
+  EXPECT_NEAR(sum, rve.stress().trace() / 3 - start, 1e-9 * std::abs(start));
+}
+
+TEST(Rve, AdvanceDeformsByThatMuch)
+{
+  Rve rve(specimen(), {});
+  const Mat3 edges = rve.save().grains.cell.edges;
+  Mat3 h = simple_shear(3e-3);
+  h(2, 2) = -1e-3;
+  h(1, 0) = 1e-3;
+  ASSERT_EQ(rve.advance(h).outcome, RveOutcome::accepted);
+  const PeriodicCell cell = rve.save().grains.cell;
+  EXPECT_LT((cell.rotation * cell.edges - (Mat3::Identity() + h) * edges).norm(), 1e-7 * edges.norm());
+}
+
+TEST(Rve, NothingIsNothing)
+{
+  Rve rve(specimen(), {});
+  const RveState before = rve.save();
+  const RveResponse response = rve.advance(Mat3::Zero().eval());
+  EXPECT_EQ(response.outcome, RveOutcome::accepted);
+  EXPECT_EQ(response.steps, 0u);
+  expect_same_bits(rve.save(), before);
+}
+
+TEST(Rve, AnIncrementTooLargeIsRejectedAndNothingChanges)
+{
+  Rve rve(specimen(), {});
+  run(rve, 0, 2);
+  const RveState before = rve.save();
+  for (const double size : {10.0, 0.02, std::numeric_limits<double>::infinity(), std::nan("")})
+    {
+      const RveResponse response = rve.advance(simple_shear(size));
+      EXPECT_EQ(response.outcome, RveOutcome::rejected) << size;
+      EXPECT_FALSE(response.reason.empty());
+      EXPECT_EQ(response.steps, 0u);
+      expect_same_bits(rve.save(), before);
+    }
+  EXPECT_EQ(rve.undrained(increment(2)).outcome, RveOutcome::accepted);
+}
+
+TEST(Rve, SmallIncrementsTakeTheLeastSteps)
+{
+  RveSettings slow;
+  slow.least_steps = 20;
+  Rve rve(specimen(), slow), fast(specimen(), {});
+  const RveResponse large = rve.advance(simple_shear(1e-4)), same = fast.advance(simple_shear(1e-4));
+  EXPECT_GT(large.steps, 20u);
+  EXPECT_EQ(large.steps, same.steps);
+  EXPECT_EQ(large.stress, same.stress);
+  EXPECT_EQ(rve.advance(simple_shear(1e-9)).steps, 20u);
+  EXPECT_EQ(fast.advance(simple_shear(1e-9)).steps, 1u);
+  for (const std::uint64_t wrong : {std::uint64_t{0}, slow.greatest_steps + 1})
+    {
+      slow.least_steps = wrong;
+      EXPECT_THROW(Rve(specimen(), slow), InputError) << wrong;
+    }
+}
+
+TEST(Rve, AFailureOnTheWayGoesBackToTheStateBefore)
+{
+  RveSettings few;
+  few.greatest_steps = 2000;
+  Rve rve(specimen(), few), other(specimen(), few);
+  for (int k = 0; k < 12; ++k)
+    {
+      run(rve, k, k + 1);
+      run(other, k, k + 1);
+      MixedIncrement far; // not there within 2,000 steps: fails half-way
+      far.controlled(1, 1) = true;
+      far.stress(1, 1) = -500e6;
+      const RveState before = rve.save();
+      const RveResponse response = rve.advance(far);
+      ASSERT_EQ(response.outcome, RveOutcome::rejected);
+      EXPECT_NE(response.reason.find("2000 steps"), std::string::npos) << response.reason;
+      expect_same_bits(rve.save(), before);
+      EXPECT_EQ(rve.cost().steps, other.cost().steps);
+    }
+}
+
+TEST(Rve, MixedControlKeepsStressesOfADrainedTest)
+{
+  Rve rve(specimen(), {});
+  const Mat3 start = rve.stress();
+  MixedIncrement drained;
+  drained.gradient(1, 1) = -1e-4;
+  drained.controlled(0, 0) = drained.controlled(2, 2) = true;
+  drained.stress = start;
+  for (int k = 0; k < 3; ++k)
+    {
+      const RveResponse r = rve.advance(drained);
+      ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+      EXPECT_NEAR(r.stress(0, 0), start(0, 0), 3e-3 * std::abs(start(0, 0)));
+      EXPECT_NEAR(r.stress(2, 2), start(2, 2), 3e-3 * std::abs(start(2, 2)));
+    }
+  EXPECT_LT(rve.stress()(1, 1), 1.1 * start(1, 1)); // more compression along y
+  EXPECT_NEAR(std::log(rve.save().grains.cell.deformation(1, 1) / specimen().cell->deformation(1, 1)), -3e-4, 1e-9);
+}
+
+TEST(Rve, MixedControlConsolidatesWithoutLateralStrain)
+{
+  Rve rve(specimen(), {});
+  const Mat3 before = rve.save().grains.cell.edges;
+  MixedIncrement k0;
+  k0.controlled(1, 1) = true;
+  k0.stress(1, 1) = -300e3;
+  const RveResponse r = rve.advance(k0);
+  ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  EXPECT_NEAR(r.stress(1, 1), -300e3, 600);
+  const Mat3 after = rve.save().grains.cell.edges;
+  EXPECT_NEAR(after(0, 0), before(0, 0), 1e-12 * before(0, 0));
+  EXPECT_NEAR(after(2, 2), before(2, 2), 1e-12 * before(2, 2));
+  EXPECT_GT(r.stress(0, 0), r.stress(1, 1)); // less compression sideways
+}
+
+TEST(Rve, MixedControlReachesAShearStress)
+{
+  Rve rve(specimen(), {});
+  MixedIncrement shear;
+  shear.controlled(0, 1) = shear.controlled(1, 0) = true;
+  shear.stress(0, 1) = shear.stress(1, 0) = 20e3;
+  const double before = rve.save().grains.cell.deformation(0, 1);
+  const RveResponse r = rve.advance(shear);
+  ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  EXPECT_NEAR(r.stress(0, 1), 20e3, 400);
+  EXPECT_GT(rve.save().grains.cell.deformation(0, 1), before);
+}
+
+TEST(Rve, ImpossibleControlIsRejected)
+{
+  Rve rve(specimen(), {});
+  const RveState before = rve.save();
+  MixedIncrement one_sided;
+  one_sided.controlled(0, 1) = true;
+  EXPECT_EQ(rve.advance(one_sided).outcome, RveOutcome::rejected);
+  expect_same_bits(rve.save(), before);
+}
+
+TEST(Rve, StateIsSmall)
+{
+  const Rve rve(specimen(), {});
+  const double n = static_cast<double>(specimen().grains.n_grains());
+  const double z = 2.0 * static_cast<double>(specimen().contacts.size()) / n;
+  const double per_grain = static_cast<double>(rve.save().bytes()) / n;
+  const double at_five = per_grain + (5 - z) / 2 * (12 * 8 + 8);
+  std::printf("%.0f bytes per grain at %.2f contacts, %.0f at 5\n", per_grain, z, at_five);
+  EXPECT_LE(at_five, 400);
+}
+
+TEST(Rve, SettingsAreChecked)
+{
+  RveSettings mirrored;
+  mirrored.frame(0, 0) = -1;
+  EXPECT_THROW(Rve(specimen(), mirrored), InputError);
+  RveSettings huge;
+  huge.greatest_increment = 1;
+  EXPECT_THROW(Rve(specimen(), huge), InputError);
+  EXPECT_THROW(Rve(test::specimen(200, 8), {}), InputError);
+}
+} // namespace isostat

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene says; what is refused is in tests/dem/scene/scene_error_test.cpp.
+#include "dem/scene/scene.hpp"
+
+#include "dem/scene/schema.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <map>
+#include <random>
+#include <set>
+
+namespace isostat
+{
+namespace
+{
+using Overrides = std::vector<std::string>;
+
+const std::string smallest = "[specimen]\nrelative_density = 0.64\n";
+
+const std::string cell = smallest + "domain = \"periodic-cell\"\n";
+
+const std::string sketch = R"(title = "Undrained cyclic triaxial test, Karlsruhe fine sand, D_r = 0.64"
+[grading]
+curve = "karlsruhe-fine-sand"
+truncate = [5, 99.75]
+grains = 10000
+cloud_edge = "10 mm"
+[contact]
+young = "10 GPa"
+stiffness_ratio = 0.3
+friction = "18 deg"
+rolling = { stiffness = 0.3, limit = 0.5 }
+twisting = { stiffness = 0.3 }
+[specimen]
+domain = "rigid-box"
+pressure = "200 kPa"
+relative_density = 0.64
+[motion]
+damping = 0.2
+quasi_static_tolerance = 0.02
+[[stage]]
+kind = "undrained-cyclic"
+direction = "extension"
+deviator_amplitude = "55 kPa"
+until = { reversals_after_liquefaction = 12, strain = 0.1 }
+[[stage]]
+kind = "undrained-monotonic"
+strain = 0.05
+strain_rate = "0.5 1/s"
+[output]
+snapshots = "none"
+)";
+
+std::string read_all(const std::string &path)
+{
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string cyclic_with(const std::string &line)
+{
+  return smallest + "[[stage]]\nkind = \"undrained-cyclic\"\n" + line + "\n";
+}
+
+TEST(Scene, ReadsTheSketchOfTheDesign)
+{
+  const Scene scene = parse_scene(sketch, "scene.toml");
+  EXPECT_EQ(scene.grading.grains, 10000u);
+  EXPECT_EQ(scene.grading.cloud_edge, 10e-3);
+  EXPECT_EQ(scene.grading.finest_percent, 5);
+  EXPECT_EQ(scene.grading.coarsest_percent, 99.75);
+  EXPECT_EQ(scene.contact.young, 1e10);
+  EXPECT_NEAR(scene.contact.friction, 0.32491969623290632616, 1e-16);
+  EXPECT_EQ(scene.contact.features, LawFeatures{});
+  EXPECT_EQ(scene.specimen.relative_density, 0.64);
+  EXPECT_FALSE(scene.specimen.void_ratio || scene.specimen.preparation_friction);
+  EXPECT_EQ(scene.motion.quasi_static_tolerance, 0.02);
+  ASSERT_EQ(scene.stages.size(), 2u);
+  EXPECT_EQ(scene.stages[0].kind, StageKind::undrained_cyclic);
+  EXPECT_TRUE(scene.stages[0].extension);
+  EXPECT_EQ(scene.stages[0].deviator_amplitude, 55e3);
+  EXPECT_EQ(scene.stages[0].reversals_after_liquefaction, 12u);
+  EXPECT_EQ(scene.stages[0].max_strain, 0.1);
+  EXPECT_EQ(scene.stages[0].max_cycles, 200u);
+  EXPECT_EQ(scene.stages[1].strain, 0.05);
+  EXPECT_EQ(scene.stages[1].strain_rate, 0.5);
+  EXPECT_EQ(scene.output.snapshots, "none");
+}
+
+/// The defaults of the schema are those of the structs, so a scene made in C++ and an empty file agree.
+TEST(Scene, DefaultsAreThoseOfTheStructs)
+{
+  Scene expected;
+  expected.specimen.relative_density = 0.64;
+  expected.contact.friction = 0;
+  expected.contact.features = {false, false, false};
+  EXPECT_EQ(parse_scene(smallest, "scene.toml"), expected);
+
+  Stage stage;
+  stage.kind = StageKind::undrained_cyclic;
+  expected.stages = {stage};
+  EXPECT_EQ(parse_scene(cyclic_with(""), "scene.toml"), expected);
+}
+
+TEST(Scene, WhatIsLeftOutOfContactIsSwitchedOff)
+{
+  const auto features = [](const std::string &contact) {
+    return parse_scene(smallest + "[contact]\n" + contact, "scene.toml").contact.features;
+  };
+  EXPECT_EQ(features(""), (LawFeatures{false, false, false}));
+  EXPECT_EQ(features("friction = \"18 deg\""), (LawFeatures{true, false, false}));
+  EXPECT_EQ(features("friction = \"18 deg\"\nrolling = {}"), (LawFeatures{true, true, false}));
+  EXPECT_EQ(features("friction = \"18 deg\"\ntwisting = { stiffness = 2 }"), (LawFeatures{true, false, true}));
+  EXPECT_EQ(features("friction = \"0 deg\"\nrolling = { limit = 0.1 }"), (LawFeatures{false, true, false}));
+}
+
+TEST(Scene, EveryStageKindParsesWithEachOfItsKeys)
+{
+  const auto names = stage_kind_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    {
+      const auto kind = static_cast<StageKind>(i);
+      std::string text = cell + fmt::format("[contact]\nfriction = \"18 deg\"\n[[stage]]\nkind = \"{}\"\n", names[i]);
+      for (const Key &key : scene_schema().keys)
+        if (key.belongs_to(kind) && key.kind != Kind::table && key.name() != "kind")
+          text += fmt::format("{} = {}\n", key.name(), example(key));
+      EXPECT_NO_THROW(parse_scene(text, "scene.toml")) << text;
+    }
+}
+
+TEST(Scene, PeriodicCell)
+{
+  const Scene scene = parse_scene(cell + "consolidation = \"k0\"\n", "s");
+  EXPECT_EQ(scene.specimen.domain, "periodic-cell");
+  EXPECT_EQ(scene.specimen.consolidation, "k0");
+  EXPECT_NE(to_toml(scene).find("consolidation = \"k0\""), std::string::npos);
+  EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene);
+
+  const Scene isotropic = parse_scene(cell, "s");
+  EXPECT_EQ(isotropic.specimen.consolidation, "isotropic");
+  EXPECT_NE(to_toml(isotropic).find("consolidation = \"isotropic\""), std::string::npos);
+  // recipes of box specimens are what they were before there was a cell, and so are their names in caches
+  EXPECT_EQ(to_toml(parse_scene(smallest, "s")).find("consolidation"), std::string::npos);
+}
+
+TEST(Scene, SimpleShear)
+{
+  const Scene scene = parse_scene(cell + R"([[stage]]
+kind = "k0-compress"
+[[stage]]
+kind = "undrained-simple-shear"
+strain = 10
+direction = "extension"
+[[stage]]
+kind = "undrained-cyclic-simple-shear"
+until = { cycles = 20, strain = 2.5 }
+[[stage]]
+kind = "undrained-cyclic-simple-shear"
+stress_ratio = 0.2
+strain_rate = "0.5 1/s"
+)",
+                                  "s");
+  ASSERT_EQ(scene.stages.size(), 4u);
+  EXPECT_EQ(scene.stages[0].kind, StageKind::k0_compress);
+  EXPECT_EQ(scene.stages[0].pressure, 0); // that of the specimen
+  EXPECT_EQ(scene.stages[1].kind, StageKind::undrained_simple_shear);
+  EXPECT_EQ(scene.stages[1].strain, 10);
+  EXPECT_TRUE(scene.stages[1].extension);
+  EXPECT_EQ(scene.stages[2].kind, StageKind::undrained_cyclic_simple_shear);
+  EXPECT_EQ(scene.stages[2].stress_ratio, 0.15);
+  EXPECT_EQ(scene.stages[2].liquefaction_ratio, 0.01);
+  EXPECT_EQ(scene.stages[2].max_cycles, 20u);
+  EXPECT_EQ(scene.stages[2].max_strain, 2.5);
+  Stage expected;
+  expected.kind = StageKind::undrained_cyclic_simple_shear;
+  expected.stress_ratio = 0.2;
+  expected.strain_rate = 0.5;
+  EXPECT_EQ(scene.stages[3], expected);
+}
+
+TEST(Scene, GradingTable)
+{
+  const std::string head = smallest + "[grading]\n";
+  const Scene scene =
+      parse_scene(head + "table = [[\"0.0631 mm\", 1.53], [\"125 um\", 28], [\"0.3135 mm\", 100]]", "s");
+  const SizeCurve expected{{0.0631e-3, 1.53}, {125e-6, 28}, {0.3135e-3, 100}};
+  EXPECT_EQ(scene.grading.table, expected);
+  EXPECT_EQ(scene.grading.curve, "");
+}
+
+TEST(SceneOverride, ReplacesValues)
+{
+  const Scene scene =
+      parse_scene(sketch, "scene.toml",
+                  {"motion.damping=0.3", "specimen.pressure=100kPa", "stage.1.strain=0.02", "title=\"New = title\"",
+                   "contact.rolling.limit = 0.4", "output.checkpoint=10 min", "grading.truncate=[1, 99]",
+                   "stage.0.until={ cycles = 3 }", "output.energy=true", "stage.0.direction=compression"});
+  EXPECT_EQ(scene.motion.damping, 0.3);
+  EXPECT_EQ(scene.specimen.pressure, 100e3);
+  EXPECT_EQ(scene.stages[1].strain, 0.02);
+  EXPECT_EQ(scene.title, "New = title");
+  EXPECT_EQ(scene.contact.rolling_limit, 0.4);
+  EXPECT_EQ(scene.output.checkpoint_minutes, 10);
+  EXPECT_EQ(scene.grading.finest_percent, 1);
+  EXPECT_EQ(scene.stages[0].max_cycles, 3u);
+  EXPECT_EQ(scene.stages[0].reversals_after_liquefaction, 10u);
+  EXPECT_TRUE(scene.output.energy);
+  EXPECT_FALSE(scene.stages[0].extension);
+  for (const char *pressure : {"200 kPa", "200kPa", "\"200 kPa\"", "'0.2 MPa'"})
+    EXPECT_EQ(parse_scene(sketch, "s", {std::string("specimen.pressure=") + pressure}).specimen.pressure, 200e3);
+}
+
+TEST(SceneOverride, TakesThePlaceOfWhatItExcludes)
+{
+  const Scene scene = parse_scene(sketch, "s", {"specimen.preparation_friction=10 deg", "motion.strain_rate=0.5/s"});
+  EXPECT_FALSE(scene.specimen.relative_density);
+  EXPECT_EQ(scene.specimen.preparation_friction, parse_quantity("10 deg", Dimension::angle).value);
+  EXPECT_EQ(scene.motion.strain_rate, 0.5);
+  EXPECT_FALSE(scene.motion.inertial_number);
+  const Scene slow = parse_scene(to_toml(scene), "s", {"motion.inertial_number=1e-5"});
+  EXPECT_FALSE(slow.motion.strain_rate);
+  EXPECT_EQ(slow.motion.inertial_number, 1e-5);
+  const Scene back = parse_scene(to_toml(slow), "s", {"motion.quasi_static_tolerance=0.02"});
+  EXPECT_FALSE(back.motion.inertial_number);
+  EXPECT_EQ(back.motion.quasi_static_tolerance, 0.02);
+}
+
+TEST(Scene, InertialNumber)
+{
+  EXPECT_FALSE(parse_scene(smallest, "s").motion.inertial_number);
+  for (const double number : {1e-12, 1e-4, 0.999})
+    {
+      const Scene scene = parse_scene(smallest + fmt::format("[motion]\ninertial_number = {}\n", number), "s");
+      EXPECT_EQ(scene.motion.inertial_number, number);
+      EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene) << to_toml(scene);
+    }
+}
+
+/// A value the key can hold, with random digits.
+void scramble(const Key &key, const Field &field, std::mt19937_64 &random)
+{
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double high = std::min(key.range.high, 1e9);
+  double number = std::max(key.range.low, 0.0) + (high - std::max(key.range.low, 0.0)) * (0.1 + 0.8 * unit(random));
+  if (key.dimension == Dimension::angle && key.kind == Kind::quantity)
+    number = 0.01 + unit(random);
+  if (double *const *plain = std::get_if<double *>(&field))
+    **plain = number;
+  else if (std::optional<double> *const *maybe = std::get_if<std::optional<double> *>(&field); maybe && **maybe)
+    **maybe = number;
+  else if (std::uint64_t *const *count = std::get_if<std::uint64_t *>(&field))
+    **count = static_cast<std::uint64_t>(number) + 2;
+  else if (std::string *const *text = std::get_if<std::string *>(&field); text && key.kind == Kind::text)
+    **text = (*text)->empty() ? "" : "a \"b\" \\ c\n\t# \u00b5";
+}
+
+/// Stages from their lines after `kind = "`.
+std::string stages(const std::vector<std::string> &lines)
+{
+  std::string text;
+  for (const std::string &line : lines)
+    text += "[[stage]]\nkind = \"" + line + "\n";
+  return text;
+}
+
+TEST(Scene, RoundTripToTheBit)
+{
+  std::mt19937_64 random(3);
+  const std::string box =
+      sketch + "folder = \"x\"\n" +
+      stages({"compress\"\npressure = \"1 kPa\"", "friction\"\nfriction = \"9 deg\"", "rebalance\"",
+              "drained\"\nstrain = 0.1\nstrain_rate = \"1 1/s\"", "constant-p\"\nstrain = 0.1", "hold\""});
+  const std::string cell_only = stages({"k0-compress\"\npressure = \"1 kPa\"", "undrained-simple-shear\"\nstrain = 1.5",
+                                        "undrained-cyclic-simple-shear\"\nstrain_rate = \"1 1/s\""});
+  const Overrides variants[] = {{},
+                                {"motion.strain_rate=0.1/s", "specimen.preparation_friction=9 deg"},
+                                {"motion.inertial_number=1e-4"},
+                                {"specimen.void_ratio=0.7", "grading.table=[['0.1 mm', 3], ['0.3 mm', 100]]"},
+                                {"specimen.file=a.h5", "motion.time_step=3 ns"},
+                                {"specimen.domain=periodic-cell", "specimen.consolidation=k0"},
+                                {"specimen.domain=periodic-cell", "specimen.file=a.h5"}};
+  for (const Overrides &variant : variants)
+    for (int repeat = 0; repeat < 50; ++repeat)
+      {
+        const bool in_cell = !variant.empty() && variant[0] == "specimen.domain=periodic-cell";
+        Scene scene = parse_scene(in_cell ? box + cell_only : box, "scene.toml", variant);
+        Stage unused;
+        for (const Key &key : scene_schema().keys)
+          if (key.kinds == 0 && key.name() != "quasi_static_tolerance")
+            scramble(key, key.field(scene, unused), random);
+          else
+            for (Stage &stage : scene.stages)
+              if (key.belongs_to(stage.kind))
+                scramble(key, key.field(scene, stage), random);
+        scene.specimen.e_max = scene.specimen.e_min * 1.37;
+        scene.motion.rate_ceiling = scene.motion.rate_floor * 3.1;
+        for (auto &[diameter, percent] : scene.grading.table)
+          diameter *= 1.0 / 3.0;
+        EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene) << to_toml(scene);
+      }
+}
+
+TEST(Scene, RoundTripWithPartsOfTheLawOff)
+{
+  for (const char *contact : {"", "friction = \"0 deg\"\nrolling = {}", "friction = \"12.3 deg\"",
+                              "friction = \"12.3 deg\"\ntwisting = { stiffness = 2 }"})
+    {
+      const Scene scene = parse_scene(smallest + "[contact]\n" + contact, "s");
+      EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene) << to_toml(scene);
+    }
+}
+
+TEST(Scene, PrintedDefaultsAreAScene)
+{
+  const Scene scene = parse_scene(default_scene(), "default.toml");
+  Scene expected;
+  expected.specimen.relative_density = 0.64;
+  expected.contact.friction = parse_quantity("18 deg", Dimension::angle).value;
+  expected.stages.resize(1);
+  expected.stages[0].kind = StageKind::undrained_cyclic;
+  EXPECT_EQ(scene, expected);
+
+  for (const Key &key : scene_schema().keys)
+    EXPECT_NE(default_scene().find(std::string(key.name())), std::string::npos) << key.path;
+}
+
+TEST(Schema, EveryKeyIsDescribed)
+{
+  std::map<std::string, unsigned> paths;
+  for (const Key &key : scene_schema().keys)
+    {
+      const auto [seen, is_new] = paths.try_emplace(key.path, 0);
+      EXPECT_TRUE(is_new || (key.kinds != 0 && (seen->second & key.kinds) == 0)) << key.path << " twice";
+      seen->second |= key.kinds;
+      const std::string text = key.text;
+      EXPECT_TRUE(text.ends_with('.') || text.ends_with(',')) << key.path;
+      EXPECT_TRUE(key.field) << key.path;
+      EXPECT_EQ(key.kinds != 0, key.section() == "stage") << key.path;
+      EXPECT_TRUE(key.presence == Presence::standard || *key.value) << key.path << " needs an example";
+      EXPECT_TRUE(key.kind != Kind::quantity || *key.unit) << key.path;
+    }
+}
+
+TEST(Manual, EqualsTheFileInDocs)
+{
+  EXPECT_EQ(read_all(ISOSTAT_SOURCE_DIR "/docs/scene_reference.md"), scene_manual())
+      << "regenerate docs/scene_reference.md from scene_manual()";
+}
+
+/// What every scene of apps/scenes is held to.
+void check_ready_scene(const std::filesystem::path &path)
+{
+  const Scene scene = read_scene(path.string());
+  const std::string name = path.stem().string();
+  const bool quick = name.starts_with("quick_"), in_cell = scene.specimen.domain == "periodic-cell";
+  EXPECT_FALSE(scene.title.empty());
+  const bool for_library = name == "rve_library"; // of many small specimens: it has no larger twin
+  if (for_library)
+    EXPECT_EQ(scene.grading.grains, 1000u);
+  else if (quick && in_cell) // no walls, so fewer grains will do; as many as in the box where the two are compared
+    EXPECT_EQ(scene.grading.grains, name.ends_with("_periodic") ? 2000u : 1000u);
+  else
+    EXPECT_EQ(scene.grading.grains, quick ? 2000u : 10000u);
+  // the same size of grains: volume of the cloud per grain is that of 10,000 in 10 mm
+  const double volume = std::pow(scene.grading.cloud_edge, 3) / static_cast<double>(scene.grading.grains);
+  EXPECT_NEAR(volume / 1e-10, 1, 1e-14);
+  EXPECT_EQ(scene.stages.size(), for_library || name.ends_with("void_ratio_limits") ? 0u : 1u);
+  EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene);
+}
+
+TEST(Scenes, AllParseAndSayWhatTheyShow)
+{
+  const std::set<std::string> without_twin = {"quick_k0_undrained_cyclic_simple_shear.toml", "rve_library.toml"};
+  int n_scenes = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(ISOSTAT_SOURCE_DIR "/apps/scenes"))
+    {
+      if (entry.path().extension() != ".toml")
+        continue;
+      SCOPED_TRACE(entry.path().string());
+      ++n_scenes;
+      check_ready_scene(entry.path());
+      const std::string name = entry.path().filename().string();
+      const std::string twin = name.starts_with("quick_") ? name.substr(6) : "quick_" + name;
+      EXPECT_TRUE(without_twin.contains(name) || std::filesystem::exists(entry.path().parent_path() / twin)) << twin;
+    }
+  EXPECT_EQ(n_scenes, 30);
+}
+
+/// A scene of the cell that is to be compared with one of the box differs from it in words and in the domain only.
+TEST(Scenes, PeriodicTwinsEqualThoseOfTheBox)
+{
+  const std::string folder = ISOSTAT_SOURCE_DIR "/apps/scenes/";
+  for (const std::string name :
+       {"cyclic_dr64", "quick_cyclic_dr64", "monotonic_compression_dr64", "quick_monotonic_compression_dr64"})
+    {
+      const Scene in_cell = read_scene(folder + name + "_periodic.toml");
+      EXPECT_EQ(in_cell.specimen.domain, "periodic-cell") << name;
+      Scene in_box = read_scene(folder + name + ".toml", {"specimen.domain=periodic-cell"});
+      in_box.title = in_cell.title;
+      in_box.output.folder = in_cell.output.folder;
+      EXPECT_EQ(in_cell, in_box) << name;
+    }
+}
+
+} // namespace
+} // namespace isostat

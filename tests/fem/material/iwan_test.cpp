@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/material/iwan.hpp"
+
+#include "base/error.hpp"
+#include "tests/fem/material/iwan_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace isostat
+{
+namespace
+{
+Gradient turned(const Gradient &h) // x -> y -> z -> x
+{
+  Gradient t;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      t[3 * ((i + 1) % 3) + (j + 1) % 3] = h[3 * i + j];
+  return t;
+}
+
+TEST(Iwan, ElementsFitTheHyperbola)
+{
+  for (unsigned n = 4; n <= 32; ++n)
+    {
+      const Backbone b = fit_hyperbola(n);
+      EXPECT_NEAR(std::accumulate(b.weights.begin(), b.weights.end(), 0.0), 1, 1e-12);
+      EXPECT_NEAR(std::inner_product(b.weights.begin(), b.weights.end(), b.yield_strains.begin(), 0.0), 1, 1e-12);
+      EXPECT_GT(*std::min_element(b.weights.begin(), b.weights.end()), 0);
+      double worst = 0;
+      for (double x = 1e-4; x < 1e3; x *= 1.01)
+        {
+          double tau = 0;
+          for (unsigned k = 0; k < n; ++k)
+            tau += b.weights[k] * std::min(x, b.yield_strains[k]);
+          worst = std::max(worst, std::abs(tau * (1 + x) / x - 1));
+        }
+      if (n % 4 == 0)
+        std::printf("%u elements: backbone within %.2f %% of the hyperbola\n", n, 100 * worst);
+      if (n >= 8)
+        {
+          EXPECT_LT(worst, 0.0205 * std::pow(12.0 / n, 1.35));
+        }
+    }
+  EXPECT_THROW(fit_hyperbola(3), InputError);
+  EXPECT_THROW(fit_hyperbola(33), InputError);
+}
+
+TEST(Iwan, BackboneAtConstantPressure)
+{
+  Sample s(dry());
+  const double g = loose.shear_modulus, strain = s.iwan.reference_strain(p0), h = strain / 500;
+  EXPECT_DOUBLE_EQ(s.iwan.shear_modulus(p0), g);
+  EXPECT_DOUBLE_EQ(strain, loose.strength_ratio * p0 / g);
+  EXPECT_NEAR(s.shear(h), g * h, 1e-9 * g * h); // G at small strain
+  for (int k = 2; k < 10000; ++k)
+    {
+      const double expected = g * k * h / (1 + k * h / strain);
+      ASSERT_NEAR(s.shear(h), expected, 0.019 * expected) << k;
+    }
+  EXPECT_EQ(s.iwan.mean_pressure(0), p0);
+}
+
+TEST(Iwan, StiffnessAndStrengthFollowThePressure)
+{
+  Iwan m(dry(), 2);
+  m.set_initial_stress(std::vector{Stress{-25e3, -25e3, -25e3}, Stress{-200e3, -200e3, -200e3}});
+  std::vector<Stress> s(2);
+  std::vector<WaveModuli> w(2);
+  m.wave_moduli(w);
+  EXPECT_DOUBLE_EQ(w[0].s, 25e6);
+  m.trial(std::vector<Gradient>(2, Gradient{0, 0, 1e-6}), s);
+  EXPECT_NEAR(s[0][4], 25, 1e-9);
+  EXPECT_NEAR(s[1][4], 50 * std::sqrt(2), 1e-9);
+  m.trial(std::vector<Gradient>(2, Gradient{0, 0, 0.2}), s);
+  EXPECT_NEAR(s[0][4], 0.55 * 25e3, 1e-6);
+  EXPECT_NEAR(s[1][4], 0.55 * 200e3, 1e-6);
+}
+
+TEST(Iwan, MasingLoopsAndTheirDamping)
+{
+  for (double x : {0.1, 0.3, 1.0, 3.0, 10.0})
+    {
+      Sample s(dry());
+      constexpr int n = 1000;
+      const double amplitude = x * s.iwan.reference_strain(p0), h = amplitude / n;
+      std::vector<double> first{0};
+      for (int k = 0; k < n; ++k)
+        first.push_back(s.shear(h));
+      const double top = first.back(), rounding = 1e-9 * top;
+      double work = 0, tau = top;
+      for (int sign : {-1, 1})
+        for (int k = 1; k <= 2 * n; ++k)
+          {
+            const double next = s.shear(sign * h);
+            work += sign * h * (next + tau) / 2;
+            tau = next;
+            if (k % 2 == 0) // twice the strain, twice the stress
+              {
+                EXPECT_NEAR(tau, -sign * top + sign * 2 * first[k / 2], rounding);
+              }
+          }
+      const double damping = work / (2 * std::numbers::pi * amplitude * top);
+      const double expected = 4 / std::numbers::pi * (1 + 1 / x) * (1 - std::log1p(x) / x) - 2 / std::numbers::pi;
+      std::printf("strain %4.1f gamma_r: damping %.4f, hyperbola with Masing's rules %.4f\n", x, damping, expected);
+      EXPECT_NEAR(damping, expected, 0.012); // straight pieces within 1.8 %: areas of thin loops feel them most
+    }
+}
+
+TEST(Iwan, AxesAreAlike)
+{
+  Sample a(loose), b(loose), c(loose);
+  double worst = 0;
+  for (int k = 0; k < 4000; ++k)
+    {
+      const double sign = k / 200 % 2 ? -1 : 1;
+      const Gradient h{1e-7 * sign, 2e-6, 4e-6 * sign, 0, -2e-7, 1e-6, 1e-6, 0, 1e-7};
+      a.strain(h);
+      b.strain(turned(h));
+      constexpr int to[6] = {1, 2, 0, 4, 5, 3}; // xx -> yy, yy -> zz, zz -> xx, yz -> zx, xz -> yx, xy -> yz
+      for (int i = 0; i < 6; ++i)
+        worst = std::max(worst, std::abs(a.stress[i] - b.stress[to[i]]));
+    }
+  EXPECT_LT(worst, 1e-6); // Pa, rounding
+  Sample xz(loose), yz(loose);
+  for (int k = 0; k < 4000; ++k)
+    {
+      xz.shear(k / 200 % 2 ? -5e-6 : 5e-6);
+      yz.strain({0, 0, 0, 0, 0, k / 200 % 2 ? -5e-6 : 5e-6});
+      ASSERT_EQ(xz.stress[4], yz.stress[3]);
+    }
+}
+
+TEST(Iwan, ExtremeIncrements)
+{
+  Sample s(loose);
+  shake(s, 0.2, 6);
+  const Stress before = s.stress;
+  s.strain({});
+  EXPECT_EQ(s.stress, before);
+  for (const Gradient &h : {Gradient{0, 0, 0.9}, Gradient{0, 0, -0.9}, Gradient{0.3, 0, 0, 0, 0.3, 0, 0, 0, 0.3},
+                            Gradient{-0.1, 0, 0, 0, 0, 0, 0, 0, 0.1}, Gradient{0.1, 0, 0, 0, -0.2, 0.4, 0, 0, 0}})
+    {
+      s.strain(h);
+      const double p = s.iwan.mean_pressure(0);
+      EXPECT_GE(p, 0.02 * p0);
+      double j2 = 0;
+      for (int i = 0; i < 6; ++i)
+        j2 += i < 3 ? std::pow(s.stress[i] + p, 2) / 2 : std::pow(s.stress[i], 2);
+      EXPECT_LE(std::sqrt(j2), (1 + 1e-12) * loose.strength_ratio * p);
+    }
+  EXPECT_THROW(s.shear(1.1), RunFailure);
+  EXPECT_THROW(s.shear(std::numeric_limits<double>::infinity()), RunFailure);
+}
+
+TEST(Iwan, SmallSubstepsChangeLittle)
+{
+  IwanParameters fine = loose;
+  fine.substep = 1e-6;
+  Sample a(loose), b(fine), c(loose);
+  for (int k = 0; k < 40; ++k) // ten cycles of 0.04 %, in steps of 0.02 %
+    {
+      const double h = k % 4 == 1 || k % 4 == 2 ? -2e-4 : 2e-4;
+      a.shear(h);
+      b.shear(h);
+      c.shear(h / 2);
+      c.shear(h / 2);
+    }
+  EXPECT_NEAR(a.iwan.mean_pressure(0), b.iwan.mean_pressure(0), 0.01 * p0);
+  EXPECT_NEAR(a.iwan.mean_pressure(0), c.iwan.mean_pressure(0), 1e-6 * p0); // the same sub-steps
+}
+
+TEST(Iwan, TangentIsTheDerivativeOfTheTrial)
+{
+  constexpr int entry[6] = {0, 4, 8, 5, 2, 1};
+  for (const Gradient &h : {Gradient{0, 0, 1e-5, 0, 0, 2e-6, 0, 0, -3e-6}, Gradient{2e-6, 1e-6, 3e-4, 0, 1e-6, 5e-5}})
+    for (int half_cycles : {1, 4})
+      {
+        Sample s(loose);
+        shake(s, 0.15, half_cycles);
+        Stiffness c;
+        s.iwan.trial({&h, 1}, {&s.stress, 1});
+        s.iwan.stiffness({&c, 1});
+        for (int j = 0; j < 6; ++j)
+          {
+            constexpr double d = 1e-9;
+            Gradient more = h, less = h;
+            more[entry[j]] += d;
+            less[entry[j]] -= d;
+            Stress high, low;
+            s.iwan.trial({&more, 1}, {&high, 1});
+            s.iwan.trial({&less, 1}, {&low, 1});
+            for (int k = 0; k < 6; ++k)
+              EXPECT_NEAR(c(k, j), (high[k] - low[k]) / (2 * d), 1e-3 * loose.shear_modulus) << k << j;
+          }
+      }
+}
+
+TEST(Iwan, RefusesImpossibleSoils)
+{
+  EXPECT_THROW(Iwan({.shear_modulus = 0}, 1), InputError);
+  EXPECT_THROW(Iwan({.dilation = 1.5}, 1), InputError);
+  EXPECT_THROW(Iwan({.elements = 2}, 1), InputError);
+  Iwan m(loose, 1);
+  EXPECT_THROW(m.set_initial_stress(std::vector{Stress{1, 1, 1}}), InputError);
+  EXPECT_THROW(m.set_initial_stress(std::vector{Stress{-10e3, -10e3, -100e3}}), InputError);
+}
+} // namespace
+} // namespace isostat

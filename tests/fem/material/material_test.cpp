@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.hpp"
+#include "fem/material/composite.hpp"
+#include "fem/material/elastic.hpp"
+#include "fem/material/iwan.hpp"
+
+#include <cstring>
+#include <gmock/gmock.h>
+#include <limits>
+#include <random>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+constexpr std::size_t n = 5;
+
+std::unique_ptr<Material> make_elastic() { return std::make_unique<Elastic>(ElasticParameters{}, n); }
+std::unique_ptr<Material> make_iwan() { return std::make_unique<Iwan>(IwanParameters{}, n); }
+std::unique_ptr<Material> make_layers()
+{
+  std::vector<std::unique_ptr<Material>> parts;
+  parts.push_back(std::make_unique<Iwan>(IwanParameters{}, 2));
+  parts.push_back(std::make_unique<Elastic>(ElasticParameters{}, 0));
+  parts.push_back(std::make_unique<Elastic>(ElasticParameters{}, 3));
+  return std::make_unique<LayeredMaterial>(std::move(parts));
+}
+
+std::unique_ptr<Material> make_patchwork()
+{
+  std::vector<Patchwork::Part> parts;
+  parts.push_back({std::make_unique<Iwan>(IwanParameters{}, 3), {4, 0, 2}});
+  parts.push_back({std::make_unique<Elastic>(ElasticParameters{}, 2), {1, 3}});
+  return std::make_unique<Patchwork>(std::move(parts));
+}
+
+/// What the solver relies on, of every material.
+class MaterialProtocol : public testing::TestWithParam<std::unique_ptr<Material> (*)()>
+{
+protected:
+  std::unique_ptr<Material> fresh() const
+  {
+    auto m = GetParam()();
+    std::vector<Stress> s;
+    for (std::size_t i = 0; i < n; ++i)
+      s.push_back({-60e3 - 1e3 * i, -60e3, -100e3, 0, 0, 0});
+    m->set_initial_stress(s);
+    return m;
+  }
+  std::vector<Gradient> increments()
+  {
+    std::vector<Gradient> h(n);
+    for (Gradient &point : h)
+      for (double &x : point)
+        x = 2e-5 * uniform(random);
+    return h;
+  }
+  static std::vector<Stress> trial(Material &m, const std::vector<Gradient> &h)
+  {
+    std::vector<Stress> s(n);
+    m.trial(h, s);
+    return s;
+  }
+  void advance(Material &m, int steps)
+  {
+    for (int k = 0; k < steps; ++k)
+      {
+        trial(m, increments());
+        m.commit();
+      }
+  }
+  std::mt19937 random{3};
+  std::uniform_real_distribution<double> uniform{-1, 1};
+};
+
+TEST_P(MaterialProtocol, EveryTrialStartsFromTheCommittedState)
+{
+  auto m = fresh();
+  advance(*m, 100);
+  const auto h = increments(), other = increments();
+  const std::vector<Gradient> none(n);
+  const auto bytes = m->pack();
+  const auto rest = trial(*m, none), first = trial(*m, h);
+  EXPECT_NE(first, rest);
+  trial(*m, other);
+  EXPECT_EQ(trial(*m, h), first);
+  EXPECT_EQ(m->pack(), bytes);
+  m->rollback();
+  m->commit(); // nothing to keep
+  EXPECT_EQ(m->pack(), bytes);
+  EXPECT_EQ(trial(*m, none), rest);
+  trial(*m, h);
+  m->commit();
+  m->commit(); // once is enough
+  EXPECT_EQ(trial(*m, none), first);
+  EXPECT_NE(m->pack(), bytes);
+}
+
+TEST_P(MaterialProtocol, ComesBackFromBytesToTheBit)
+{
+  auto m = fresh(), copy = GetParam()();
+  advance(*m, 100);
+  trial(*copy, increments()); // forgotten by unpack()
+  copy->unpack(m->pack());
+  copy->commit();
+  for (int k = 0; k < 1000; ++k)
+    {
+      const auto h = increments();
+      ASSERT_EQ(trial(*m, h), trial(*copy, h)) << k;
+      m->commit();
+      copy->commit();
+    }
+  EXPECT_EQ(m->pack(), copy->pack());
+}
+
+TEST_P(MaterialProtocol, RefusesOtherBytes)
+{
+  auto m = fresh();
+  const auto bytes = m->pack();
+  EXPECT_THROW(m->unpack(Elastic({1e6, 0.1}, n).pack()), InputError);
+  EXPECT_THROW(m->unpack(Elastic({}, n + 1).pack()), InputError);
+  EXPECT_THROW(m->unpack(Iwan({.contraction = 0.1}, n).pack()), InputError);
+  EXPECT_THROW(m->unpack(Iwan({}, n - 1).pack()), InputError);
+  for (std::size_t size = 0; size < bytes.size(); size += 7)
+    EXPECT_THROW(m->unpack(std::span(bytes).first(size)), InputError);
+  auto longer = bytes;
+  longer.push_back({});
+  EXPECT_THROW(m->unpack(longer), InputError);
+  EXPECT_EQ(m->pack(), bytes); // and none of them changed it
+}
+
+TEST_P(MaterialProtocol, NotANumberIsARunFailureThatNamesThePoint)
+{
+  auto m = fresh();
+  auto h = increments();
+  h[4][8] = std::numeric_limits<double>::quiet_NaN();
+  const auto bytes = m->pack();
+  try
+    {
+      trial(*m, h);
+      FAIL();
+    }
+  catch (const RunFailure &e)
+    {
+      const char *where = m->name() == "layered"     ? "layer of 'elastic' from point 2 on: elastic: point 2:"
+                          : m->name() == "patchwork" ? "'iwan', whose points are 4, 0, 2 of the mesh: iwan: point 0:"
+                                                     : "point 4";
+      EXPECT_THAT(e.what(), HasSubstr(where));
+    }
+  m->commit();
+  EXPECT_EQ(m->pack(), bytes);
+}
+
+TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
+{
+  auto m = fresh();
+  advance(*m, 50);
+  std::vector<Stiffness> c(n);
+  std::vector<WaveModuli> w(n);
+  m->wave_moduli(w);
+  trial(*m, increments());
+  m->stiffness(c);
+  for (std::size_t i = 0; i < n; ++i)
+    {
+      EXPECT_LE(c[i](2, 2), 1.001 * w[i].p); // p' and with it the moduli move within the increment
+      EXPECT_LE(c[i](4, 4), 1.001 * w[i].s);
+      EXPECT_GT(c[i](4, 4), 0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol, testing::Values(make_elastic, make_iwan, make_layers, make_patchwork));
+
+TEST(LayeredMaterial, PointsOfTheFirstLayerComeFirst)
+{
+  std::vector<std::unique_ptr<Material>> parts;
+  parts.push_back(std::make_unique<Elastic>(ElasticParameters{1e6, 0.2}, 2));
+  parts.push_back(std::make_unique<Elastic>(ElasticParameters{5e6, 0.2}, 1));
+  LayeredMaterial m(std::move(parts));
+  ASSERT_EQ(m.n_points(), 3u);
+  std::vector<Gradient> h(3, Gradient{0, 0, 1e-3});
+  std::vector<Stress> s(3);
+  m.trial(h, s);
+  EXPECT_DOUBLE_EQ(s[1][4], 1e3);
+  EXPECT_DOUBLE_EQ(s[2][4], 5e3);
+  parts.clear();
+  parts.push_back(nullptr);
+  EXPECT_THROW(LayeredMaterial(std::move(parts)), InputError);
+}
+
+TEST(Patchwork, PartsHaveTheirPoints)
+{
+  const auto part = [](double shear_modulus, std::vector<std::size_t> places) {
+    const std::size_t points = places.size();
+    return Patchwork::Part{std::make_unique<Elastic>(ElasticParameters{shear_modulus, 0.2}, points), std::move(places)};
+  };
+  const auto patchwork = [&](std::vector<std::size_t> soft, std::vector<std::size_t> stiff) {
+    std::vector<Patchwork::Part> parts;
+    parts.push_back(part(1e6, std::move(soft)));
+    parts.push_back(part(5e6, std::move(stiff)));
+    return Patchwork(std::move(parts));
+  };
+  Patchwork m = patchwork({2, 0}, {1});
+  ASSERT_EQ(m.n_points(), 3u);
+  std::vector<Gradient> h = {Gradient{0, 0, 1e-3}, Gradient{0, 0, 2e-3}, Gradient{0, 0, 3e-3}};
+  std::vector<Stress> s(3);
+  m.trial(h, s);
+  EXPECT_DOUBLE_EQ(s[0][4], 1e3);
+  EXPECT_DOUBLE_EQ(s[1][4], 10e3);
+  EXPECT_DOUBLE_EQ(s[2][4], 3e3);
+  EXPECT_THROW(patchwork({0, 1}, {1}), InputError); // two materials at a point
+  EXPECT_THROW(patchwork({0, 1}, {3}), InputError); // beyond the last
+  std::vector<Patchwork::Part> other;
+  other.push_back({std::make_unique<Elastic>(ElasticParameters{}, 2), {0}});
+  EXPECT_THROW(Patchwork(std::move(other)), InputError);
+}
+} // namespace
+} // namespace isostat

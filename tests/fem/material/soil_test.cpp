@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/material/soil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+/// From the base up: 4 m of gravel, 5 m of sand, 1 m of silt.
+SoilProfile three_layers()
+{
+  SoilProfile soil;
+  soil.layers = {{"gravel", 4, 2200}, {"sand", 5, 2000}, {"silt", 1, 1800}};
+  soil.water.gravity = 10;
+  return soil;
+}
+
+TEST(SoilProfile, HeightAndLayers)
+{
+  const SoilProfile soil = three_layers();
+  EXPECT_EQ(soil.height(), 10);
+  EXPECT_EQ(soil.layer_at(0), 0u);
+  EXPECT_EQ(soil.layer_at(3.999), 0u);
+  EXPECT_EQ(soil.layer_at(4), 1u); // the upper one on an interface
+  EXPECT_EQ(soil.layer_at(9), 2u);
+  EXPECT_EQ(soil.layer_at(10), 2u);
+  EXPECT_EQ(soil.layer_at(-1), 0u); // outside: the nearest
+  EXPECT_EQ(soil.layer_at(11), 2u);
+}
+
+TEST(SoilProfile, EffectiveStressByHand)
+{
+  const SoilProfile soil = three_layers(); // submerged unit weights 12, 10, 8 kN/m3
+  const struct
+  {
+    double z, stress;
+  } points[] = {{11, 0}, {10, 0}, {9.5, 4e3}, {9, 8e3}, {6.5, 33e3}, {4, 58e3}, {1, 94e3}, {0, 106e3}};
+  double largest = 0;
+  for (const auto &[z, stress] : points)
+    {
+      EXPECT_NEAR(soil.vertical_effective_stress(z), stress, 1e-9) << z;
+      EXPECT_NEAR(soil.vertical_effective_stress(z, 20e3), stress + 20e3, 1e-9) << z;
+      largest = std::max(largest, std::abs(soil.vertical_effective_stress(z) - stress));
+    }
+  printf("effective stress of three layers: error %.1e Pa\n", largest);
+}
+
+TEST(SoilProfile, EffectiveStressIsContinuousAndItsSlopeIsTheSubmergedWeight)
+{
+  const SoilProfile soil = three_layers();
+  const double step = 1e-3;
+  for (double z = step / 2; z < 10 - step; z += step)
+    {
+      const double slope = (soil.vertical_effective_stress(z) - soil.vertical_effective_stress(z + step)) / step;
+      const double low = soil.layers[soil.layer_at(z)].density, high = soil.layers[soil.layer_at(z + step)].density;
+      EXPECT_LE(slope, (std::max(low, high) - 1000) * 10 + 1e-5) << z;
+      EXPECT_GE(slope, (std::min(low, high) - 1000) * 10 - 1e-5) << z;
+    }
+}
+
+TEST(Water, Mobility)
+{
+  Water water;
+  water.density = 998;
+  water.gravity = 9.8;
+  EXPECT_DOUBLE_EQ(water.mobility(1e-4), 1e-4 / (998 * 9.8));
+  EXPECT_EQ(water.mobility(0), 0);
+}
+} // namespace
+} // namespace isostat

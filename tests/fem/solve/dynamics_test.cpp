@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What must hold for any run of the dynamics: rest, energy, the stable step, one column in any dimension, restart.
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
+#include "base/error.hpp"
+#include "fem/solve/dynamics.hpp"
+#include "tests/support/columns.hpp"
+
+#include <cstdio>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+
+/// Elastic soil whose stiffness can be raised while it runs, and which need not own up to it.
+class Stiffening : public Elastic
+{
+public:
+  Stiffening(std::size_t n, bool honest) : Elastic(elastic_of(n, 2000, 200, 0.25)), honest_(honest) {}
+  double factor = 1;
+
+  void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override
+  {
+    std::vector<Gradient> larger(increments.begin(), increments.end());
+    for (Gradient &h : larger)
+      for (double &entry : h)
+        entry *= factor;
+    Elastic::trial(larger, stresses);
+  }
+  void wave_moduli(std::span<WaveModuli> moduli) const override
+  {
+    Elastic::wave_moduli(moduli);
+    for (WaveModuli &m : moduli)
+      m = {m.p * (honest_ ? factor : 1), m.s * (honest_ ? factor : 1)};
+  }
+
+private:
+  bool honest_;
+};
+
+DynamicsSettings shaken(double peak = 1)
+{
+  DynamicsSettings settings;
+  settings.base.motion[0] = ricker_motion(peak, 3, 0.5, 1e-3);
+  settings.base.motion[1] = ricker_motion(0.5 * peak, 5, 0.4, 1e-3);
+  return settings;
+}
+
+template <int dim>
+Discretisation<dim> block(unsigned cells = 10, unsigned across = 1, MPI_Comm communicator = MPI_COMM_SELF)
+{
+  MeshSpec mesh{.soil = one_layer(20, 2000, cells), .width = {2, 3}, .cells_across = {across, across}};
+  mesh.soil.layers[0].permeability = 1e-3;
+  mesh.points_per_direction = 2;
+  return Discretisation<dim>(mesh, shaken_supports<dim>(false), communicator);
+}
+
+/// Surface displacement (x, z) after some steps of a shaken and loaded column of `dim`.
+template <int dim>
+std::array<double, 4> surface_after(Drainage drainage, unsigned across)
+{
+  const Discretisation<dim> space = block<dim>(10, across);
+  Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
+  DynamicsSettings settings = shaken();
+  settings.drainage = drainage;
+  settings.time_step = 8e-4;
+  settings.base.motion[2] = ricker_motion(0.3, 4, 0.5, 1e-3);
+  settings.surface_traction = [](double t) { return std::array<double, 3>{0, 0, -1e3 * std::min(1.0, t / 0.2)}; };
+  Dynamics<dim> run(space, material, settings);
+  for (int k = 0; k < 1500; ++k)
+    run.step();
+  const std::array<double, 3> top = {0, 0, 20};
+  const auto u = [&](unsigned c) { return run.displacement().local_element(space.find_dof(top, c)); };
+  return {u(0), u(1), u(2), run.pressure().local_element(space.find_pressure({0, 0, 10}))};
+}
+} // namespace
+
+TEST(Dynamics, ColumnAtRestStaysAtRestToTheBit)
+{
+  const Discretisation<1> space = block<1>();
+  for (Drainage drainage : {Drainage::dry, Drainage::undrained, Drainage::coupled})
+    {
+      Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
+      std::vector<Stress> initial;
+      for (const auto &at : space.position)
+        initial.push_back({-5e3 * (20 - at[2]), -5e3 * (20 - at[2]), -1e4 * (20 - at[2]), 0, 0, 0});
+      material.set_initial_stress(initial);
+      Dynamics<1> run(space, material, {.drainage = drainage});
+      for (int k = 0; k < 10000; ++k)
+        run.step();
+      EXPECT_EQ(run.displacement().linfty_norm(), 0);
+      EXPECT_EQ(run.pressure().linfty_norm(), 0);
+      EXPECT_TRUE(std::equal(initial.begin(), initial.end(), run.stresses().begin()));
+    }
+}
+
+TEST(Dynamics, EnergyBalanceOfAnUndampedRun)
+{
+  const Discretisation<1> space = block<1>(40);
+  Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
+  const double shear = 2000 * 200 * 200, lame = shear; // nu = 0.25
+  Dynamics<1> run(space, material, shaken());
+  double largest = 0, worst = 0, worst_stored = 0;
+  for (int k = 0; k < 10000; ++k)
+    {
+      double stored = 0; // of the strains, not of the bookkeeping
+      std::vector<Gradient> h(space.n_points());
+      space.gradients(run.displacement(), h);
+      for (std::size_t q = 0; q < h.size(); ++q)
+        stored += space.weight[q] / 2 *
+                  ((lame + 2 * shear) * h[q][8] * h[q][8] + shear * (h[q][2] * h[q][2] + h[q][5] * h[q][5]));
+      run.step();
+      const DynamicsEnergy e = run.energy();
+      largest = std::max({largest, e.kinetic, e.internal});
+      worst = std::max(worst, std::abs(e.residual()));
+      worst_stored = std::max(worst_stored, std::abs(e.internal - stored));
+    }
+  std::printf(
+      "  10,000 steps: residual %.1e, work of the stresses against the strain energy %.1e of the largest energy\n",
+      worst / largest, worst_stored / largest);
+  EXPECT_LT(worst, 1e-6 * largest);
+  EXPECT_LT(worst_stored, 1e-6 * largest);
+  EXPECT_GT(run.energy().kinetic + run.energy().internal, 0.1 * largest); // still moving: nothing was damped away
+}
+
+TEST(Dynamics, StepAboveTheStableOneIsRefused)
+{
+  const Discretisation<1> space = block<1>();
+  Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
+  const double stable = Dynamics<1>(space, material, {}).stable_step();
+  EXPECT_NEAR(stable, 2 / std::sqrt(24) * 2 / (200 * std::sqrt(3)), 1e-9); // degree 2: omega h/c = sqrt(24)
+  try
+    {
+      Dynamics<1>(space, material, {.time_step = 1.01 * stable});
+      FAIL();
+    }
+  catch (const InputError &error)
+    {
+      EXPECT_THAT(error.what(), HasSubstr("stable step"));
+    }
+}
+
+TEST(Dynamics, StableStepIsABoundAndClose)
+{
+  const Discretisation<2> space = block<2>(6, 2);
+  Stiffening material(space.n_points(), false);
+  Dynamics<2> run(space, material, {});
+  // Largest omega^2 of the mesh by power iteration on M^-1 K.
+  const Vector mass = space.lumped_mass();
+  Vector x = space.displacement_vector(), f = x;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x.local_element(i) = mass.local_element(i) > 0 ? std::sin(1.0 + 7 * i) : 0;
+  std::vector<Gradient> h(space.n_points());
+  std::vector<Stress> stresses(space.n_points());
+  double omega2 = 0;
+  for (int k = 0; k < 2000; ++k)
+    {
+      for (unsigned i : space.fixed_dofs)
+        x.local_element(i) = 0;
+      x /= x.l2_norm();
+      space.gradients(x, h);
+      material.trial(h, stresses);
+      f = 0;
+      space.add_internal_force(stresses, f);
+      omega2 = 0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        {
+          const double m = mass.local_element(i);
+          f.local_element(i) = m > 0 ? f.local_element(i) / m : 0;
+          omega2 += x.local_element(i) * f.local_element(i);
+        }
+      x = f;
+    }
+  const double ratio = run.stable_step() / (2 / std::sqrt(omega2));
+  std::printf("  stable step by elements over the true one: %.3f\n", ratio);
+  EXPECT_LE(ratio, 1 + 1e-9);
+  EXPECT_GT(ratio, 0.6);
+}
+
+TEST(Dynamics, StiffeningIsFoundBeforeItExplodes)
+{
+  const Discretisation<1> space = block<1>();
+  for (const bool honest : {true, false})
+    {
+      Stiffening material(space.n_points(), honest);
+      Dynamics<1> run(space, material, shaken());
+      for (int k = 0; k < 500; ++k)
+        run.step();
+      material.factor = 16; // shear waves, which alone are there, have sqrt(3) of room
+      try
+        {
+          for (int k = 0; k < 5000; ++k)
+            run.step();
+          FAIL();
+        }
+      catch (const RunFailure &failure)
+        {
+          EXPECT_THAT(failure.what(), HasSubstr(honest ? "the soil has become stiffer" : "kinetic energy"));
+          EXPECT_THAT(failure.what(), HasSubstr("at step 5"));
+        }
+    }
+}
+
+TEST(Dynamics, ColumnEqualsTiedBlocks)
+{
+  for (const Drainage drainage : {Drainage::dry, Drainage::coupled})
+    {
+      const auto one = surface_after<1>(drainage, 1), two = surface_after<2>(drainage, 2),
+                 three = surface_after<3>(drainage, 2);
+      for (int k = 0; k < 4; ++k)
+        {
+          EXPECT_NEAR(two[k], one[k], 1e-10 * std::abs(one[k])) << k;
+          EXPECT_NEAR(three[k], one[k], 1e-10 * std::abs(one[k])) << k;
+        }
+      std::printf("  tied blocks against the column: %.1e (2D), %.1e (3D)\n", two[0] / one[0] - 1,
+                  three[0] / one[0] - 1);
+      EXPECT_GT(std::abs(one[0]), 1e-4);
+      EXPECT_EQ(one[3] != 0, drainage == Drainage::coupled);
+    }
+}
+
+TEST(Dynamics, RestoredRunGoesOnToTheSameBits)
+{
+  for (const Drainage drainage : {Drainage::dry, Drainage::undrained, Drainage::coupled})
+    {
+      const Discretisation<1> space = block<1>();
+      DynamicsSettings settings = shaken();
+      settings.drainage = drainage;
+      settings.lagged_compressibility = drainage == Drainage::undrained;
+      Elastic first = elastic_of(space.n_points(), 2000, 200, 0.25), second = first;
+      Dynamics<1> whole(space, first, settings), resumed(space, second, settings);
+      for (int k = 0; k < 300; ++k)
+        whole.step();
+      const DynamicsState saved = whole.save();
+      for (int k = 0; k < 1000; ++k)
+        whole.step();
+      resumed.restore(saved);
+      for (int k = 0; k < 1000; ++k)
+        resumed.step();
+      const DynamicsState a = whole.save(), b = resumed.save();
+      EXPECT_EQ(a.vectors, b.vectors);
+      EXPECT_EQ(a.numbers, b.numbers);
+      EXPECT_EQ(a.material, b.material);
+      EXPECT_EQ(a.step, 1300u);
+    }
+}
+
+TEST(Dynamics, StateOfAnotherMeshIsRefused)
+{
+  const Discretisation<1> space = block<1>(), other = block<1>(11);
+  Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
+  Elastic of_other = elastic_of(other.n_points(), 2000, 200, 0.25);
+  Dynamics<1> run(space, material, {.time_step = 1e-4}), into(other, of_other, {.time_step = 1e-4});
+  EXPECT_THROW(into.restore(run.save()), InputError);
+}
+
+TEST(Dynamics, SettingsThatCannotBeAreRefused)
+{
+  const auto message = [](auto make) -> std::string {
+    try
+      {
+        make();
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  };
+  const Discretisation<2> plane = block<2>(2);
+  Elastic in_plane = elastic_of(plane.n_points(), 2000, 200, 0.25);
+  EXPECT_THAT(message([&] { Dynamics<2>(plane, in_plane, {.drainage = Drainage::undrained}); }),
+              HasSubstr("columns only"));
+  const Discretisation<1> linear({.soil = one_layer(20, 2000, 4), .degree = 1}, shaken_supports<1>(false));
+  Elastic few = elastic_of(linear.n_points(), 2000, 200, 0.25);
+  EXPECT_THAT(message([&] { Dynamics<1>(linear, few, {.drainage = Drainage::coupled}); }), HasSubstr("degree = 2"));
+  EXPECT_THAT(message([&] { Discretisation<1>({.soil = one_layer(0, 2000, 4)}, {}); }), HasSubstr("thickness"));
+  SoilProfile soil = one_layer(5, 2000, 4);
+  soil.layers[0].permeability = -1e-5;
+  EXPECT_THAT(message([&] { Discretisation<1>({.soil = soil}, {}); }), HasSubstr("permeability"));
+}
+} // namespace isostat

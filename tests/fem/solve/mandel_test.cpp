@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mandel's slab between rigid plates: the load at its middle first rises, then drains to the sides (Mandel 1953; Cryer
+// 1963). Half of it, x from 0 (symmetry) to a (drained).
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
+#include "fem/material/elastic.hpp"
+#include "fem/solve/statics.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+constexpr double half_width = 10, height = 2, force = 1e4; // m, m, half the load on the plate per m, N/m
+constexpr unsigned cells = 40;
+
+struct Mandel
+{
+  static MeshSpec mesh()
+  {
+    MeshSpec mesh;
+    mesh.soil.layers = {{.name = "clay", .thickness = height, .porosity = 0.33, .permeability = 1e-8}};
+    mesh.soil.layers[0].cells = 2;
+    mesh.width = {half_width, 1};
+    mesh.cells_across = {cells, 1};
+    return mesh;
+  }
+  static Supports supports()
+  {
+    return {.fixed = {{Face::base, 2}, {Face::base, 1}, {Face::x_low, 0}},
+            .together = {{Face::surface, 2}},
+            .drained = {Face::x_high}};
+  }
+  static StaticsSettings settings()
+  {
+    StaticsSettings settings;
+    settings.pore_water = true;
+    settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -force / half_width}; }}};
+    return settings;
+  }
+  Mandel() : space(mesh(), supports()), soil(elastic, space.n_points()), statics(space, soil, settings())
+  {
+    const Water &water = space.mesh().soil.water;
+    const double q = water.bulk_modulus / 0.33, k = elastic.bulk_modulus(), g = elastic.shear_modulus;
+    const double k_u = k + q;
+    skempton = q / k_u;
+    nu_u = (3 * k_u - 2 * g) / (2 * (3 * k_u + g));
+    seconds = half_width * half_width * (1 / (k + 4 * g / 3) + 1 / q) / water.mobility(1e-8);
+    const double ratio = (1 - elastic.poisson_ratio) / (nu_u - elastic.poisson_ratio);
+    for (int n = 0; n < 100; ++n) // one root in each interval
+      {
+        double low = n * std::numbers::pi + 1e-9, high = (n + 0.5) * std::numbers::pi;
+        for (int k = 0; k < 100; ++k)
+          {
+            const double y = (low + high) / 2, f = std::sin(y) - ratio * y * std::cos(y);
+            (((n % 2 == 0) == (f < 0)) ? low : high) = y;
+          }
+        roots.push_back(low);
+      }
+  }
+
+  double at_once() const { return force * skempton * (1 + nu_u) / (3 * half_width); }
+  double exact(double x, double t) const
+  {
+    double sum = 0;
+    for (double y : roots)
+      sum += std::sin(y) / (y - std::sin(y) * std::cos(y)) * (std::cos(y * x / half_width) - std::cos(y)) *
+             std::exp(-y * y * t);
+    return 2 * at_once() * sum;
+  }
+  double pressure(double x, double z = 0) const
+  {
+    return statics.pressure().local_element(space.find_pressure({x, 0, z}));
+  }
+
+  ElasticParameters elastic{.shear_modulus = 5e7, .poisson_ratio = 0.2};
+  Discretisation<2> space;
+  Elastic soil;
+  Statics<2> statics;
+  double skempton, nu_u, seconds;
+  std::vector<double> roots;
+};
+} // namespace
+
+TEST(Mandel, PressureRisesThenFalls)
+{
+  Mandel slab;
+  slab.statics.step_undrained();
+  const double p0 = slab.at_once();
+  std::printf("nu_u %.4f, B %.4f; p(0+)/exact - 1 = %.1e\n", slab.nu_u, slab.skempton, slab.pressure(0) / p0 - 1);
+  EXPECT_NEAR(slab.pressure(0) / p0, 1, 1e-9);
+  EXPECT_NEAR(slab.pressure(half_width / 2, height) / p0, 1, 1e-9);
+  double before = 0, highest = 0, exact_highest = 0;
+  for (double t : {0.01, 0.05, 0.1, 0.5, 1.0, 2.0})
+    {
+      for (int k = 0; k < 60; ++k)
+        {
+          slab.statics.step((t - before) / 60 * slab.seconds);
+          highest = std::max(highest, slab.pressure(0));
+          exact_highest = std::max(exact_highest, slab.exact(0, slab.statics.time() / slab.seconds));
+        }
+      before = t;
+      double error = 0;
+      for (unsigned k = 0; k <= cells; ++k)
+        {
+          const double x = half_width * k / cells;
+          error = std::max(error, std::abs(slab.pressure(x) - slab.exact(x, t)) / p0);
+        }
+      std::printf("ct/a2 %.2f: p/p(0+) in the middle %.4f, exact %.4f; largest error %.1e\n", t, slab.pressure(0) / p0,
+                  slab.exact(0, t) / p0, error);
+      EXPECT_LT(error, 1e-2) << t;
+    }
+  std::printf("highest p/p(0+) in the middle %.4f, exact %.4f\n", highest / p0, exact_highest / p0);
+  EXPECT_GT(highest / p0, 1.05);
+  EXPECT_NEAR(highest / p0, exact_highest / p0, 5e-3);
+  EXPECT_NEAR(slab.statics.reaction({Face::base, 2}) / force, 1, 1e-8);
+}
+} // namespace isostat

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shear waves in a column against exact solutions: transfer functions, orders of convergence, absorbing base.
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
+#include "fem/solve/dynamics.hpp"
+#include "tests/support/columns.hpp"
+#include "tests/support/transfer_function.hpp"
+
+#include <cstdio>
+
+namespace isostat
+{
+namespace
+{
+struct Setting
+{
+  unsigned cells = 40, degree = 2;
+  double time_step = 2.5e-4, duration = 40;
+  bool compliant = false;
+};
+
+/// Largest relative error of the complex transfer function over 0.5 to 10 Hz in steps of 0.1 Hz.
+double transfer_error(const ShearLayer &layer, const Setting &setting)
+{
+  SoilProfile soil = one_layer(layer.height, layer.density, setting.cells);
+  const Discretisation<1> space({.soil = soil, .degree = setting.degree}, shaken_supports<1>(setting.compliant));
+  Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
+  DynamicsSettings settings{.time_step = setting.time_step, .mass_damping = layer.mass_damping};
+  settings.base.compliant = setting.compliant;
+  settings.base.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
+  Dynamics<1> run(space, material, settings);
+  const long surface = space.find_dof({0, 0, layer.height}, 0);
+  std::vector<double> top, below;
+  while (run.time() < setting.duration)
+    {
+      const double input = settings.base.motion[0].acceleration(run.time());
+      run.step();
+      top.push_back(run.acceleration().local_element(surface) + (setting.compliant ? 0 : input));
+      below.push_back(input);
+    }
+  double worst = 0;
+  for (double f = 0.5; f < 10.01; f += 0.1)
+    {
+      const Complex exact = setting.compliant
+                                ? layer.over_outcrop(f, settings.base.density, settings.base.shear_velocity)
+                                : layer.over_rigid_base(f);
+      const Complex found = fourier(top, run.time_step(), f) / fourier(below, run.time_step(), f);
+      worst = std::max(worst, std::abs(found - exact) / std::abs(exact));
+    }
+  return worst;
+}
+
+double order(double coarse, double fine) { return std::log2(coarse / fine); }
+} // namespace
+
+TEST(ShearLayer, ExactTransferFunctionIsThatOfTheBook)
+{
+  const ShearLayer undamped;
+  EXPECT_NEAR(std::abs(undamped.over_rigid_base(1.0)), 1 / std::abs(std::cos(2 * M_PI * 20 / 200)), 1e-12);
+  EXPECT_GT(std::abs(undamped.over_rigid_base(2.4999)), 1e3); // f1 = V_s/4H
+}
+
+TEST(ShearLayer, RigidBase)
+{
+  const double error = transfer_error({.mass_damping = 1}, {});
+  std::printf("  rigid base, 40 elements of degree 2, dt = 0.25 ms: %.2e\n", error);
+  EXPECT_LT(error, 1e-3);
+}
+
+TEST(ShearLayer, CompliantBase)
+{
+  const double error = transfer_error({}, {.duration = 20, .compliant = true});
+  std::printf("  compliant base, 40 elements of degree 2, dt = 0.25 ms: %.2e\n", error);
+  EXPECT_LT(error, 1e-3);
+}
+
+TEST(ShearLayer, SecondOrderInTheTimeStep)
+{
+  double before = 0;
+  for (double dt : {5e-4, 2.5e-4, 1.25e-4})
+    {
+      const double error = transfer_error({.mass_damping = 1}, {.time_step = dt});
+      std::printf("  dt = %.1e s: %.3e, order %.2f\n", dt, error, before > 0 ? order(before, error) : 0.0);
+      if (before > 0)
+        {
+          EXPECT_NEAR(order(before, error), 2, 0.15);
+        }
+      before = error;
+    }
+}
+
+TEST(ShearLayer, SecondOrderInTheMeshOrBetter)
+{
+  for (unsigned degree : {1, 2})
+    {
+      double before = 0;
+      for (unsigned cells : {10, 20, 40})
+        {
+          const double error = transfer_error(
+              {}, {.cells = cells, .degree = degree, .time_step = 5e-5, .duration = 8, .compliant = true});
+          std::printf("  degree %u, %u elements: %.3e, order %.2f\n", degree, cells, error,
+                      before > 0 ? order(before, error) : 0.0);
+          if (before > 0)
+            {
+              EXPECT_GT(order(before, error), degree == 1 ? 1.8 : 2.0);
+            }
+          before = error;
+        }
+    }
+}
+
+TEST(ShearLayer, AbsorbingBaseReturnsNothing)
+{
+  const ShearLayer layer;
+  const Discretisation<1> space({.soil = one_layer(layer.height, layer.density, 80)}, shaken_supports<1>(true));
+  Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
+  DynamicsSettings settings;
+  settings.base = {.compliant = true, .density = layer.density, .shear_velocity = layer.velocity, .motion = {}};
+  settings.base.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
+  Dynamics<1> run(space, material, settings);
+  const long surface = space.find_dof({0, 0, layer.height}, 0);
+  const double travel = layer.height / layer.velocity;
+  double worst = 0, left = 0, peak = 0;
+  while (run.time() < 3)
+    {
+      run.step();
+      const double found = run.velocity().local_element(surface), t = run.time() - run.time_step() / 2;
+      const double outcrop = settings.base.motion[0].velocity(t - travel); // surface = outcrop, delayed
+      peak = std::max(peak, std::abs(outcrop));
+      worst = std::max(worst, std::abs(found - outcrop));
+      if (t > 1.0 + 2.5 * travel) // the pulse has gone down through the base
+        left = std::max(left, std::abs(found));
+    }
+  std::printf("  pulse at the surface: error %.2e of its peak; what comes back: %.2e\n", worst / peak, left / peak);
+  EXPECT_LT(worst / peak, 1e-3);
+  EXPECT_LT(left / peak, 1e-3);
+}
+} // namespace isostat

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A mesh shared out over the ranks of a run gives what each rank finds alone. Run with mpirun.
+#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+
+#include "fem/material/elastic.hpp"
+#include "fem/solve/statics.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace isostat
+{
+namespace
+{
+template <int dim>
+struct Footing
+{
+  static MeshSpec mesh()
+  {
+    MeshSpec mesh;
+    mesh.soil.layers = {{.name = "clay", .thickness = 2, .permeability = 1e-8, .cells = 3}};
+    mesh.width = {3, 2};
+    mesh.cells_across = {dim == 2 ? 8u : 4u, 2};
+    return mesh;
+  }
+  static Supports supports(bool tied)
+  {
+    Supports supports{
+        .tied_sides = tied, .fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = {Face::surface}};
+    if (!tied)
+      supports.fixed.insert(supports.fixed.end(), {{Face::x_low, 0}, {Face::x_high, 0}});
+    return supports;
+  }
+  static StaticsSettings settings()
+  {
+    StaticsSettings settings;
+    settings.pore_water = true;
+    settings.tractions = {{Face::surface, [](double, const Place &at) {
+                             return Place{0, 0, at[0] > 0.7 && at[0] < 1.6 ? -1e4 : 0.0};
+                           }}};
+    return settings;
+  }
+  explicit Footing(MPI_Comm communicator, bool tied)
+      : space(mesh(), supports(tied), communicator), soil({5e7, 0.2}, space.n_points()),
+        statics(space, soil, settings())
+  {
+    statics.step_undrained();
+    for (int k = 0; k < 5; ++k)
+      statics.step(50);
+  }
+  /// Displacements and pressures at some places, and the reaction of the base.
+  std::vector<double> answers() const
+  {
+    std::vector<double> values;
+    for (const Place &place : {Place{0.75, 0, 2}, Place{1.5, 1, 1}, Place{2.25, 2, 2.0 / 3}})
+      {
+        for (unsigned c = 0; c < 3; ++c)
+          values.push_back(value(statics.displacement(), space.find_dof(place, c)));
+        values.push_back(value(statics.pressure(), space.find_pressure(place)));
+      }
+    values.push_back(statics.reaction({Face::base, 2}));
+    return values;
+  }
+  double value(const Vector &vector, long unknown) const
+  {
+    double value = unknown < 0 ? 0 : vector.local_element(unknown);
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
+    return value;
+  }
+
+  Discretisation<dim> space;
+  Elastic soil;
+  Statics<dim> statics;
+};
+
+template <int dim>
+void compare(bool tied)
+{
+  const std::vector<double> alone = Footing<dim>(MPI_COMM_SELF, tied).answers(),
+                            shared = Footing<dim>(MPI_COMM_WORLD, tied).answers();
+  double largest[3] = {0, 0, 0}, error = 0; // of displacements, pressures, reaction
+  const auto kind = [&](std::size_t k) { return k + 1 == alone.size() ? 2 : k % 4 == 3 ? 1 : 0; };
+  for (std::size_t k = 0; k < alone.size(); ++k)
+    largest[kind(k)] = std::max(largest[kind(k)], std::abs(alone[k]));
+  for (std::size_t k = 0; k < alone.size(); ++k)
+    error = std::max(error, std::abs(shared[k] - alone[k]) / largest[kind(k)]);
+  std::printf("%dD%s: largest difference %.1e\n", dim, tied ? " tied" : "", error);
+  EXPECT_LT(error, 1e-10);
+  EXPECT_GT(largest[1], 10);
+}
+} // namespace
+
+TEST(StaticsRanks, SharedOutIsTheSame)
+{
+  compare<2>(false);
+  compare<2>(true);
+  compare<3>(false);
+}
+} // namespace isostat
