@@ -34,19 +34,19 @@ LEVELS = {  # name: amplitude, duration, ramp
     "strong": ("0.15 g", "2 s", "0.5 s"),
 }
 RATES = {"quasi_static_tolerance": 0.01, "rate_floor": 0.2, "rate_ceiling": 2.0}  # the defaults of the schema
-SLOW = {"quasi_static_tolerance": 0.002, "rate_floor": 0.02, "least_steps": 100, "time_step": 0.5}
-NEXT = {"quasi_static_tolerance": 0.003, "rate_floor": 0.05, "least_steps": 50, "time_step": 1}
+SLOW = {"quasi_static_tolerance": 0.002, "rate_floor": 0.02, "min_steps": 100, "time_step": 0.5}
+NEXT = {"quasi_static_tolerance": 0.003, "rate_floor": 0.05, "min_steps": 50, "time_step": 1}
 NUMERICS = [  # family, label, what differs from the defaults; rates in 1/s, time step in ms
     ("default", "default", {}),
     ("reference", "reference", SLOW),
     ("reference", "next slow", NEXT),
-    ("least", "least steps 1", {"least_steps": 1}),
-    ("least", "least steps 5", {"least_steps": 5}),
-    ("least", "least steps 10", {"least_steps": 10}),
-    ("least", "least steps 50", {"least_steps": 50}),
-    ("least", "least steps 100", {"least_steps": 100}),
-    ("recommended", "least steps 200", {"least_steps": 200}),
-    ("least", "least steps 400", {"least_steps": 400}),
+    ("least", "least steps 1", {"min_steps": 1}),
+    ("least", "least steps 5", {"min_steps": 5}),
+    ("least", "least steps 10", {"min_steps": 10}),
+    ("least", "least steps 50", {"min_steps": 50}),
+    ("least", "least steps 100", {"min_steps": 100}),
+    ("recommended", "least steps 200", {"min_steps": 200}),
+    ("least", "least steps 400", {"min_steps": 400}),
     ("tolerance", "tolerance 0.003", {"quasi_static_tolerance": 0.003}),
     ("tolerance", "tolerance 0.03", {"quasi_static_tolerance": 0.03}),
     ("rate", "rates 0.02 to 2", {"rate_floor": 0.02}),
@@ -60,7 +60,7 @@ NUMERICS = [  # family, label, what differs from the defaults; rates in 1/s, tim
     ("step", "FE step 2 ms", {"time_step": 2}),
     ("step", "FE step 1 ms", {"time_step": 1}),
     ("step", "FE step 0.5 ms", {"time_step": 0.5}),
-    ("fast", "fast", {"quasi_static_tolerance": 0.03, "rate_ceiling": 10.0, "least_steps": 10}),
+    ("fast", "fast", {"quasi_static_tolerance": 0.03, "rate_ceiling": 10.0, "min_steps": 10}),
     ("same", "motion 1 ppm larger", {"factor": 1.000001}),
     ("same", "rates 0.02 to 2, own packings", {"rate_floor": 0.02, "own": True}),
     ("same", "reference, 1 ppm larger", {**SLOW, "factor": 1.000001}),
@@ -173,8 +173,8 @@ def run(arguments, case):
               "motion.0.amplitude": f"{float(value) * settings.get('factor', 1):.9g} {unit}", "motion.0.ramp": ramp,
               "motion.0.duration": duration, "analysis.duration": duration,
               "output.history_interval": "4 ms", "output.profile_interval": "20 ms", "output.paraview_interval": "10 s"}
-    if "least_steps" in settings:
-        chosen["grains.least_steps"] = settings["least_steps"]
+    if "min_steps" in settings:
+        chosen["grains.min_steps"] = settings["min_steps"]
     if "time_step" in settings:
         chosen["analysis.time_step"] = f"{settings['time_step']} ms"
     made_with = "\n".join(f"{key}={item}" for key, item in chosen.items() if not isinstance(item, pathlib.Path))

@@ -59,7 +59,7 @@ double shear_of(int round) { return round % 2 ? -1e-5 : 1e-5; }
 void compare(const Snapshot &start, const Options &options)
 {
   RveMaterialSettings settings;
-  settings.least_steps = 1; // as the elements alone
+  settings.min_steps = 1; // as the elements alone
   settings.threads = options.threads;
   const std::vector<Snapshot> specimens(options.elements, start);
   RveMaterial kept(specimens, settings, MPI_COMM_WORLD), tried(specimens, settings, MPI_COMM_WORLD);

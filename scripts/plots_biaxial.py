@@ -77,7 +77,7 @@ def stress_strain(block):
     axes[1].plot(strain, 100 * block.history["volumetric_strain"], color=BLUE)
     axes[1].set_ylabel("Volumetric strain (%)")
     for name, label, color in (("shear_mean", "mean", BLACK), ("shear_quantile", "90 % quantile", BLUE),
-                               ("shear_greatest", "greatest", ORANGE)):
+                               ("shear_max", "greatest", ORANGE)):
         axes[2].plot(strain, 100 * block.history[name], color=color, label=label)
     axes[2].set_ylabel("Shear strain of points (%)")
     axes[2].legend()

@@ -27,7 +27,7 @@ StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
   const double way = scene.test.axial_strain * scene.mesh.height;
   settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
   settings.tolerance = tolerance;
-  settings.least_force = scene.test.confinement * scene.mesh.width;
+  settings.min_force = scene.test.confinement * scene.mesh.width;
   settings.max_iterations = scene.newton.max_iterations;
   settings.iterations_per_tangent = scene.newton.iterations_per_tangent;
   settings.max_halvings = scene.newton.max_halvings;
@@ -37,7 +37,7 @@ StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
 const std::vector<RecordColumn> columns = {
     {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
     {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
-    {"shear_mean"}, {"shear_quantile"}, {"shear_greatest"}};
+    {"shear_mean"}, {"shear_quantile"}, {"shear_max"}};
 
 /// One run from its start to its end.
 class BiaxialRun

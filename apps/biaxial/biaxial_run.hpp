@@ -22,7 +22,7 @@ struct BiaxialSummary
   bool complete = false;
   std::string failure;                     ///< why it stopped before its end
   double axial_strain = 0;                 ///< reached
-  double peak_stress = 0, peak_strain = 0; ///< greatest axial stress, compression positive, Pa; where
+  double peak_stress = 0, peak_strain = 0; ///< largest axial stress, compression positive, Pa; where
   double last_stress = 0;                  ///< Pa
   double volumetric_strain = 0;            ///< at the end, compression positive
   double localisation = 0;                 ///< 90 % quantile of the points' shear strain over its median; uniform: 1

@@ -38,12 +38,12 @@ struct BiaxialTest
   bool operator==(const BiaxialTest &) const = default;
 };
 
-/// Of StaticsSettings; the least force scale is confinement times width.
+/// Of StaticsSettings; the smallest force scale is confinement times width.
 struct BiaxialNewton
 {
   double tolerance = 1e-6;
   unsigned max_iterations = 25, iterations_per_tangent = 1, max_halvings = 8;
-  std::optional<double> last_tolerance; ///< the greatest with which a step that failed is tried again
+  std::optional<double> last_tolerance; ///< the largest with which a step that failed is tried again
 
   bool operator==(const BiaxialNewton &) const = default;
 };

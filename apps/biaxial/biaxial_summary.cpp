@@ -30,7 +30,7 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
                       scene.mesh.degree, s.points, material_names[static_cast<int>(scene.soil.material)]);
   text += fmt::format("  axial strain        {:.4g} % in {} steps{}\n", 100 * s.axial_strain, s.steps,
                       s.complete ? "" : ", then it stopped");
-  text += fmt::format("  axial stress        {:.4g} kPa at the end, greatest {:.4g} kPa at {:.3g} %\n",
+  text += fmt::format("  axial stress        {:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %\n",
                       s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
   text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
   text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);

@@ -27,20 +27,20 @@ RveMaterialSettings grains_settings(const ColumnGrains &spec, int threads)
 }
 
 /// Specimen of every point. The lot is the same on every machine: no distribution of the standard library is used.
-std::vector<SpecimenWish> wishes(const BiaxialScene &scene, const Discretisation<2> &space)
+std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretisation<2> &space)
 {
   std::mt19937_64 lot(1);
-  std::vector<SpecimenWish> all;
+  std::vector<SpecimenRequest> all;
   for (const auto &place : space.position)
     {
       const std::uint64_t drawn = lot() % scene.mixed_realisations;
       const bool weak = in_weak_zone(scene, place);
-      SpecimenWish &wish = all.emplace_back();
+      SpecimenRequest &request = all.emplace_back();
       const auto density =
           weak && scene.weak.relative_density ? scene.weak.relative_density : scene.soil.grains.relative_density;
       if (density)
-        wish.relative_density = *density;
-      wish.realisation = weak ? scene.weak.realisation : scene.soil.grains.realisation + drawn;
+        request.relative_density = *density;
+      request.realisation = weak ? scene.weak.realisation : scene.soil.grains.realisation + drawn;
     }
   return all;
 }
@@ -54,11 +54,11 @@ std::unique_ptr<Material> formula_block(const BiaxialScene &scene, const Discret
   *weak.shear_modulus *= scene.weak.factor;
   weak.iwan.strength_ratio *= scene.weak.factor;
   weak.iwan.phase_transformation_ratio *= scene.weak.factor;
-  std::vector<Patchwork::Part> parts;
+  std::vector<CompositeMaterial::Part> parts;
   for (int k = 0; k < 2; ++k)
     if (!places[k].empty())
       parts.push_back({formula_material(k ? weak : scene.soil, places[k].size()), places[k]});
-  return std::make_unique<Patchwork>(std::move(parts));
+  return std::make_unique<CompositeMaterial>(std::move(parts));
 }
 
 MeshSpec mesh_of(const BiaxialScene &scene)
@@ -105,7 +105,7 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
   if (scene.has_grains())
     {
       auto grains =
-          std::make_unique<RveMaterial>(wishes(scene, space), grains_settings(scene.grains, threads), MPI_COMM_SELF);
+          std::make_unique<RveMaterial>(requests(scene, space), grains_settings(scene.grains, threads), MPI_COMM_SELF);
       block.grains = grains.get();
       block.material = std::move(grains);
     }

@@ -42,7 +42,8 @@ double liquefaction_ratio(const Scene &scene)
   return 0.01;
 }
 
-/// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the least.
+/// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the
+/// smallest.
 void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
 {
   double sum = 0, last = 0, half_cycle = 0;
@@ -59,7 +60,7 @@ void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
       if (history(row, reversals) != half_cycle)
         count();
       half_cycle = history(row, reversals);
-      summary.redundancy_least = std::min(summary.redundancy_least, history(row, ir));
+      summary.redundancy_min = std::min(summary.redundancy_min, history(row, ir));
       if (history(row - 1, p) < limit && history(row, p) >= limit)
         last = history(row, ir);
     }
@@ -70,7 +71,7 @@ void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
 void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
 {
   bool started = false;
-  summary.least_p = summary.p0;
+  summary.min_p = summary.p0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
       if (!is_shear(scene.stages[static_cast<std::size_t>(history(row, stage))].kind))
@@ -85,13 +86,13 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
         {
           summary.liquefied = true;
           summary.onset_row = row;
-          summary.redundancy_at_onset = summary.redundancy_least = history(row, ir);
+          summary.redundancy_at_onset = summary.redundancy_min = history(row, ir);
         }
-      summary.greatest_strain = std::max(summary.greatest_strain, std::abs(history(row, eps)));
-      summary.greatest_q = std::max(summary.greatest_q, std::abs(history(row, q)));
-      summary.least_p = std::min(summary.least_p, history(row, p));
+      summary.max_strain = std::max(summary.max_strain, std::abs(history(row, eps)));
+      summary.max_q = std::max(summary.max_q, std::abs(history(row, q)));
+      summary.min_p = std::min(summary.min_p, history(row, p));
       if (!summary.liquefied)
-        summary.greatest_indicator = std::max(summary.greatest_indicator, history(row, indicator));
+        summary.max_indicator = std::max(summary.max_indicator, history(row, indicator));
     }
 }
 
@@ -115,7 +116,7 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
   ShearExtremes shear;
   for (const Stage &s : scene.stages)
     if (is_simple_shear(s.kind) && is_cyclic(s.kind))
-      shear.asked_ratio = std::max(shear.asked_ratio, s.stress_ratio);
+      shear.requested_ratio = std::max(shear.requested_ratio, s.stress_ratio);
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
       if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))].kind))
@@ -125,7 +126,7 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
       shear.gamma = std::max(shear.gamma, std::abs(history(row, gamma)));
       shear.tau = std::max(shear.tau, std::abs(history(row, tau)));
     }
-  shear.greatest_ratio = shear.sigma_v0 > 0 ? shear.tau / shear.sigma_v0 : 0;
+  shear.max_ratio = shear.sigma_v0 > 0 ? shear.tau / shear.sigma_v0 : 0;
   return shear;
 }
 
@@ -141,8 +142,8 @@ double energy_residual(const CsvTable &history)
 }
 std::string axial_text(const TestSummary &s)
 {
-  return fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, least p'    {:.2f} kPa, {:.3f} kPa",
-                     100 * s.greatest_strain, s.greatest_q / 1e3, s.least_p / 1e3);
+  return fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, smallest p'    {:.2f} kPa, {:.3f} kPa",
+                     100 * s.max_strain, s.max_q / 1e3, s.min_p / 1e3);
 }
 
 std::string shear_text(const TestSummary &s)
@@ -151,13 +152,14 @@ std::string shear_text(const TestSummary &s)
   std::string text;
   if (s.axial) // triaxial stages as well
     text = fmt::format("\n  largest |axial strain|   {:.4f} %\n  largest |q|              {:.2f} kPa",
-                       100 * s.greatest_strain, s.greatest_q / 1e3);
-  text += fmt::format("\n  largest |gamma|          {:.4f} %\n  largest |tau|, least p'  {:.2f} kPa, {:.3f} kPa",
-                      100 * shear.gamma, shear.tau / 1e3, s.least_p / 1e3);
+                       100 * s.max_strain, s.max_q / 1e3);
+  text += fmt::format("\n  largest |gamma|          {:.4f} %\n  largest |tau|, smallest p'  {:.2f} kPa, {:.3f} kPa",
+                      100 * shear.gamma, shear.tau / 1e3, s.min_p / 1e3);
   const std::string ratio =
-      fmt::format("|tau| reached {:.4f} sigma'_v0, sigma'_v0 {:.2f} kPa", shear.greatest_ratio, shear.sigma_v0 / 1e3);
-  return text + (shear.asked_ratio > 0 ? fmt::format("\n  CSR                      {:g} ({})", shear.asked_ratio, ratio)
-                                       : fmt::format("\n  stress ratio             {}", ratio));
+      fmt::format("|tau| reached {:.4f} sigma'_v0, sigma'_v0 {:.2f} kPa", shear.max_ratio, shear.sigma_v0 / 1e3);
+  return text + (shear.requested_ratio > 0
+                     ? fmt::format("\n  CSR                      {:g} ({})", shear.requested_ratio, ratio)
+                     : fmt::format("\n  stress ratio             {}", ratio));
 }
 
 /// Members of summary.json that only simple shear has.
@@ -165,10 +167,10 @@ std::string shear_json(const TestSummary &s)
 {
   if (!s.shear)
     return "";
-  return fmt::format("  \"gamma_greatest\": {:.10g},\n  \"tau_greatest\": {:.10g},\n  \"sigma_v0\": {:.10g},\n  "
-                     "\"stress_ratio_greatest\": {:.10g},\n  \"CSR\": {},\n",
-                     s.shear->gamma, s.shear->tau, s.shear->sigma_v0, s.shear->greatest_ratio,
-                     s.shear->asked_ratio > 0 ? fmt::format("{:.10g}", s.shear->asked_ratio) : "null");
+  return fmt::format("  \"gamma_max_reached\": {:.10g},\n  \"tau_max_reached\": {:.10g},\n  \"sigma_v0\": {:.10g},\n  "
+                     "\"stress_ratio_max\": {:.10g},\n  \"CSR\": {},\n",
+                     s.shear->gamma, s.shear->tau, s.shear->sigma_v0, s.shear->max_ratio,
+                     s.shear->requested_ratio > 0 ? fmt::format("{:.10g}", s.shear->requested_ratio) : "null");
 }
 } // namespace
 
@@ -193,7 +195,7 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.axial = any_stage(scene, [](StageKind kind) { return is_shear(kind) && !is_simple_shear(kind); });
   summary.shear = shear_extremes(folder, scene);
   summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
-  summary.strain_before = state.greatest_strain_before;
+  summary.strain_before = state.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
   add_path(history, scene, summary);
   add_recoveries(history, liquefaction_ratio(scene) * state.p0, summary);
@@ -218,16 +220,16 @@ std::string to_text(const TestSummary &s, const Scene &scene)
                                : fmt::format("from tolerance {:g} (between {:g} and {:g} 1/s)",
                                              motion.quasi_static_tolerance, motion.rate_floor, motion.rate_ceiling);
   text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
-                      s.greatest_indicator);
+                      s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
   if (s.cyclic && s.liquefied)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
                         2 * s.cycles_to_liquefaction);
   if (s.liquefied)
-    text += fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  least I_R after          "
+    text += fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after          "
                         "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
                         s.shear ? "|gamma| before it" : "strain before it", 100 * s.strain_before,
-                        s.redundancy_at_onset, s.redundancy_least, s.redundancy_recovered, s.n_recoveries);
+                        s.redundancy_at_onset, s.redundancy_min, s.redundancy_recovered, s.n_recoveries);
   else
     text += "\n  liquefaction             none";
   if (s.cyclic)
@@ -246,9 +248,9 @@ std::string to_json(const TestSummary &s)
     title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   const std::string liquefaction =
       s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
-                                "\"IR_least\": {:.10g}, \"IR_recovered\": {:.10g}}}",
+                                "\"IR_min\": {:.10g}, \"IR_recovered\": {:.10g}}}",
                                 s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
-                                s.redundancy_least, s.redundancy_recovered)
+                                s.redundancy_min, s.redundancy_recovered)
                   : "null";
   return fmt::format(
       "{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "

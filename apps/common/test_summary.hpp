@@ -13,10 +13,10 @@ namespace isostat
 /// Of the simple shear stages of a test; gamma counts from the start of the first shear stage.
 struct ShearExtremes
 {
-  double gamma = 0, tau = 0; ///< largest |gamma_xy| [-], largest |tau_xy| in Pa
-  double sigma_v0 = 0;       ///< vertical effective stress at the start of the first such stage, Pa
-  double greatest_ratio = 0; ///< tau over sigma_v0; in a cyclic test the CSR and its overshoot [-]
-  double asked_ratio = 0;    ///< CSR of the scene; 0 if no stage is cyclic [-]
+  double gamma = 0, tau = 0;  ///< largest |gamma_xy| [-], largest |tau_xy| in Pa
+  double sigma_v0 = 0;        ///< vertical effective stress at the start of the first such stage, Pa
+  double max_ratio = 0;       ///< tau over sigma_v0; in a cyclic test the CSR and its overshoot [-]
+  double requested_ratio = 0; ///< CSR of the scene; 0 if no stage is cyclic [-]
 };
 
 /// What a person wants to know of a finished test, from its history.csv and the driver's state.
@@ -31,12 +31,12 @@ struct TestSummary
   bool cyclic = false, liquefied = false;
   double cycles_to_liquefaction = 0; ///< reversals / 2
   double strain_before = 0;          ///< largest |axial strain|, in simple shear |gamma|, before liquefaction
-  double redundancy_initial = 0, redundancy_at_onset = 0, redundancy_least = 0;
+  double redundancy_initial = 0, redundancy_at_onset = 0, redundancy_min = 0;
   double redundancy_recovered = 0; ///< mean over half cycles of I_R where p'/p0 comes back above the ratio for good
   double n_recoveries = 0;
-  double greatest_strain = 0, greatest_q = 0, least_p = 0;
+  double max_strain = 0, max_q = 0, min_p = 0;
   double energy_residual = -1; ///< |residual| / sum of |boundary work|; negative: not measured
-  double greatest_indicator = 0;
+  double max_indicator = 0;
   std::size_t first_row = 0, onset_row = 0;
   bool axial = false;                 ///< has a triaxial shear stage
   std::optional<ShearExtremes> shear; ///< has a simple shear stage

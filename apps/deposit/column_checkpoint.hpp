@@ -10,8 +10,8 @@ namespace isostat
 struct ColumnCheckpoint
 {
   DynamicsState state;                                ///< of the solver; of statics the same fields
-  std::map<std::string, double> numbers;              ///< rows written, greatest values ...
-  std::map<std::string, std::vector<double>> vectors; ///< greatest values over the depth
+  std::map<std::string, double> numbers;              ///< rows written, largest values ...
+  std::map<std::string, std::vector<double>> vectors; ///< largest values over the depth
   std::string scene;                                  ///< the resolved scene; a resumed run must have the same
 };
 

@@ -72,7 +72,7 @@ struct ColumnLayer
   std::string name;
   double thickness = 0;
   unsigned cells = 0;      ///< through its thickness; 0: from cell_size
-  double cell_size = 0;    ///< greatest height of a cell, m
+  double cell_size = 0;    ///< largest height of a cell, m
   double density = 2000;   ///< of soil and water together, kg/m3
   double porosity = 0.4;   ///< [-]
   double permeability = 0; ///< hydraulic conductivity, m/s
@@ -215,7 +215,7 @@ struct ColumnGrains
   std::uint64_t realisations = 1;            ///< packings of a point
   double quasi_static_tolerance = 0.01;      ///< as in the element tests [-]
   double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s
-  std::uint64_t least_steps = 20;            ///< time steps of the grains in a step of the column, at least
+  std::uint64_t min_steps = 20;              ///< time steps of the grains in a step of the column, at least
   double damping = 0.2;                      ///< [-]
   std::vector<double> snapshot_depths;       ///< below the surface; whole packings are stored there, m
   double snapshot_interval = 1;              ///< s

@@ -38,7 +38,7 @@ public:
   /// @param values  all depths of the first quantity, then of the second ...
   void append(double time, std::span<const double> values);
   void flush();
-  /// Adds the greatest values. Call it once, at the end.
+  /// Adds the largest values. Call it once, at the end.
   void finish(std::span<const double> peak_gamma, std::span<const double> node_depth,
               std::span<const double> peak_acceleration);
   std::size_t n_rows() const { return n_rows_; }

@@ -26,7 +26,7 @@ RveMaterialSettings grains_settings(const ColumnScene &scene, int threads)
       spec.in_situ == GrainsInSitu::no_lateral_strain ? InSituPath::no_lateral_strain : InSituPath::all_stresses;
   settings.in_situ.motion = settings.motion;
   settings.undrained = scene.water.drainage == Drainage::undrained;
-  settings.least_steps = spec.least_steps;
+  settings.min_steps = spec.min_steps;
   settings.realisations = spec.realisations;
   settings.elastic_start = spec.elastic_start;
   settings.threads = threads;
@@ -70,8 +70,8 @@ SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &
       soil.material = column_material(scene, space);
       return soil;
     }
-  std::vector<Patchwork::Part> parts;
-  std::vector<SpecimenWish> wishes;
+  std::vector<CompositeMaterial::Part> parts;
+  std::vector<SpecimenRequest> requests;
   for (std::size_t layer = 0; layer < scene.layers.size(); ++layer)
     {
       const ColumnLayer &spec = scene.layers[number_in_scene(scene, layer)];
@@ -79,20 +79,20 @@ SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &
       if (spec.material == LayerMaterial::grains)
         {
           soil.grains_places.insert(soil.grains_places.end(), points.begin(), points.end());
-          SpecimenWish wish;
+          SpecimenRequest request;
           if (spec.grains.relative_density)
-            wish.relative_density = *spec.grains.relative_density;
-          wish.realisation = spec.grains.realisation;
-          wishes.insert(wishes.end(), points.size(), wish);
+            request.relative_density = *spec.grains.relative_density;
+          request.realisation = spec.grains.realisation;
+          requests.insert(requests.end(), points.size(), request);
         }
       else if (!points.empty())
         parts.push_back({formula_material(spec, points.size()), points});
     }
-  auto grains = std::make_unique<RveMaterial>(wishes, grains_settings(scene, threads),
+  auto grains = std::make_unique<RveMaterial>(requests, grains_settings(scene, threads),
                                               space.shared_out() ? MPI_COMM_SELF : MPI_COMM_WORLD);
   soil.grains = grains.get();
   parts.push_back({std::move(grains), soil.grains_places});
-  soil.material = std::make_unique<Patchwork>(std::move(parts));
+  soil.material = std::make_unique<CompositeMaterial>(std::move(parts));
   soil.material->set_initial_stress(in_situ_stress(scene, space));
   return soil;
 }

@@ -24,7 +24,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &
 std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
                                         const std::vector<double> &wanted);
 
-/// Least and greatest shear wave velocity of the points with grains, m/s.   Collective.
+/// Smallest and largest shear wave velocity of the points with grains, m/s.   Collective.
 template <int dim>
 std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space);
 } // namespace isostat

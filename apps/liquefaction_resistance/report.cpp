@@ -70,7 +70,7 @@ std::string fit_text(const std::optional<PowerLaw> &law)
 {
   if (!law)
     return "\n  fit                      none: fewer than two ratios have a run that liquefied";
-  const bool inside = law->least_cycles <= reference_cycles && law->most_cycles >= reference_cycles;
+  const bool inside = law->min_cycles <= reference_cycles && law->most_cycles >= reference_cycles;
   return fmt::format(
       "\n  fit                      CSR = {:.4f} N^-{:.3f}, b +- {:.3f}, R^2 = {:.3f}, {} runs{}\n  CSR at "
       "15 cycles         {:.4f}{}",

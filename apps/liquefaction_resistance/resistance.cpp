@@ -86,17 +86,17 @@ RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std:
   const CsvTable history(folder / "history.csv",
                          {"stage (-)", "reversals (-)", "liquefied (-)", simple_shear ? "gamma_xy (-)" : "eps_y (-)"});
   Criteria criteria(result);
-  double greatest = 0;
+  double maximum = 0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     if (history(row, at_stage) == static_cast<double>(stage))
       {
-        greatest = std::max(greatest, std::abs(history(row, strain)));
+        maximum = std::max(maximum, std::abs(history(row, strain)));
         criteria.look(history(row, reversals), history(row, liquefied) != 0,
                       strain_factor(cyclic.kind) * history(row, strain));
       }
-  result.status = result.to_liquefaction          ? RunStatus::liquefied
-                  : greatest >= cyclic.max_strain ? RunStatus::strain
-                                                  : RunStatus::censored;
+  result.status = result.to_liquefaction         ? RunStatus::liquefied
+                  : maximum >= cyclic.max_strain ? RunStatus::strain
+                                                 : RunStatus::censored;
   const std::string summary = read_text(folder / "summary.json");
   result.void_ratio = json_number(summary, "void_ratio");
   result.wall_seconds = json_number(summary, "seconds");
@@ -140,7 +140,7 @@ std::optional<PowerLaw> fit_power_law(const std::vector<RunResult> &results)
   law.n_left_out = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const RunResult &r) {
     return r.status == RunStatus::censored || r.status == RunStatus::strain;
   }));
-  law.least_cycles = std::exp(*std::min_element(y.begin(), y.end()));
+  law.min_cycles = std::exp(*std::min_element(y.begin(), y.end()));
   law.most_cycles = std::exp(*std::max_element(y.begin(), y.end()));
   return law;
 }

@@ -12,7 +12,7 @@ namespace isostat
 enum class RunStatus
 {
   liquefied, ///< p'/p0' fell below the liquefaction ratio
-  censored,  ///< it did not, up to the greatest number of cycles
+  censored,  ///< it did not, up to the largest number of cycles
   strain,    ///< it did not, but the strain at which the stage ends was reached
   failed,
   missing ///< not run, or not to its end
@@ -48,7 +48,7 @@ struct PowerLaw
   double a = 0, b = 0, b_error = 0; ///< b_error: standard error; 0 with fewer than three runs
   double r_squared = 0;
   std::size_t n_runs = 0, n_left_out = 0; ///< left out: did not liquefy
-  double least_cycles = 0, most_cycles = 0;
+  double min_cycles = 0, most_cycles = 0;
 
   double at(double cycles) const;
 };

@@ -59,7 +59,7 @@ std::string scene_text(const Options &options, const RveSettings &settings)
   return fmt::format("record = \"{}\"\nquasi_static_tolerance = {}\nrate_floor = \"{} 1/s\"\nrate_ceiling = \"{} "
                      "1/s\"\nleast_steps = {}\ndamping = {}\n",
                      options.record, settings.motion.quasi_static_tolerance, settings.motion.rate_floor,
-                     settings.motion.rate_ceiling, settings.least_steps, settings.motion.damping);
+                     settings.motion.rate_ceiling, settings.min_steps, settings.motion.damping);
 }
 
 void run(const Options &options)
@@ -94,11 +94,11 @@ int main(int argc, char **argv)
   app.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
   app.add_option("--tolerance", options.changes.tolerance, "another quasi-static tolerance")
       ->check(CLI::Range(1e-9, 1.0));
-  app.add_option("--rate-floor", options.changes.rate_floor, "another least strain rate, 1/s")
+  app.add_option("--rate-floor", options.changes.rate_floor, "another smallest strain rate, 1/s")
       ->check(CLI::PositiveNumber);
-  app.add_option("--rate-ceiling", options.changes.rate_ceiling, "another greatest strain rate, 1/s")
+  app.add_option("--rate-ceiling", options.changes.rate_ceiling, "another largest strain rate, 1/s")
       ->check(CLI::PositiveNumber);
-  app.add_option("--least-steps", options.changes.least_steps, "time steps of an increment, at least")
+  app.add_option("--min-steps", options.changes.min_steps, "time steps of an increment, at least")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--damping", options.changes.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
   app.add_option("--every", options.every, "increments between two rows of micromechanics")

@@ -86,7 +86,7 @@ RveSettings ReplayChanges::applied_to(RveSettings settings) const
   motion.rate_floor = rate_floor.value_or(motion.rate_floor);
   motion.rate_ceiling = rate_ceiling.value_or(motion.rate_ceiling);
   motion.damping = damping.value_or(motion.damping);
-  settings.least_steps = least_steps.value_or(settings.least_steps);
+  settings.min_steps = min_steps.value_or(settings.min_steps);
   if (motion.rate_floor > motion.rate_ceiling)
     throw InputError(fmt::format("--rate-floor {:g} 1/s is above the ceiling, {:g} 1/s. Correct one of them.",
                                  motion.rate_floor, motion.rate_ceiling));
@@ -104,7 +104,7 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
   const Stress start = to_stress(element.rve().stress());
   Squares shear, mean;
   double gamma = 0;
-  result.least_pressure = pressure(start);
+  result.min_pressure = pressure(start);
   for (std::size_t k = 0; k < record.increments.size(); ++k)
     {
       const ElementTrial trial = element.trial(to_matrix(record.increments[k]));
@@ -118,7 +118,7 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
       result.equal += alone == column;
       result.steps += trial.steps;
       result.largest_strain = std::max(result.largest_strain, std::abs(gamma));
-      result.least_pressure = std::min(result.least_pressure, pressure(alone));
+      result.min_pressure = std::min(result.min_pressure, pressure(alone));
       shear.add(alone[xz], column[xz], 0);
       mean.add(pressure(alone), pressure(column), pressure(start));
       if (const double error = largest_difference(alone, column) / pressure(start); error > result.largest_error)
@@ -127,7 +127,7 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
       if ((k + 1) % every == 0)
         {
           const Micromechanics m = micromechanics(element.rve().snapshot());
-          result.least_redundancy = std::min(result.least_redundancy, m.redundancy);
+          result.min_redundancy = std::min(result.min_redundancy, m.redundancy);
           files.micromechanics(k + 1, record.time[k], m);
         }
       tell(k + 1);
@@ -141,10 +141,11 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
 
 std::string to_text(const ReplayResult &r, const StrainRecord &record, const ReplayChanges &changes)
 {
-  std::string text = fmt::format(
-      "packing at {:.4g} m, {} increments, {} time steps\n"
-      "  largest shear strain     {:.4g} %\n  least p'                 {:.4g} kPa\n  least I_R                {:.4g}\n",
-      record.depth, r.increments, r.steps, 100 * r.largest_strain, r.least_pressure / 1e3, r.least_redundancy);
+  std::string text =
+      fmt::format("packing at {:.4g} m, {} increments, {} time steps\n"
+                  "  largest shear strain     {:.4g} %\n  smallest p'                 {:.4g} kPa\n  smallest I_R       "
+                  "         {:.4g}\n",
+                  record.depth, r.increments, r.steps, 100 * r.largest_strain, r.min_pressure / 1e3, r.min_redundancy);
   if (r.equal == r.increments)
     return text + fmt::format("  stress                   that of the column to the bit after all {} increments\n",
                               r.increments);
@@ -164,8 +165,8 @@ std::string to_json(const ReplayResult &r, const StrainRecord &record)
   return fmt::format(
       "{{\n  \"depth\": {:.17g},\n  \"increments\": {},\n  \"equal\": {},\n  \"steps\": {},\n"
       "  \"shear_error\": {:.17g},\n  \"pressure_error\": {:.17g},\n  \"largest_error\": {:.17g},\n"
-      "  \"largest_strain\": {:.17g},\n  \"least_pressure\": {:.17g},\n  \"least_redundancy\": {:.17g}\n}}\n",
+      "  \"largest_strain\": {:.17g},\n  \"min_pressure\": {:.17g},\n  \"min_redundancy\": {:.17g}\n}}\n",
       record.depth, r.increments, r.equal, r.steps, r.shear_error, r.pressure_error, r.largest_error, r.largest_strain,
-      r.least_pressure, r.least_redundancy);
+      r.min_pressure, r.min_redundancy);
 }
 } // namespace isostat

@@ -12,8 +12,8 @@ namespace isostat
 struct ReplayChanges
 {
   std::optional<double> tolerance, rate_floor, rate_ceiling, damping;
-  std::optional<std::uint64_t> least_steps;
-  bool any() const { return tolerance || rate_floor || rate_ceiling || damping || least_steps; }
+  std::optional<std::uint64_t> min_steps;
+  bool any() const { return tolerance || rate_floor || rate_ceiling || damping || min_steps; }
   /// @throws InputError  a floor above the ceiling
   RveSettings applied_to(RveSettings settings) const;
 };
@@ -27,7 +27,7 @@ struct ReplayResult
   double shear_error = 0, pressure_error = 0; ///< rms of the difference of tau_xz and p' over that of the record [-]
   double largest_error = 0;                   ///< |stress difference| / p0' [-] ...
   std::size_t largest_at = 0;                 ///< ... after this increment
-  double largest_strain = 0, least_pressure = 0, least_redundancy = 1e300; ///< |gamma_xz|; Pa; I_R
+  double largest_strain = 0, min_pressure = 0, min_redundancy = 1e300; ///< |gamma_xz|; Pa; I_R
 };
 
 /// Sends a packing the way of its record, alone: no mesh, no solver. Rows of history.csv and .h5 in `folder`: strain

@@ -31,7 +31,7 @@ public:
   /// @param more  numbers that the run wants back
   void save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
   void flush();
-  /// Adds the greatest values to the profiles.   @pre the last call
+  /// Adds the largest values to the profiles.   @pre the last call
   void finish(const ColumnPeaks &peaks);
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh

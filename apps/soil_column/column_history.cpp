@@ -42,7 +42,7 @@ auto fields(State &s)
                                                            {"last_p_ratio", &s.min_p_ratio},
                                                            {"last_settlement", &s.settlement},
                                                            {"last_residual", &s.residual},
-                                                           {"greatest_energy", &s.greatest_energy}}};
+                                                           {"max_energy", &s.max_energy}}};
 }
 } // namespace
 
@@ -113,8 +113,8 @@ typename ColumnHistory<dim>::Extremes ColumnHistory<dim>::extremes(const ColumnI
   if (!space_.shared_out())
     return {ru, depth, ratio};
   const MPI_Comm all = space_.communicator();
-  const double greatest = reduced(ru, MPI_MAX, all);
-  return {greatest, reduced(ru == greatest ? depth : std::numeric_limits<double>::max(), MPI_MIN, all),
+  const double maximum = reduced(ru, MPI_MAX, all);
+  return {maximum, reduced(ru == maximum ? depth : std::numeric_limits<double>::max(), MPI_MIN, all),
           reduced(ratio, MPI_MIN, all)};
 }
 
@@ -170,7 +170,7 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
                          energy.external / area_, state.residual};
   std::copy(std::begin(tail), std::end(tail), row.begin() + settlement_at);
   for (std::size_t k = 4; k < 7; ++k)
-    state.greatest_energy = std::max(state.greatest_energy, std::abs(tail[k]));
+    state.max_energy = std::max(state.max_energy, std::abs(tail[k]));
   return row;
 }
 

@@ -13,7 +13,7 @@ struct ColumnState
   double time = 0, surface_acceleration = 0; ///< s, largest of x, y, z by size, m/s2
   double max_ru = 0, min_p_ratio = 1;        ///< [-]
   double settlement = 0, residual = 0;       ///< m, J/m2
-  double greatest_energy = 0;                ///< largest of the energies of any row, J/m2
+  double max_energy = 0;                     ///< largest of the energies of any row, J/m2
 
   void save(ColumnCheckpoint &checkpoint) const;
   void restore(const ColumnCheckpoint &checkpoint);

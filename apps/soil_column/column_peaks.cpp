@@ -22,8 +22,8 @@ auto fields(Peaks &p)
 
 double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
 
-/// The greatest of all ranks, and what belongs to it.
-void take_greatest(double &value, std::initializer_list<double *> with, MPI_Comm communicator)
+/// The largest of all ranks, and what belongs to it.
+void take_max(double &value, std::initializer_list<double *> with, MPI_Comm communicator)
 {
   const double here = value;
   MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, communicator);
@@ -117,9 +117,9 @@ void PeakFollower<dim>::gather()
   if (!space_.shared_out())
     return;
   const MPI_Comm all = space_.communicator();
-  take_greatest(peaks.surface, {}, all);
-  take_greatest(peaks.gamma, {&peaks.gamma_depth}, all);
-  take_greatest(peaks.ru, {&peaks.ru_depth, &peaks.ru_time}, all);
+  take_max(peaks.surface, {}, all);
+  take_max(peaks.gamma, {&peaks.gamma_depth}, all);
+  take_max(peaks.ru, {&peaks.ru_depth, &peaks.ru_time}, all);
 }
 
 template class PeakFollower<1>;

@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// Greatest values of a run, looked at in every step, not only in those that are recorded.
+/// Largest values of a run, looked at in every step, not only in those that are recorded.
 struct ColumnPeaks
 {
   double input = 0, surface = 0;                     ///< horizontal acceleration by size, m/s2
@@ -29,7 +29,7 @@ public:
   void follow(const Dynamics<dim> &run);
   /// Strain and r_u of any solution.
   void follow(const Vector &displacement, const std::vector<double> &pressure, double time);
-  /// Greatest over all ranks.   Collective.
+  /// Largest over all ranks.   Collective.
   void gather();
 
   ColumnPeaks peaks;

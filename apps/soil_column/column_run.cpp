@@ -84,8 +84,8 @@ ColumnSummary summary_so_far(const Discretisation<dim> &space, ColumnFiles<dim> 
 }
 
 template <int dim>
-void stop_if_asked(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
-                   const std::function<void()> &save)
+void stop_if_requested(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
+                       const std::function<void()> &save)
 {
   const bool distributed = request.scene.mesh.distributed, together = distributed || request.scene.has_grains();
   if (!(together ? on_any_rank(stop_requested()) : stop_requested()))
@@ -120,8 +120,8 @@ void fail(const RunFailure &failure, std::uint64_t step, double time, const Disc
 #define ISOSTAT_INSTANTIATE(dim) \
   template Discretisation<dim> column_mesh<dim>(const ColumnScene &, const Supports &); \
   template ColumnSummary summary_so_far<dim>(const Discretisation<dim> &, ColumnFiles<dim> &, PeakFollower<dim> &); \
-  template void stop_if_asked<dim>(const RunRequest &, std::uint64_t, ColumnFiles<dim> &, \
-                                   const std::function<void()> &); \
+  template void stop_if_requested<dim>(const RunRequest &, std::uint64_t, ColumnFiles<dim> &, \
+                                       const std::function<void()> &); \
   template void fail<dim>(const RunFailure &, std::uint64_t, double, const Discretisation<dim> &, ColumnFiles<dim> &);
 ISOSTAT_INSTANTIATE(1)
 ISOSTAT_INSTANTIATE(2)

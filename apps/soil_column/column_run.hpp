@@ -44,14 +44,14 @@ DynamicsSettings dynamics_settings(const ColumnScene &scene, const std::array<Mo
 std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request);
 /// Old results go now, if they may, and provenance is written; on the first rank.
 void open_folder(const RunRequest &request);
-/// Sizes of the mesh, greatest values and the last row, over all ranks.   Collective.
+/// Sizes of the mesh, largest values and the last row, over all ranks.   Collective.
 template <int dim>
 ColumnSummary summary_so_far(const Discretisation<dim> &space, ColumnFiles<dim> &files, PeakFollower<dim> &follower);
 /// After a signal: brings the files up to date, calls `save` unless the run is distributed, and throws Interrupted.
 /// Collective if the run is distributed.
 template <int dim>
-void stop_if_asked(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
-                   const std::function<void()> &save);
+void stop_if_requested(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
+                       const std::function<void()> &save);
 /// A failed step: brings the files up to date and throws RunFailure with step, time and checkpoint; if the other ranks
 /// would wait for this one it ends them all.
 template <int dim>

@@ -16,7 +16,7 @@ double amplification(const ColumnPeaks &peaks) { return peaks.input > 0 ? peaks.
 /// Energy that came from nowhere, of the largest that any row has.
 double relative_residual(const ColumnState &last)
 {
-  return last.greatest_energy > 0 ? std::abs(last.residual) / last.greatest_energy : 0;
+  return last.max_energy > 0 ? std::abs(last.residual) / last.max_energy : 0;
 }
 
 std::string quoted(const std::string &text)
@@ -96,8 +96,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
   if (s.grains && s.grains->has_profiles)
-    text += fmt::format("  least I_R                {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
-                        s.grains->least_redundancy, s.grains->least_redundancy_depth, s.grains->least_redundancy_time);
+    text += fmt::format("  smallest I_R                {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
+                        s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time);
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
@@ -143,7 +143,7 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
   add("height", number(scene.height()));
   add("mass_damping", number(scene.analysis.mass_damping));
   add("spectrum_damping", number(scene.output.spectrum_damping));
-  add("asked_depths", list(scene.output.depths));
+  add("requested_depths", list(scene.output.depths));
   add("depths", list(s.point_depths));
   add("elements", std::to_string(s.cells));
   add("points", std::to_string(s.points));
@@ -170,9 +170,9 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
     }
   if (s.grains && s.grains->has_profiles)
     {
-      add("least_redundancy", number(s.grains->least_redundancy));
-      add("least_redundancy_depth", number(s.grains->least_redundancy_depth));
-      add("least_redundancy_time", number(s.grains->least_redundancy_time));
+      add("min_redundancy", number(s.grains->min_redundancy));
+      add("min_redundancy_depth", number(s.grains->min_redundancy_depth));
+      add("min_redundancy_time", number(s.grains->min_redundancy_time));
     }
   return text + "\n}\n";
 }

@@ -11,9 +11,9 @@ namespace isostat
 struct GrainsSummary
 {
   std::size_t packings = 0;
-  double slowest = 0, fastest = 0;                                                    ///< V_s at the (re)start, m/s
-  bool has_profiles = false;                                                          ///< what follows is known
-  double least_redundancy = 0, least_redundancy_depth = 0, least_redundancy_time = 0; ///< of all profiles [-], m, s
+  double slowest = 0, fastest = 0;                                              ///< V_s at the (re)start, m/s
+  bool has_profiles = false;                                                    ///< what follows is known
+  double min_redundancy = 0, min_redundancy_depth = 0, min_redundancy_time = 0; ///< of all profiles [-], m, s
 };
 
 /// What a person wants to know of a finished run. Nothing in it depends on the machine: see RunTimes for that.

@@ -63,7 +63,7 @@ private:
   void step();
   void record();
   void save();
-  void look_around();
+  void observe();
   RunResult result();
   /// Steps of the time table that are done; a load that is there at once takes a step of its own.
   std::size_t n_done() const { return static_cast<std::size_t>(run_.n_steps()) - (at_once_ ? 1 : 0); }
@@ -161,11 +161,11 @@ void ConsolidationRun<dim>::step()
 
 /// Progress, signals, checkpoints.
 template <int dim>
-void ConsolidationRun<dim>::look_around()
+void ConsolidationRun<dim>::observe()
 {
   const std::uint64_t n = run_.n_steps();
   progress_->tick(n, static_cast<double>(n) / (times_.size() + 1.0), files_.history().state);
-  stop_if_asked<dim>(request_, n, files_, [&] { save(); });
+  stop_if_requested<dim>(request_, n, files_, [&] { save(); });
   if (!scene_.mesh.distributed && seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
     save();
 }
@@ -198,7 +198,7 @@ RunResult ConsolidationRun<dim>::go()
         {
           fail(failure, run_.n_steps(), run_.time(), space_, files_);
         }
-      look_around();
+      observe();
     }
   if (!scene_.mesh.distributed)
     save();

@@ -44,7 +44,7 @@ private:
   std::vector<double> depths() const;
   bool checkpoint_due() const;
   void add_grains(ColumnSummary &summary);
-  void look_around();
+  void observe();
   RunResult result();
 
   const RunRequest &request_;
@@ -224,11 +224,11 @@ bool DynamicRun<dim>::checkpoint_due() const
 
 /// Progress, signals, checkpoints.
 template <int dim>
-void DynamicRun<dim>::look_around()
+void DynamicRun<dim>::observe()
 {
   const std::uint64_t n = run_.n_steps();
   progress_->tick(n, static_cast<double>(n) / static_cast<double>(last_step_ + 1), files_.history().state);
-  stop_if_asked<dim>(request_, n, files_, [&] { save(); });
+  stop_if_requested<dim>(request_, n, files_, [&] { save(); });
   if (checkpoint_due())
     save();
 }
@@ -247,11 +247,11 @@ void DynamicRun<dim>::advance()
         {
           fail(failure, n, static_cast<double>(n) * run_.time_step(), space_, files_);
         }
-      look_around();
+      observe();
     }
 }
 
-/// Velocities of the soil of grains at its start, the least redundancy index, and what the packings took.
+/// Velocities of the soil of grains at its start, the smallest redundancy index, and what the packings took.
 template <int dim>
 void DynamicRun<dim>::add_grains(ColumnSummary &summary)
 {
@@ -260,9 +260,9 @@ void DynamicRun<dim>::add_grains(ColumnSummary &summary)
                     velocities_[0],
                     velocities_[1],
                     scene_.output.profile_interval.has_value(),
-                    grain_files_->least().redundancy,
-                    grain_files_->least().depth,
-                    grain_files_->least().time};
+                    grain_files_->minimum().redundancy,
+                    grain_files_->minimum().depth,
+                    grain_files_->minimum().time};
   times_.packing_trials = static_cast<double>(cost.trials * soil_.grains->owners().size());
   times_.packing_steps = static_cast<double>(cost.steps);
   times_.in_packings = cost.busiest_seconds;

@@ -41,8 +41,7 @@ GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMate
       n_snapshots_(counter(resumed, "grain_snapshots"))
 {
   if (resumed)
-    least_ = {resumed->numbers.at("least_IR"), resumed->numbers.at("least_IR_depth"),
-              resumed->numbers.at("least_IR_time")};
+    min_ = {resumed->numbers.at("min_IR"), resumed->numbers.at("min_IR_depth"), resumed->numbers.at("min_IR_time")};
   for (std::size_t place : soil.grains_places)
     depths_.push_back(depths[place]);
   std::iota(from_above_.begin(), from_above_.end(), 0);
@@ -122,8 +121,8 @@ void GrainFiles::profile(std::uint64_t step, double time)
       row.push_back(depths_[from_above_[k]]);
       for (const char *name : profile_columns)
         row.push_back(values[k * width + column_number(name)]);
-      if (const double ir = values[k * width + redundancy]; ir < least_.redundancy)
-        least_ = {ir, depths_[from_above_[k]], time};
+      if (const double ir = values[k * width + redundancy]; ir < min_.redundancy)
+        min_ = {ir, depths_[from_above_[k]], time};
     }
   together([&] {
     if (profiles_)
@@ -168,8 +167,8 @@ std::map<std::string, double> GrainFiles::counters() const
   return {{"grain_rows", history_ ? static_cast<double>(history_->n_rows()) : 0},
           {"grain_profiles", profiles_ ? static_cast<double>(profiles_->n_rows()) : 0},
           {"grain_snapshots", static_cast<double>(n_snapshots_)},
-          {"least_IR", least_.redundancy},
-          {"least_IR_depth", least_.depth},
-          {"least_IR_time", least_.time}};
+          {"min_IR", min_.redundancy},
+          {"min_IR_depth", min_.depth},
+          {"min_IR_time", min_.time}};
 }
 } // namespace isostat

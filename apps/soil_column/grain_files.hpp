@@ -33,12 +33,12 @@ public:
   void flush();
   /// What a checkpoint has to keep.
   std::map<std::string, double> counters() const;
-  /// Least redundancy index of any row of the profiles, and where and when.
+  /// Smallest redundancy index of any row of the profiles, and where and when.
   struct Least
   {
     double redundancy = 1e300, depth = 0, time = 0;
   };
-  const Least &least() const { return least_; }
+  const Least &minimum() const { return min_; }
 
 private:
   void write_packings(double time);
@@ -53,6 +53,6 @@ private:
   std::uint64_t n_snapshots_;           ///< the same on every rank
   std::unique_ptr<Recorder> history_, profiles_;
   std::vector<std::unique_ptr<PvdCollection>> pictures_;
-  Least least_;
+  Least min_;
 };
 } // namespace isostat

@@ -107,7 +107,7 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"deposition_damping", "-", how.damping},
           {"deposition_young", "Pa", loose.young},
           {"deposit_height", "m", loose.height},
-          {"greatest_overlap", "d50", loose.greatest_overlap},
+          {"max_overlap", "d50", loose.max_overlap},
           {"resting_overlap", "d50", loose.resting_overlap},
           {"coordination_loose", "-", micromechanics(state).coordination}};
 }
@@ -145,7 +145,7 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
                       scene.contact.active().friction ? degrees(scene.contact.friction) : 0.0, loose.fall_speed,
                       1e3 * loose.height, loose_seconds);
   text += fmt::format("       contact modulus {:.3g} Pa while falling: overlap/d50 at most {:.1e}, at rest {:.1e}\n",
-                      loose.young, loose.greatest_overlap, loose.resting_overlap);
+                      loose.young, loose.max_overlap, loose.resting_overlap);
   return text;
 }
 

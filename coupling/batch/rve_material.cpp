@@ -37,8 +37,8 @@ void RveMaterialSettings::check() const
     throw InputError(fmt::format("rve: elastic_start = {:g}; must be >= 0 and below 1", elastic_start));
   if (threads < 0)
     throw InputError(fmt::format("rve: threads = {}; must be >= 0", threads));
-  if (!(balance.threshold >= 1 && balance.least_gain >= 0) || balance_interval == 0)
-    throw InputError("rve: the threshold of balance must be >= 1, the least gain >= 0, the interval > 0");
+  if (!(balance.threshold >= 1 && balance.min_gain >= 0) || balance_interval == 0)
+    throw InputError("rve: the threshold of balance must be >= 1, the smallest gain >= 0, the interval > 0");
   if (!(refresh_rise > 0) || refresh_interval == 0)
     throw InputError("rve: refresh_rise and refresh_interval must be positive");
 }
@@ -52,7 +52,7 @@ RveMaterial::RveMaterial(std::size_t n_points, const RveMaterialSettings &settin
   const std::size_t n = n_points * settings_.realisations;
   costs_.assign(n, 1.0);
   owners_ = longest_first(costs_, exchange_.size());
-  order_ = dearest_first(costs_, owners_, exchange_.rank());
+  order_ = costliest_first(costs_, owners_, exchange_.rank());
   all_.resize(n);
   std::iota(all_.begin(), all_.end(), std::size_t{0});
   elements_.resize(n);
@@ -65,10 +65,10 @@ RveMaterial::RveMaterial(std::size_t n_points, const RveMaterialSettings &settin
   skeleton_.resize(n);
 }
 
-RveMaterial::RveMaterial(std::vector<SpecimenWish> points, const RveMaterialSettings &settings, MPI_Comm comm)
+RveMaterial::RveMaterial(std::vector<SpecimenRequest> points, const RveMaterialSettings &settings, MPI_Comm comm)
     : RveMaterial(points.size(), settings, comm)
 {
-  wishes_ = std::move(points);
+  requests_ = std::move(points);
 }
 
 RveMaterial::RveMaterial(const std::vector<Snapshot> &specimens, const RveMaterialSettings &settings, MPI_Comm comm)
@@ -293,6 +293,6 @@ void RveMaterial::balance()
   if (exchange_.size() > 1)
     place(rebalanced(costs_, owners_, exchange_.size(), settings_.balance));
   else if (settings_.threads > 1)
-    order_ = dearest_first(costs_, owners_, exchange_.rank());
+    order_ = costliest_first(costs_, owners_, exchange_.rank());
 }
 } // namespace isostat

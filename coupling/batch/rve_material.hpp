@@ -18,13 +18,13 @@ struct RveMaterialSettings
   std::filesystem::path library; ///< specimens of the sand, made by the program specimen_library
   std::filesystem::path cache;   ///< in-situ states, kept for the next start; empty: none are kept
   InSituSettings in_situ;
-  MotionSpec motion;              ///< of the elements, as in the element tests
-  bool undrained = true;          ///< volume strain is stripped (Rve::undrained); false: it is live
-  std::size_t realisations = 1;   ///< elements of a point; its stress is their mean
-  std::uint64_t least_steps = 20; ///< time steps that an increment takes at least, see RveSettings
-  unsigned halvings = 6;          ///< a rejected increment is taken in up to 2^halvings parts
-  double elastic_start = 0;       ///< tolerance of find_elastic_start(); 0: elements never sleep [-]
-  int threads = 1;                ///< that share the elements of a rank; 0: as many as the process may use
+  MotionSpec motion;            ///< of the elements, as in the element tests
+  bool undrained = true;        ///< volume strain is stripped (Rve::undrained); false: it is live
+  std::size_t realisations = 1; ///< elements of a point; its stress is their mean
+  std::uint64_t min_steps = 20; ///< time steps that an increment takes at least, see RveSettings
+  unsigned halvings = 6;        ///< a rejected increment is taken in up to 2^halvings parts
+  double elastic_start = 0;     ///< tolerance of find_elastic_start(); 0: elements never sleep [-]
+  int threads = 1;              ///< that share the elements of a rank; 0: as many as the process may use
   BalanceRule balance;
   std::uint64_t balance_interval = 100;    ///< commits between two looks at the balance
   double refresh_rise = 0.25;              ///< wave moduli are found anew when p' has risen by this part since [-] ...
@@ -64,7 +64,7 @@ class RveMaterial : public Material
 {
 public:
   /// Elements come into being in set_initial_stress(), from a library of specimens.
-  RveMaterial(std::vector<SpecimenWish> points, const RveMaterialSettings &settings, MPI_Comm comm);
+  RveMaterial(std::vector<SpecimenRequest> points, const RveMaterialSettings &settings, MPI_Comm comm);
   /// Elements as they are, one specimen each, by id; periodic, in their own axes (y vertical).
   RveMaterial(const std::vector<Snapshot> &specimens, const RveMaterialSettings &settings, MPI_Comm comm);
 
@@ -148,7 +148,7 @@ private:
   RveMaterialSettings settings_;
   std::size_t n_points_;
   Exchange exchange_;
-  std::vector<SpecimenWish> wishes_; ///< empty: elements were given as they are
+  std::vector<SpecimenRequest> requests_; ///< empty: elements were given as they are
   Owners owners_;
   std::vector<std::size_t> all_, order_;                   ///< every id; mine, dearest first
   std::vector<double> costs_;                              ///< s per trial, of each element

@@ -11,7 +11,7 @@ RveSettings RveMaterial::element_settings() const
   RveSettings settings;
   settings.motion = settings_.motion;
   settings.frame = column_frame();
-  settings.least_steps = settings_.least_steps;
+  settings.min_steps = settings_.min_steps;
   return settings;
 }
 

@@ -11,7 +11,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double greatest_miss = 0.01; ///< of p'
+constexpr double max_miss = 0.01; ///< of p'
 
 Bytes to_bytes(const std::vector<InSituState> &states)
 {
@@ -41,10 +41,10 @@ void check_reached(const Mat3 &stress, const Mat3 &wanted, InSituPath path)
 {
   const Mat3 miss = (stress - wanted) / (stress.trace() / 3);
   const double worst = path == InSituPath::all_stresses ? miss.cwiseAbs().maxCoeff() : std::abs(miss(2, 2));
-  if (!(worst <= greatest_miss))
+  if (!(worst <= max_miss))
     throw RunFailure(fmt::format("the stress in situ is missed by {:.2g} of p', more than {:g}: the packing is not at "
                                  "rest. Lower the tolerance of its preparation.",
-                                 worst, greatest_miss));
+                                 worst, max_miss));
 }
 } // namespace
 
@@ -69,7 +69,7 @@ RveMaterial::Jobs RveMaterial::jobs_for(std::span<const Stress> effective) const
 {
   Jobs jobs;
   const std::vector<LibraryEntry> entries =
-      wishes_.empty() ? std::vector<LibraryEntry>{} : list_library(settings_.library);
+      requests_.empty() ? std::vector<LibraryEntry>{} : list_library(settings_.library);
   const InSituCache cache(settings_.cache);
   for (std::size_t id : all_)
     {
@@ -77,15 +77,15 @@ RveMaterial::Jobs RveMaterial::jobs_for(std::span<const Stress> effective) const
         continue;
       const Mat3 wanted = column_frame().transpose() * to_matrix(effective[point_of(id)]) * column_frame();
       std::string start = std::to_string(id), source;
-      if (!wishes_.empty())
+      if (!requests_.empty())
         {
-          SpecimenWish wish = wishes_[point_of(id)];
-          wish.realisation += id % settings_.realisations;
-          start = source = nearest_entry(entries, wish, -wanted(1, 1), -0.5 * (wanted(0, 0) + wanted(2, 2))).name;
+          SpecimenRequest request = requests_[point_of(id)];
+          request.realisation += id % settings_.realisations;
+          start = source = nearest_entry(entries, request, -wanted(1, 1), -0.5 * (wanted(0, 0) + wanted(2, 2))).name;
         }
       if (!jobs.starts.contains(start))
-        jobs.starts[start] = {wishes_.empty() ? elements_[id]->rve().assembly().snapshot()
-                                              : read_library_entry(settings_.library, start).state,
+        jobs.starts[start] = {requests_.empty() ? elements_[id]->rve().assembly().snapshot()
+                                                : read_library_entry(settings_.library, start).state,
                               source};
       const std::string recipe = in_situ_recipe(jobs.starts[start].specimen, wanted, settings_.in_situ);
       jobs.start_of[id] = start;
@@ -136,7 +136,7 @@ void RveMaterial::set_initial_stress(std::span<const Stress> effective)
     exchange_.stop_together(failure);
   };
   rollback();
-  if (wishes_.empty())
+  if (requests_.empty())
     exchange_.stop_together(for_mine([&](std::size_t id) { elements_[id]->rollback(); }));
   together([&] { jobs = jobs_for(effective); });
   exchange_.stop_together(for_mine([&](std::size_t id) {

@@ -89,7 +89,7 @@ void RveMaterial::place(const Owners &owners)
     if (!is_mine(id) && owners[id] == exchange_.rank())
       bytes_of[id] = std::move(arriving[next++]);
   owners_ = owners;
-  order_ = dearest_first(costs_, owners_, exchange_.rank());
+  order_ = costliest_first(costs_, owners_, exchange_.rank());
   exchange_.stop_together(for_mine([&](std::size_t id) {
     if (const auto found = bytes_of.find(id); found != bytes_of.end())
       elements_[id] = unpack_element(found->second);

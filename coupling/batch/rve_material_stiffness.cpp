@@ -101,7 +101,7 @@ void RveMaterial::wave_moduli(std::span<WaveModuli> moduli) const
       exchange_.stop_together(for_mine([&](std::size_t id) {
         if (!waves_[id].due)
           return;
-        const WaveModuli m = greatest_wave_moduli(elements_[id]->committed_stiffness());
+        const WaveModuli m = max_wave_moduli(elements_[id]->committed_stiffness());
         found[2 * id] = m.p, found[2 * id + 1] = m.s;
       }));
       for (std::size_t id : due)

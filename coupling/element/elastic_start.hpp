@@ -29,9 +29,9 @@ struct ElasticStart
 /// for the other limit extended along x with compression along z (and along z alone if the volume may change), up to
 /// 1.25e-6, twice as much and so on, and stands still for 120 time steps each time.
 ///
-///     deviation(e) = |sigma - sigma_still - C:e|,  limit: greatest e with deviation(e' <= e) <= tolerance |C:e|
+///     deviation(e) = |sigma - sigma_still - C:e|,  limit: largest e with deviation(e' <= e) <= tolerance |C:e|
 ///
-/// sigma_still is the stress of a copy that was not strained: packings creep a little. A limit is the least of its
+/// sigma_still is the stress of a copy that was not strained: packings creep a little. A limit is the smallest of its
 /// directions; 0 if even 1.25e-6 is too much, 2e-3 at most.
 /// @param settings  of `rve`
 /// cost that of the stiffness and some 5,000 time steps; deterministic

@@ -24,7 +24,7 @@ void write_settings(hdf5::Group root, const RveSettings &settings)
   root.set_attribute("rate_floor", settings.motion.rate_floor);
   root.set_attribute("rate_ceiling", settings.motion.rate_ceiling);
   root.set_attribute("time_step_safety", settings.motion.time_step_safety);
-  root.set_attribute("least_steps", settings.least_steps);
+  root.set_attribute("min_steps", settings.min_steps);
   root.write("frame", std::span<const double>(settings.frame.data(), 9), "-", 3); // columns, one after the other
 }
 
@@ -36,7 +36,7 @@ RveSettings read_settings(const hdf5::Group &root)
   settings.motion.rate_floor = root.attribute<double>("rate_floor");
   settings.motion.rate_ceiling = root.attribute<double>("rate_ceiling");
   settings.motion.time_step_safety = root.attribute<double>("time_step_safety");
-  settings.least_steps = root.attribute<std::uint64_t>("least_steps");
+  settings.min_steps = root.attribute<std::uint64_t>("min_steps");
   std::ranges::copy(root.read<double>("frame", {3, 3}), settings.frame.data());
   return settings;
 }

@@ -102,10 +102,10 @@ void check_wanted(const Mat3 &wanted, const InSituSettings &settings)
     throw InputError(fmt::format("{}: soil in situ is compressed in all directions. Give layers a weight above the "
                                  "water's, or a surcharge, and K0 above 0.",
                                  in_words(wanted)));
-  if (pressure(wanted) < settings.least_pressure)
+  if (pressure(wanted) < settings.min_pressure)
     throw InputError(fmt::format("{}: p' = {:.4g} kPa is below {:.4g} kPa, too little for a packing to carry. Give a "
                                  "surcharge, or a coarser uppermost element.",
-                                 in_words(wanted), pressure(wanted) / 1e3, settings.least_pressure / 1e3));
+                                 in_words(wanted), pressure(wanted) / 1e3, settings.min_pressure / 1e3));
 }
 } // namespace
 
@@ -132,12 +132,12 @@ Mat3 to_matrix(const Stress &s)
 
 Stress to_stress(const Mat3 &m) { return {m(0, 0), m(1, 1), m(2, 2), m(1, 2), m(0, 2), m(0, 1)}; }
 
-const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenWish &wish, double vertical,
-                                  double horizontal)
+const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
+                                  double vertical, double horizontal)
 {
-  const bool any = std::isnan(wish.relative_density);
+  const bool any = std::isnan(request.relative_density);
   const auto offset = [&](const LibraryEntry &e) {
-    return any ? 0.0 : std::abs(e.number("relative_density") - wish.relative_density);
+    return any ? 0.0 : std::abs(e.number("relative_density") - request.relative_density);
   };
   std::vector<const LibraryEntry *> fits;
   std::vector<double> seeds;
@@ -149,16 +149,16 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
       }
   std::sort(seeds.begin(), seeds.end());
   seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
-  if (wish.realisation >= seeds.size())
+  if (request.realisation >= seeds.size())
     throw InputError(fmt::format(
         "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append. It has:\n{}",
-        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, wish.relative_density),
-        wish.realisation + 1, library_table(entries, lines_in_message)));
+        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, request.relative_density),
+        request.realisation + 1, library_table(entries, lines_in_message)));
   const auto distance = [&](const LibraryEntry *e) {
     const double v = e->number("vertical_stress_Pa"), h = v * e->number("K0");
     return 100 * std::round(100 * offset(*e)) + std::abs(std::log(v / vertical)) + std::abs(std::log(h / horizontal));
   };
-  std::erase_if(fits, [&](const LibraryEntry *e) { return e->number("seed") != seeds[wish.realisation]; });
+  std::erase_if(fits, [&](const LibraryEntry *e) { return e->number("seed") != seeds[request.realisation]; });
   return **std::min_element(fits.begin(), fits.end(), [&](auto *a, auto *b) { return distance(a) < distance(b); });
 }
 
@@ -167,7 +167,7 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wan
   check_wanted(wanted, settings);
   RveSettings own;
   own.motion = settings.motion;
-  own.greatest_steps = settings.greatest_steps;
+  own.max_steps = settings.max_steps;
   Rve rve(specimen, own);
   const Mat3 from = rve.stress();
   if (!(from.diagonal().maxCoeff() < 0))
@@ -203,7 +203,7 @@ std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &w, const InSitu
   return fmt::format("in situ {}; specimen {:016x}; stress {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}; path {}; "
                      "tolerance {:.17g}; steps {}; motion {:.17g} {} {} {:.17g} {:.17g} {:.17g} {:.17g} {}",
                      recipe_version, hash_of(specimen), w(0, 0), w(1, 1), w(2, 2), w(1, 2), w(0, 2), w(0, 1),
-                     static_cast<int>(s.path), s.tolerance, s.greatest_steps, m.damping, optional(m.strain_rate),
+                     static_cast<int>(s.path), s.tolerance, s.max_steps, m.damping, optional(m.strain_rate),
                      optional(m.inertial_number), m.quasi_static_tolerance, m.rate_floor, m.rate_ceiling,
                      m.time_step_safety, optional(m.time_step));
 }

@@ -18,20 +18,20 @@ Mat3 to_matrix(const Stress &stress);
 Stress to_stress(const Mat3 &stress);
 
 /// Which specimens of a library a point is made of.
-struct SpecimenWish
+struct SpecimenRequest
 {
   /// D_r of the soil [-]; not-a-number: the library holds one density only. The library's nearest one is taken.
   double relative_density = std::numeric_limits<double>::quiet_NaN();
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
 };
 
-/// The library entry of that density and seed with the nearest stress: least |ln(sigma_v/wanted)| +
+/// The library entry of that density and seed with the nearest stress: smallest |ln(sigma_v/wanted)| +
 /// |ln(sigma_h/wanted)|, the first by name of equals.
 /// @param vertical, horizontal  wanted effective stress, compression positive, Pa
 /// @throws InputError  no density within 0.05, fewer seeds, entries that do not say seed or stress: shows the library
 /// tested: tests/coupling/in_situ/in_situ_test.cpp
-const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenWish &wish, double vertical,
-                                  double horizontal);
+const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
+                                  double vertical, double horizontal);
 
 /// How a specimen comes to its stress in situ.
 enum class InSituPath
@@ -44,16 +44,16 @@ struct InSituSettings
 {
   InSituPath path = InSituPath::all_stresses;
   MotionSpec motion;
-  double tolerance = 1e-3;                ///< |stress - wanted| / p' at the end, of all that is controlled [-]
-  double least_pressure = 500;            ///< p' below which no packing is asked to go, Pa
-  std::uint64_t greatest_steps = 500'000; ///< of one of the steps in which the stress is changed (factor 2 at most)
+  double tolerance = 1e-3;           ///< |stress - wanted| / p' at the end, of all that is controlled [-]
+  double min_pressure = 500;         ///< p' below which no packing is asked to go, Pa
+  std::uint64_t max_steps = 500'000; ///< of one of the steps in which the stress is changed (factor 2 at most)
 };
 
 /// A specimen at a stress in situ, in its own axes. Goes there by the element's mixed control in steps of stress of a
 /// factor 2 at most, geometric in normal stresses, until no stress moves by more than twice the tolerance in 2,000
 /// time steps without strain: a packing at a few kPa has soft modes that need so many.
 /// @param wanted  Cauchy effective stress in the specimen's axes (y vertical), Pa, tension positive
-/// @throws InputError  not compressive, p' < least_pressure    @throws RunFailure  not reached: says how near it came
+/// @throws InputError  not compressive, p' < min_pressure    @throws RunFailure  not reached: says how near it came
 /// @return the packed element (Rve::pack)     cost of the order of 10,000 time steps; deterministic
 /// tested: tests/coupling/in_situ/in_situ_test.cpp
 std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wanted, const InSituSettings &settings);

@@ -91,12 +91,12 @@ Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ra
   if (!(now > rule.threshold))
     return present;
   const Owners parts = longest_first(costs, n_ranks);
-  if (!(imbalance(costs, parts, n_ranks) <= (1 - rule.least_gain) * now))
+  if (!(imbalance(costs, parts, n_ranks) <= (1 - rule.min_gain) * now))
     return present;
   return renamed_to_stay(parts, present, n_ranks);
 }
 
-std::vector<std::size_t> dearest_first(std::span<const double> costs, const Owners &owners, int rank)
+std::vector<std::size_t> costliest_first(std::span<const double> costs, const Owners &owners, int rank)
 {
   std::vector<std::size_t> order = by_falling_cost(costs);
   std::erase_if(order, [&](std::size_t i) { return owners[i] != rank; });

@@ -13,12 +13,12 @@ namespace isostat
 using Owners = std::vector<int>; ///< rank of each element
 
 /// Longest processing time first (Graham 1969, SIAM J. Appl. Math. 17): elements in order of falling cost, the lower
-/// number first where costs are equal, each to the rank with the least load so far, the lower one where loads are
-/// equal. The greatest load is at most 4/3 - 1/(3 n_ranks) of the best possible one.
+/// number first where costs are equal, each to the rank with the smallest load so far, the lower one where loads are
+/// equal. The largest load is at most 4/3 - 1/(3 n_ranks) of the best possible one.
 /// @param n_ranks  > 0     cost O(n log n + n log n_ranks)
 Owners longest_first(std::span<const double> costs, int n_ranks);
 
-/// Greatest load over mean load [-]: 1 is balanced, n_ranks is one rank alone. 1 if there is no cost at all.
+/// Largest load over mean load [-]: 1 is balanced, n_ranks is one rank alone. 1 if there is no cost at all.
 double imbalance(std::span<const double> costs, const Owners &owners, int n_ranks);
 
 /// The same parts with their ranks renamed, so that few elements leave the rank where they are: parts and ranks that
@@ -29,13 +29,13 @@ Owners renamed_to_stay(const Owners &parts, const Owners &present, int n_ranks);
 /// When elements may move.
 struct BalanceRule
 {
-  double threshold = 1.1;   ///< imbalance above which elements are placed anew [-]
-  double least_gain = 0.05; ///< ... if the greatest load falls by at least this part [-]
+  double threshold = 1.1; ///< imbalance above which elements are placed anew [-]
+  double min_gain = 0.05; ///< ... if the largest load falls by at least this part [-]
 };
 
 /// Where elements should be from now on: `present` unless the rule asks for a move and longest_first is a gain.
 Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ranks, const BalanceRule &rule);
 
 /// Elements of one rank, dearest first: the order in which its threads take them.
-std::vector<std::size_t> dearest_first(std::span<const double> costs, const Owners &owners, int rank);
+std::vector<std::size_t> costliest_first(std::span<const double> costs, const Owners &owners, int rank);
 } // namespace isostat

@@ -16,7 +16,7 @@ namespace
 {
 // Of the smallest radius, per step. At p' = 10 MPa overlaps reach a tenth of it, and a grain that snaps off takes 0.01.
 constexpr double explosion_step = 0.05;
-constexpr double greatest_strain_step = 0.01;
+constexpr double max_strain_step = 0.01;
 
 double sign_of_wall(int wall) { return wall % 2 ? 1.0 : -1.0; } // outward direction
 
@@ -31,7 +31,7 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
   MotionReport all;
   for (const MotionReport &part : parts) // in order of chunks
     {
-      all.greatest_speed = std::max(all.greatest_speed, part.greatest_speed);
+      all.max_speed = std::max(all.max_speed, part.max_speed);
       all.exploded |= part.exploded;
       all.damping_loss += part.damping_loss;
     }
@@ -80,12 +80,12 @@ void Assembly::compute_forces()
     return;
   if (cell_)
     {
-      if (verlet_.update(packing_, *cell_, greatest_step_, contacts_, n_threads()))
+      if (verlet_.update(packing_, *cell_, max_step_, contacts_, n_threads()))
         contacts_.set_cell(cell_->edges);
       virial_.start(contacts_.partition().n_chunks, law_.young * cell_->reference_volume);
     }
   else
-    verlet_.update(packing_, box_, greatest_step_, contacts_, n_threads());
+    verlet_.update(packing_, box_, max_step_, contacts_, n_threads());
   action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
   wall_sums_.resize(contacts_.partition().n_chunks);
   if (measure_energy)
@@ -261,7 +261,7 @@ void Assembly::move(const RigidBox &next_box)
       wall_displacement_[wall] = sign_of_wall(wall) * moved; // outward
       wall_step = std::max(wall_step, std::abs(moved));
     }
-  greatest_step_ = report.greatest_speed * time_step + wall_step;
+  max_step_ = report.max_speed * time_step + wall_step;
   box_ = next_box;
   ++step_;
   time_ += time_step;
@@ -270,11 +270,11 @@ void Assembly::move(const RigidBox &next_box)
 void Assembly::deform(const Mat3 &displacement_gradient)
 {
   const double size = displacement_gradient.norm();
-  if (!(size < greatest_strain_step))
+  if (!(size < max_strain_step))
     throw RunFailure(
         fmt::format("step {}: a displacement gradient of {:.3g} in one time step; at most {:g} is allowed. "
                     "Divide the increment or lower the strain rate.",
-                    step_, size, greatest_strain_step));
+                    step_, size, max_strain_step));
   forces_known_ = false;
   PeriodicCell next = *cell_; // forces that are pending belong to the cell as it still is
   const AffineStep affine(next.deform(displacement_gradient));
@@ -283,7 +283,7 @@ void Assembly::deform(const Mat3 &displacement_gradient)
   if (report.exploded)
     report_explosion(speed_limit);
   tally.damping += report.damping_loss;
-  greatest_step_ = report.greatest_speed * time_step + size * d_max_;
+  max_step_ = report.max_speed * time_step + size * d_max_;
   cell_ = next;
   turn_upright();
   contacts_.set_cell(cell_->edges);

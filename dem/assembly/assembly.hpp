@@ -183,7 +183,7 @@ private:
   std::vector<MotionReport> motion_reports_; ///< per chunk
   std::array<double, 6> wall_force_{}, previous_wall_force_{}, wall_displacement_{};
   std::array<double, 3> wall_stiffness_sum_{};
-  double solid_volume_ = 0, d50_ = 0, min_radius_ = 0, d_max_ = 0, greatest_step_ = 0;
+  double solid_volume_ = 0, d50_ = 0, min_radius_ = 0, d_max_ = 0, max_step_ = 0;
   std::uint64_t step_ = 0;
   double time_ = 0;
   bool energy_started_ = false;

@@ -231,7 +231,7 @@ void Assembly::restore(const AssemblyState &state)
   virial_.set(state.virial);
   forces_known_ = true;
   pending_ = Pending::nothing;
-  greatest_step_ = 0;
+  max_step_ = 0;
   step_ = state.step;
   time_ = state.time;
   time_step = state.time_step;

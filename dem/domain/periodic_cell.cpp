@@ -7,7 +7,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double greatest_lean = 0.6;
+constexpr double max_lean = 0.6;
 
 Vec3 axial_of(const Mat3 &gradient)
 {
@@ -71,7 +71,7 @@ std::optional<Mat3> PeriodicCell::upright_edges() const
             if (j == k)
               continue;
             const double lean = upright.col(k).dot(upright.col(j)) / upright.col(j).squaredNorm();
-            if (std::abs(lean) <= greatest_lean)
+            if (std::abs(lean) <= max_lean)
               continue;
             upright.col(k) -= std::round(lean) * upright.col(j).eval();
             changed = again = true;

@@ -8,15 +8,15 @@ namespace isostat
 {
 /// Shift between periodic images, in whole cell edges, packed into one number: 10 bits for each edge.
 using ImageCode = std::uint32_t;
-inline constexpr int greatest_image = 511;
+inline constexpr int max_image = 511;
 inline ImageCode image_code(const Eigen::Vector3i &shift)
 {
-  const auto part = [&](int k) { return static_cast<ImageCode>(shift[k] + greatest_image + 1) & 1023u; };
+  const auto part = [&](int k) { return static_cast<ImageCode>(shift[k] + max_image + 1) & 1023u; };
   return part(0) | part(1) << 10 | part(2) << 20;
 }
 inline Eigen::Vector3i image_shift(ImageCode code)
 {
-  const auto part = [&](int k) { return static_cast<int>(code >> (10 * k) & 1023u) - greatest_image - 1; };
+  const auto part = [&](int k) { return static_cast<int>(code >> (10 * k) & 1023u) - max_image - 1; };
   return {part(0), part(1), part(2)};
 }
 

@@ -43,7 +43,7 @@ struct DriveState
   // what happened
   double reversals = 0, worst_overshoot = 0;
   double liquefied = 0, liquefaction_step = 0, liquefaction_reversals = 0, liquefaction_strain = 0;
-  double greatest_strain_before = 0; ///< largest |axial strain| before liquefaction [-]
+  double max_strain_before = 0; ///< largest |axial strain| before liquefaction [-]
 
   // recording
   double recorded_p = 0, recorded_q = 0, recorded_strain = 0, recorded_step = -1, snapshot_strain = 0;
@@ -64,7 +64,7 @@ struct DriveState
         vector(f, "servo_modulus", servo_modulus), f("balanced_checks", balanced_checks);
     f("reversals", reversals), f("worst_overshoot", worst_overshoot), f("liquefied", liquefied);
     f("liquefaction_step", liquefaction_step), f("liquefaction_reversals", liquefaction_reversals);
-    f("liquefaction_strain", liquefaction_strain), f("greatest_strain_before", greatest_strain_before);
+    f("liquefaction_strain", liquefaction_strain), f("max_strain_before", max_strain_before);
     f("recorded_p", recorded_p), f("recorded_q", recorded_q), f("recorded_strain", recorded_strain);
     f("recorded_step", recorded_step), f("snapshot_strain", snapshot_strain);
   }

@@ -16,7 +16,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t balance_interval = 200, rate_interval = 50, least_balance_steps = 1000;
+constexpr std::uint64_t balance_interval = 200, rate_interval = 50, min_balance_steps = 1000;
 
 /// One stage at work: scene settings beside the state that a checkpoint keeps.
 class StageRunner
@@ -110,7 +110,7 @@ private:
   bool in_balance()
   {
     const auto steps = static_cast<std::uint64_t>(state_.steps_in_stage);
-    if (steps < least_balance_steps || steps % balance_interval != 0)
+    if (steps < min_balance_steps || steps % balance_interval != 0)
       return false;
     const double stress_tolerance = stage_.kind == StageKind::compress ? 0.01 : 0.002;
     const bool on_target =

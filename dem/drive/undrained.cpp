@@ -15,7 +15,7 @@ void observe_liquefaction(const Stage &stage, const Observation &seen, DriveStat
   if (state.liquefied != 0)
     return;
   const double strain = driven_strain(stage.kind, seen);
-  state.greatest_strain_before = std::max(state.greatest_strain_before, std::abs(strain));
+  state.max_strain_before = std::max(state.max_strain_before, std::abs(strain));
   if (seen.p >= stage.liquefaction_ratio * state.p0)
     return;
   state.liquefied = 1;

@@ -153,9 +153,9 @@ void LibraryWriter::add(const std::string &name, const Specimen &specimen)
 
 std::string LibraryWriter::next_name() const
 {
-  std::uint64_t greatest = 0;
+  std::uint64_t maximum = 0;
   for (const std::string &name : file_.root().names())
-    greatest = std::max(greatest, number_of(name));
-  return fmt::format("s{:04d}", greatest + 1);
+    maximum = std::max(maximum, number_of(name));
+  return fmt::format("s{:04d}", maximum + 1);
 }
 } // namespace isostat

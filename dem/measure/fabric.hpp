@@ -39,7 +39,7 @@ struct Anisotropies
   std::size_t outside_expansion = 0; ///< contacts where 1 + a_c:nn < density_floor; 0 if the expansion may be trusted
 };
 
-/// Least relative contact density for which a force is divided by it.
+/// Smallest relative contact density for which a force is divided by it.
 inline constexpr double density_floor = 0.1;
 
 /// Anisotropies of second order (Rothenburg & Bathurst 1989; Chantawarangul 1993; in the notation of Guo & Zhao 2013,

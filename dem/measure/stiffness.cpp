@@ -200,8 +200,8 @@ SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unkno
     }
   SparseMatrix matrix(unknowns.count(), unknowns.count());
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const double greatest = matrix.diagonal().maxCoeff();
-  matrix.diagonal().array() += regularisation * greatest;
+  const double maximum = matrix.diagonal().maxCoeff();
+  matrix.diagonal().array() += regularisation * maximum;
   return matrix;
 }
 

@@ -104,7 +104,7 @@ Mat6 scaled_block(const Packing &packing, std::size_t i, const Mat6 &block)
 
 /// lambda of two smallest grains that meet while each is held by one more contact on the far side: what may come about
 /// before the next review, in a cloud or a liquid where little is closed now.
-double least_eigenvalue(const LawParams &law, const Packing &packing)
+double min_eigenvalue(const LawParams &law, const Packing &packing)
 {
   const double r = packing.min_radius();
   const ContactStiffness k = contact_stiffness(law, r, r);
@@ -168,11 +168,11 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
       alone[e.first] += body_block(e, e.radius1, -1);
       alone[e.second] += body_block(e, e.radius2, +1);
     }
-  const double least = least_eigenvalue(law, packing);
+  const double minimum = min_eigenvalue(law, packing);
   std::vector<double> lambda(packing.n_grains());
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
-    lambda[i] = std::max(0.1 * least, eigenvalue_bound(scaled_block(packing, i, alone[i])));
-  const double greatest_alone = *std::max_element(lambda.begin(), lambda.end());
+    lambda[i] = std::max(0.1 * minimum, eigenvalue_bound(scaled_block(packing, i, alone[i])));
+  const double max_alone = *std::max_element(lambda.begin(), lambda.end());
 
   // only grains that could exceed the largest lambda with their neighbours' share are looked at again
   std::vector<double> neighbour(packing.n_grains(), 0.0);
@@ -181,7 +181,7 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
       neighbour[e.first] = std::max(neighbour[e.first], lambda[e.second]);
       neighbour[e.second] = std::max(neighbour[e.second], lambda[e.first]);
     }
-  const auto matters = [&](std::size_t i) { return lambda[i] + neighbour[i] > greatest_alone; };
+  const auto matters = [&](std::size_t i) { return lambda[i] + neighbour[i] > max_alone; };
   Blocks weighted = held;
   for (const Element &e : elements)
     {
@@ -190,11 +190,11 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
       if (matters(e.second))
         weighted[e.second] += (1 + lambda[e.first] / lambda[e.second]) * body_block(e, e.radius2, +1);
     }
-  double greatest = std::max(greatest_alone, least);
+  double maximum = std::max(max_alone, minimum);
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     if (matters(i))
-      greatest = std::max(greatest, eigenvalue_bound(scaled_block(packing, i, weighted[i])));
-  return 2 / std::sqrt(greatest);
+      maximum = std::max(maximum, eigenvalue_bound(scaled_block(packing, i, weighted[i])));
+  return 2 / std::sqrt(maximum);
 }
 
 double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox *walls,

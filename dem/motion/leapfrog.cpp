@@ -47,8 +47,8 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   const D4 d;
   constexpr std::size_t width = hn::MaxLanes(D4());
   const V4 limit2 = hn::Set(d, speed_limit * speed_limit), step = hn::Set(d, advance.dt);
-  V4 loss = hn::Zero(d), greatest = hn::Zero(d);
-  auto sane = hn::Ge(greatest, greatest);
+  V4 loss = hn::Zero(d), maximum = hn::Zero(d);
+  auto sane = hn::Ge(maximum, maximum);
   double *x = packing.position.data() + 4 * begin, *v = packing.velocity.data() + 4 * begin,
          *w = packing.spin.data() + 4 * begin;
   action += 8 * begin;
@@ -84,13 +84,13 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
             }
           hn::Store(x_new, d, x + half);
           const V4 speed2 = hn::Mul(speed, speed);
-          greatest = hn::Max(greatest, speed2);
+          maximum = hn::Max(maximum, speed2);
           // false for not-a-number, too; a spin only has to be a number
           sane = hn::And(sane, hn::And(hn::Lt(speed2, limit2), hn::Eq(w_new, w_new)));
         }
     }
   MotionReport report;
-  report.greatest_speed = std::sqrt(3 * hn::GetLane(hn::MaxOfLanes(d, greatest)));
+  report.max_speed = std::sqrt(3 * hn::GetLane(hn::MaxOfLanes(d, maximum)));
   report.exploded = !hn::AllTrue(d, sane);
   if constexpr (Measure)
     report.damping_loss = hn::GetLane(hn::SumOfLanes(d, loss));

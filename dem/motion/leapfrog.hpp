@@ -7,9 +7,9 @@ namespace isostat
 /// What one integration step found.
 struct MotionReport
 {
-  double greatest_speed = 0; ///< m/s
-  bool exploded = false;     ///< a grain moves or spins at no number, or faster than the limit
-  double damping_loss = 0;   ///< J, only where asked for
+  double max_speed = 0;    ///< m/s
+  bool exploded = false;   ///< a grain moves or spins at no number, or faster than the limit
+  double damping_loss = 0; ///< J, only where asked for
 };
 
 /// Homogeneous strain of one step in a periodic cell: x <- x + (A - I) x besides the motion of the grains.

@@ -26,7 +26,7 @@ struct Cells
   std::size_t index(std::int64_t i, std::int64_t j, std::int64_t k) const { return (i * n[1] + j) * n[2] + k; }
 };
 
-Cells sort_into_cells(const Packing &packing, double least_size)
+Cells sort_into_cells(const Packing &packing, double min_size)
 {
   const std::size_t n_grains = packing.n_grains();
   Vec3 low = packing.centre(0), high = low;
@@ -38,7 +38,7 @@ Cells sort_into_cells(const Packing &packing, double least_size)
   Cells cells;
   cells.origin = low;
   // no more cells than a few per grain, however far grains are spread
-  cells.size = std::max(least_size, (high - low).maxCoeff() / std::cbrt(4.0 * n_grains + 64.0));
+  cells.size = std::max(min_size, (high - low).maxCoeff() / std::cbrt(4.0 * n_grains + 64.0));
   for (int k = 0; k < 3; ++k)
     cells.n[k] = static_cast<std::int64_t>((high[k] - low[k]) / cells.size) + 1;
   cells.begin.assign(cells.n[0] * cells.n[1] * cells.n[2] + 1, 0);

@@ -25,29 +25,29 @@ struct WrappedCells
   int index(int i, int j, int k) const { return (i * n[1] + j) * n[2] + k; }
 };
 
-/// Cells along each edge: no thinner than `least`, a few per grain at most; rows of one or two cells are one.
-Index3 cells_along(const Mat3 &to_fraction, double least, std::size_t n_grains)
+/// Cells along each edge: no thinner than `smallest`, a few per grain at most; rows of one or two cells are one.
+Index3 cells_along(const Mat3 &to_fraction, double minimum, std::size_t n_grains)
 {
   const int most = static_cast<int>(std::cbrt(4.0 * n_grains)) + 1;
   Index3 n;
   for (int k = 0; k < 3; ++k)
     {
       const double width = 1 / to_fraction.row(k).norm();
-      n[k] = std::clamp(static_cast<int>(width / least), 1, most);
+      n[k] = std::clamp(static_cast<int>(width / minimum), 1, most);
       if (n[k] < 3)
         n[k] = 1;
     }
   return n;
 }
 
-WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double least)
+WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double minimum)
 {
   const std::size_t n_grains = packing.n_grains();
   const Mat3 to_fraction = edges.inverse();
   WrappedCells cells;
   for (int image = 0; image < 27; ++image)
     cells.offset[image] = edges * Vec3(image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1);
-  cells.n = cells_along(to_fraction, least, n_grains);
+  cells.n = cells_along(to_fraction, minimum, n_grains);
   cells.begin.assign(cells.n[0] * cells.n[1] * cells.n[2] + 1, 0);
   std::vector<int> cell_of(n_grains);
   std::vector<Vec3> place(n_grains);

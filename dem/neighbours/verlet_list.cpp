@@ -18,7 +18,7 @@ namespace
 {
 // Tight skin, of the smallest radius. Gaps between grains that have just parted are as small as overlaps: a skin much
 // smaller than this one saves few pairs and is used up at once.
-constexpr double initial_skin = 0.005, least_skin = 0.001, greatest_skin = 0.3;
+constexpr double initial_skin = 0.005, min_skin = 0.001, max_skin = 0.3;
 constexpr double wide_over_tight = 16;
 constexpr std::uint64_t frequent = 60, rare = 240; // steps between selections
 } // namespace
@@ -30,40 +30,40 @@ void VerletList::invalidate()
   wide_ = {};
 }
 
-void VerletList::update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
+void VerletList::update(const Packing &packing, const RigidBox &box, double max_step, ContactList &contacts,
                         int threads)
 {
   const Domain domain{box.edges().asDiagonal(), box.centre(), &box};
-  update(packing, domain, greatest_step, contacts, threads);
+  update(packing, domain, max_step, contacts, threads);
 }
 
-bool VerletList::update(const Packing &packing, const PeriodicCell &cell, double greatest_step, ContactList &contacts,
+bool VerletList::update(const Packing &packing, const PeriodicCell &cell, double max_step, ContactList &contacts,
                         int threads)
 {
   const Domain domain{cell.edges, Vec3::Zero(), nullptr, &cell}; // other edges of the lattice are another shape
   const std::uint64_t before = n_rebuilds_;
-  update(packing, domain, greatest_step, contacts, threads);
+  update(packing, domain, max_step, contacts, threads);
   return n_rebuilds_ != before;
 }
 
-void VerletList::update(const Packing &packing, const Domain &domain, double greatest_step, ContactList &contacts,
+void VerletList::update(const Packing &packing, const Domain &domain, double max_step, ContactList &contacts,
                         int threads)
 {
   ++steps_since_rebuild_;
-  slack_ -= 4 * greatest_step; // both grains of a pair, and the homogeneous part
+  slack_ -= 4 * max_step; // both grains of a pair, and the homogeneous part
   if (slack_ > 0)
     return;
-  slack_ = tight_.slack(packing, domain, skin_, greatest_reach_, threads);
+  slack_ = tight_.slack(packing, domain, skin_, max_reach_, threads);
   if (slack_ > 0)
     return;
   choose_skin(packing.min_radius());
   // a pair left out of the wide list is still apart by the slack that remains of it
-  if (wide_.slack(packing, domain, wide_skin_, greatest_reach_, threads) <= skin_)
+  if (wide_.slack(packing, domain, wide_skin_, max_reach_, threads) <= skin_)
     search(packing, domain, threads);
   select(packing, domain, contacts, threads);
 }
 
-double VerletList::Reference::slack(const Packing &now, const Domain &domain, double skin, double greatest_reach,
+double VerletList::Reference::slack(const Packing &now, const Domain &domain, double skin, double max_reach,
                                     int threads) const
 {
   if (position.size() != now.position.size())
@@ -79,10 +79,10 @@ double VerletList::Reference::slack(const Packing &now, const Domain &domain, do
     }
   // with the domain: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
   const Mat3 squared = stretch.transpose() * stretch;
-  const double least = std::sqrt(
+  const double minimum = std::sqrt(
       std::max(0.0, Eigen::SelfAdjointEigenSolver<Mat3>(squared, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()));
-  const double shrink = std::max(0.0, 1 - least);
-  const double with_domain = skin * (1 - shrink) - shrink * greatest_reach - 2 * std::sqrt(fluctuation2);
+  const double shrink = std::max(0.0, 1 - minimum);
+  const double with_domain = skin * (1 - shrink) - shrink * max_reach - 2 * std::sqrt(fluctuation2);
   if (!domain.box)
     return with_domain;
   // as they are: two grains approach by at most 2 moved; a wall comes nearer by its own way
@@ -98,20 +98,20 @@ void VerletList::choose_skin(double r_min)
   if (n_rebuilds_ == 0)
     skin_ = initial_skin * r_min;
   else if (steps_since_rebuild_ < frequent)
-    skin_ = std::min(1.3 * skin_, greatest_skin * r_min);
+    skin_ = std::min(1.3 * skin_, max_skin * r_min);
   else if (steps_since_rebuild_ > rare)
-    skin_ = std::max(0.8 * skin_, least_skin * r_min);
+    skin_ = std::max(0.8 * skin_, min_skin * r_min);
 }
 
 void VerletList::search(const Packing &packing, const Domain &domain, int threads)
 {
-  greatest_reach_ = 2 * packing.max_radius();
+  max_reach_ = 2 * packing.max_radius();
   // a narrow cell bounds the skin: no pair may be near through two faces at once
-  const double room = domain.cell ? 0.5 * domain.cell->widths().minCoeff() - greatest_reach_ : HUGE_VAL;
+  const double room = domain.cell ? 0.5 * domain.cell->widths().minCoeff() - max_reach_ : HUGE_VAL;
   if (!(room > 0)) // the list stays as it was
     throw RunFailure(fmt::format("the periodic cell is {:.4g} m wide, less than twice the largest diameter {:.4g} "
                                  "m: a grain would touch another one and its image at once. Take more grains.",
-                                 2 * (room + greatest_reach_), greatest_reach_));
+                                 2 * (room + max_reach_), max_reach_));
   wide_skin_ = std::min(wide_over_tight * skin_, 0.99 * room);
   skin_ = std::min(skin_, 0.5 * wide_skin_);
   wide_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};

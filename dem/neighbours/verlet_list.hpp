@@ -22,14 +22,13 @@ class VerletList
 {
 public:
   /// Makes the list valid for the present positions.
-  /// @param greatest_step  bound on what any grain or wall has moved since the last call, m
+  /// @param max_step  bound on what any grain or wall has moved since the last call, m
   /// @param threads        that share the work; the list does not depend on it
-  void update(const Packing &packing, const RigidBox &box, double greatest_step, ContactList &contacts,
-              int threads = 1);
+  void update(const Packing &packing, const RigidBox &box, double max_step, ContactList &contacts, int threads = 1);
   /// The same in a periodic cell, where a list also knows images of grains; no grain is near a wall.
   /// @return whether the list is a new one: it wants ContactList::set_cell() then
   /// @throws RunFailure  the cell is too narrow for the grains in it: a pair could touch through two faces at once
-  bool update(const Packing &packing, const PeriodicCell &cell, double greatest_step, ContactList &contacts,
+  bool update(const Packing &packing, const PeriodicCell &cell, double max_step, ContactList &contacts,
               int threads = 1);
 
   /// Grains within the tight skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
@@ -68,9 +67,9 @@ private:
     Mat3 shape = Mat3::Identity();
     Vec3 centre = Vec3::Zero();
     RigidBox box;
-    double slack(const Packing &now, const Domain &domain, double skin, double greatest_reach, int threads) const;
+    double slack(const Packing &now, const Domain &domain, double skin, double max_reach, int threads) const;
   };
-  void update(const Packing &packing, const Domain &domain, double greatest_step, ContactList &contacts, int threads);
+  void update(const Packing &packing, const Domain &domain, double max_step, ContactList &contacts, int threads);
   void choose_skin(double r_min);
   void search(const Packing &packing, const Domain &domain, int threads);
   void select(const Packing &packing, const Domain &domain, ContactList &contacts, int threads);
@@ -79,7 +78,7 @@ private:
   double skin_ = 0, wide_skin_ = 0, slack_ = -1;
   std::uint64_t steps_since_rebuild_ = 0, n_rebuilds_ = 0, n_searches_ = 0;
   Reference tight_, wide_;
-  double greatest_reach_ = 0; ///< largest R1 + R2, m
+  double max_reach_ = 0; ///< largest R1 + R2, m
   std::vector<ContactList::Pair> candidates_;
   std::vector<ImageCode> candidate_images_; ///< in a cell
   std::array<std::vector<std::uint32_t>, 6> wall_candidates_, near_wall_;

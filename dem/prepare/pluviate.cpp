@@ -44,14 +44,14 @@ double fastest_impact(const Cloud &cloud, const Pluviation &how)
   return std::sqrt(2 * g * (1 - how.damping) * drop);
 }
 
-double greatest_overlap(const Snapshot &state)
+double max_overlap(const Snapshot &state)
 {
-  double greatest = 0;
+  double maximum = 0;
   for (const Contact &c : state.contacts)
-    greatest = std::max(greatest, c.overlap);
+    maximum = std::max(maximum, c.overlap);
   for (const WallContact &c : state.wall_contacts)
-    greatest = std::max(greatest, c.overlap);
-  return greatest;
+    maximum = std::max(maximum, c.overlap);
+  return maximum;
 }
 
 /// Vertical columns through a box on a square grid of about d50/10.
@@ -110,7 +110,7 @@ void report(const Snapshot &state, double d50, Deposit &deposit)
   inside.lower.array() += 2 * d50;
   inside.upper.array() -= 2 * d50;
   deposit.void_ratio_inside = void_ratio_inside(state.grains, inside);
-  deposit.resting_overlap = greatest_overlap(state) / d50;
+  deposit.resting_overlap = max_overlap(state) / d50;
 }
 } // namespace
 
@@ -189,7 +189,7 @@ Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how
       if (step % review == review - 1)
         {
           const Snapshot now = assembly.snapshot();
-          deposit.greatest_overlap = std::max(deposit.greatest_overlap, greatest_overlap(now) / d50);
+          deposit.max_overlap = std::max(deposit.max_overlap, max_overlap(now) / d50);
           if (assembly.time() > fall_time && stored_energy(now).kinetic() < rest_energy)
             {
               report(now, d50, deposit);

@@ -26,7 +26,7 @@ struct Deposit
   double height = 0;            ///< mean height of the surface, m
   double fall_speed = 0;        ///< estimate of the fastest impact, m/s
   double young = 0;             ///< contact modulus while grains fall, Pa
-  double greatest_overlap = 0;  ///< largest seen, sampled every 200 steps, over d50 [-]
+  double max_overlap = 0;       ///< largest seen, sampled every 200 steps, over d50 [-]
   double resting_overlap = 0;   ///< largest at the end, over d50 [-]
 };
 

@@ -20,7 +20,7 @@ constexpr double rate_interval = 50;
 constexpr std::uint64_t servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
 constexpr int settled = 3;                          ///< looks in a row with stresses on target
-constexpr double least_reference = 1e-7;            ///< of the contact modulus: p0 of a specimen without contacts
+constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
 Mat3 logarithm(const Mat3 &h) { return h - 0.5 * h * h + h * h * h / 3; }
@@ -46,15 +46,14 @@ void RveSettings::check() const
 {
   if (!((frame.transpose() * frame - Mat3::Identity()).norm() < 1e-9 && frame.determinant() > 0))
     throw InputError("the frame of a representative volume element must be a rotation: orthogonal, determinant +1");
-  if (!(greatest_increment > 0 && greatest_increment <= 0.1))
-    throw InputError(fmt::format("greatest_increment = {} of a representative volume element; allowed is (0, 0.1]",
-                                 greatest_increment));
-  if (greatest_steps == 0)
-    throw InputError("greatest_steps of a representative volume element must be positive");
-  if (least_steps == 0 || least_steps > greatest_steps)
+  if (!(max_increment > 0 && max_increment <= 0.1))
     throw InputError(
-        fmt::format("least_steps = {} of a representative volume element; allowed is 1 to greatest_steps = {}",
-                    least_steps, greatest_steps));
+        fmt::format("max_increment = {} of a representative volume element; allowed is (0, 0.1]", max_increment));
+  if (max_steps == 0)
+    throw InputError("max_steps of a representative volume element must be positive");
+  if (min_steps == 0 || min_steps > max_steps)
+    throw InputError(fmt::format("min_steps = {} of a representative volume element; allowed is 1 to max_steps = {}",
+                                 min_steps, max_steps));
 }
 
 Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
@@ -65,7 +64,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
   update_time_step(settings_.motion, true, assembly_, drive_);
   assembly_.compute_forces();
-  drive_.p0 = std::max(mean_stress(), least_reference * assembly_.law().young);
+  drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law().young);
   keep_safe();
 }
 
@@ -109,12 +108,12 @@ void Rve::step(const Mat3 &own_gradient)
 void Rve::run_strain(const Mat3 &own_gradient)
 {
   const double size = strain_measure(own_gradient);
-  double left = 1, least = static_cast<double>(settings_.least_steps);
-  for (bool last = own_gradient.isZero(0); !last; least -= 1)
+  double left = 1, minimum = static_cast<double>(settings_.min_steps);
+  for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
       review();
-      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), least);
-      if (!(whole < static_cast<double>(settings_.greatest_steps)))
+      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), minimum);
+      if (!(whole < static_cast<double>(settings_.max_steps)))
         throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
                                      drive_.rate, whole));
       const double part = left / std::max(1.0, std::ceil(whole));
@@ -143,7 +142,7 @@ void Rve::run_mixed(const MixedIncrement &own)
         on_target = error < own.tolerance * scale ? on_target + 1 : 0;
       if (left == 0 && on_target >= settled)
         return;
-      if (n >= settings_.greatest_steps)
+      if (n >= settings_.max_steps)
         throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
       const double part =
           left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.rate * assembly_.time_step)));
@@ -173,10 +172,10 @@ RveResponse Rve::guarded(double size, const Run &run)
     {
       if (!std::isfinite(size))
         response.reason = "the increment asked for is not a number";
-      else if (!(size <= settings_.greatest_increment))
+      else if (!(size <= settings_.max_increment))
         response.reason =
             fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
-                        settings_.greatest_increment);
+                        settings_.max_increment);
       else
         run();
     }

@@ -17,9 +17,9 @@ struct RveSettings
   Mat3 frame = Mat3::Identity(); ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
   /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
   /// each in a step or two, without time for its grains to find their places.
-  std::uint64_t least_steps = 1;
-  double greatest_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
-  std::uint64_t greatest_steps = 10'000'000; ///< of one advance()
+  std::uint64_t min_steps = 1;
+  double max_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
+  std::uint64_t max_steps = 10'000'000; ///< of one advance()
 
   /// tested: tests/dem/rve/rve_test.cpp
   void check() const; ///< @throws InputError  frame is no rotation, a limit is not positive

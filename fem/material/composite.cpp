@@ -25,7 +25,7 @@ void scatter(const std::vector<T> &mine, const std::vector<std::size_t> &places,
     all[places[k]] = mine[k];
 }
 /// Where points of a part are in the mesh, for a message that counts them in the part; empty if they count alike.
-std::string which(const Patchwork::Part &part)
+std::string which(const CompositeMaterial::Part &part)
 {
   constexpr std::size_t most = 20;
   bool alike = true;
@@ -40,7 +40,7 @@ std::string which(const Patchwork::Part &part)
 }
 } // namespace
 
-Patchwork::Patchwork(std::vector<Part> parts) : parts_(std::move(parts))
+CompositeMaterial::CompositeMaterial(std::vector<Part> parts) : parts_(std::move(parts))
 {
   for (const Part &part : parts_)
     n_points_ += part.places.size();
@@ -48,20 +48,20 @@ Patchwork::Patchwork(std::vector<Part> parts) : parts_(std::move(parts))
   for (const Part &part : parts_)
     {
       if (!part.material || part.material->n_points() != part.places.size())
-        throw InputError("patchwork: a part has other points than its material");
+        throw InputError("composite: a part has other points than its material");
       for (std::size_t place : part.places)
         if (place >= n_points_ || covered[place]++)
-          throw InputError("patchwork: point " + std::to_string(place) + " has two materials, or is outside");
+          throw InputError("composite: point " + std::to_string(place) + " has two materials, or is outside");
     }
 }
 
-void Patchwork::set_initial_stress(std::span<const Stress> effective)
+void CompositeMaterial::set_initial_stress(std::span<const Stress> effective)
 {
   for (Part &part : parts_)
     part.material->set_initial_stress(gathered<Stress>(effective, part.places));
 }
 
-void Patchwork::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
+void CompositeMaterial::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
 {
   assert(increments.size() == n_points_ && stresses.size() == n_points_);
   for (std::size_t k = 0; k < parts_.size(); ++k)
@@ -80,19 +80,19 @@ void Patchwork::trial(std::span<const Gradient> increments, std::span<Stress> st
     }
 }
 
-void Patchwork::commit()
+void CompositeMaterial::commit()
 {
   for (Part &part : parts_)
     part.material->commit();
 }
 
-void Patchwork::rollback()
+void CompositeMaterial::rollback()
 {
   for (Part &part : parts_)
     part.material->rollback();
 }
 
-void Patchwork::stiffness(std::span<Stiffness> tangents) const
+void CompositeMaterial::stiffness(std::span<Stiffness> tangents) const
 {
   for (const Part &part : parts_)
     {
@@ -102,7 +102,7 @@ void Patchwork::stiffness(std::span<Stiffness> tangents) const
     }
 }
 
-void Patchwork::wave_moduli(std::span<WaveModuli> moduli) const
+void CompositeMaterial::wave_moduli(std::span<WaveModuli> moduli) const
 {
   for (const Part &part : parts_)
     {
@@ -112,7 +112,7 @@ void Patchwork::wave_moduli(std::span<WaveModuli> moduli) const
     }
 }
 
-std::vector<std::byte> Patchwork::pack() const
+std::vector<std::byte> CompositeMaterial::pack() const
 {
   ByteWriter out;
   out.text(name());
@@ -126,7 +126,7 @@ std::vector<std::byte> Patchwork::pack() const
   return out.take();
 }
 
-void Patchwork::unpack(std::span<const std::byte> bytes)
+void CompositeMaterial::unpack(std::span<const std::byte> bytes)
 {
   ByteReader in(bytes, name());
   in.expect(in.text(), name());

@@ -8,7 +8,7 @@ namespace isostat
 /// order. A part whose points are shared out over processes can so have all of its points in one batch, whatever layers
 /// lie between them. A failure says which points of the mesh those of its part are.   cost: a copy of increments and
 /// stresses   tested: tests/fem/material/material_test.cpp
-class Patchwork : public Material
+class CompositeMaterial : public Material
 {
 public:
   struct Part
@@ -18,9 +18,9 @@ public:
   };
 
   /// @throws InputError  a point that has no part, or two
-  explicit Patchwork(std::vector<Part> parts);
+  explicit CompositeMaterial(std::vector<Part> parts);
 
-  std::string name() const override { return "patchwork"; }
+  std::string name() const override { return "composite"; }
   std::size_t n_points() const override { return n_points_; }
   void set_initial_stress(std::span<const Stress> effective) override;
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;

@@ -19,7 +19,7 @@ std::array<double, 16> as_numbers(const IwanParameters &p)
           p.reference_pressure, p.strength_ratio,    p.phase_transformation_ratio,
           p.contraction,        p.dilation,          p.fabric_limit,
           p.fabric_rate,        p.critical_pressure, p.residual_ratio,
-          p.least_pressure,     p.loosening_limit,   p.substep,
+          p.min_pressure,       p.loosening_limit,   p.substep,
           double(p.elements)};
 }
 
@@ -44,7 +44,7 @@ void check(const IwanParameters &p)
   require(p.fabric_rate >= 0, "fabric_rate", p.fabric_rate, "0 or more");
   require(p.critical_pressure > 0, "critical_pressure", p.critical_pressure, "above 0 Pa");
   require(p.residual_ratio >= 0 && p.residual_ratio < 1, "residual_ratio", p.residual_ratio, "in [0, 1)");
-  require(p.least_pressure > 0, "least_pressure", p.least_pressure, "above 0 Pa because moduli are divided by it");
+  require(p.min_pressure > 0, "min_pressure", p.min_pressure, "above 0 Pa because moduli are divided by it");
   require(p.loosening_limit >= 0, "loosening_limit", p.loosening_limit, "0 or more");
   require(p.substep >= 1e-6 && p.substep <= 1e-3, "substep", p.substep, "in [1e-6, 1e-3]");
 }
@@ -55,7 +55,7 @@ std::string at_point(std::size_t i) { return "iwan: point " + std::to_string(i) 
 Backbone fit_hyperbola(unsigned n)
 {
   require(n >= 4 && n <= 32, "elements", n, "4 to 32");
-  // lift, first and last node: those of the least greatest error, found by search for n = 8 ... 20
+  // lift, first and last node: those of the minimax error, found by search for n = 8 ... 20
   const double lift = 0.018 * std::pow(12.0 / n, 1.35), ratio = std::pow(1.2 / (lift * lift), 1.0 / (n - 1));
   std::vector<double> x(n + 1, 0.0), f(n + 1, 0.0);
   for (unsigned k = 1; k <= n; ++k)
@@ -118,7 +118,7 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
                          "; must not be above strength_ratio; choose k0 nearer to 1");
       double *state = &states[i * stride_];
       state[pressure] = p;
-      state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.least_pressure));
+      state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.min_pressure));
       for (int c = 0; c < 5; ++c)
         {
           state[deviator + c] = s[c];

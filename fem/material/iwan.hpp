@@ -20,7 +20,7 @@ struct IwanParameters
   double fabric_rate = 1000;               ///< dz = rate (z_max - z) times strain of dilation [-]
   double critical_pressure = 1e6;          ///< dilation fades as 1 - p'/critical_pressure. Pa
   double residual_ratio = 0.02;            ///< p' never falls below this part of its initial value [-]
-  double least_pressure = 200;             ///< nor below this. Pa
+  double min_pressure = 200;               ///< nor below this. Pa
   double loosening_limit = 0.01;           ///< volumetric strain kept at most as loosening (see Iwan) [-]
   double substep = 2e-5;                   ///< strain of one sub-step at most [-]
   unsigned elements = 12;                  ///< 4 ... 32; the error of the backbone is 1.8 % with 12, 1.2 % with 16

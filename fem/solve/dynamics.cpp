@@ -91,7 +91,7 @@ void Dynamics<dim>::make_coefficients()
       update_.local_element(i) = held ? 0 : 1 / (m / time_step_ + c / 2);
       keep_.local_element(i) = held ? 0 : (m / time_step_ - c / 2) / (m / time_step_ + c / 2);
     }
-  least_energy_ = 0.5e-6 * mass_.l1_norm() / 3; // of all the soil at 1 mm/s
+  min_energy_ = 0.5e-6 * mass_.l1_norm() / 3; // of all the soil at 1 mm/s
   for (unsigned i = 0; i < n; ++i)
     if (dashpot_.local_element(i) != 0 || surface_.local_element(i) != 0)
       loaded_.push_back(i);
@@ -104,7 +104,7 @@ template <int dim>
 double Dynamics<dim>::stable_step() const
 {
   material_.wave_moduli(moduli_);
-  return 2 / std::sqrt(space_.greatest_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
+  return 2 / std::sqrt(space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
 }
 
 /// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
@@ -214,7 +214,7 @@ void Dynamics<dim>::check_motion()
   double sums[2] = {half_way_.kinetic, exchanged_};
   if (space_.shared_out())
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, space_.communicator());
-  if (!(sums[0] <= 1e3 * (sums[1] + least_energy_)))
+  if (!(sums[0] <= 1e3 * (sums[1] + min_energy_)))
     throw RunFailure(fmt::format("unstable: kinetic energy {:.3g} J, but only {:.3g} J went in, at step {} (t = {:.6g} "
                                  "s); use a smaller time step",
                                  sums[0], sums[1], step_, time()));

@@ -130,7 +130,7 @@ private:
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
   Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
-  double least_energy_ = 0;               ///< J, that no explosion is judged below
+  double min_energy_ = 0;                 ///< J, that no explosion is judged below
   std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
   Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;

@@ -40,7 +40,7 @@ Statics<dim>::Statics(const Discretisation<dim> &space, Material &material, Stat
   material_.trial(increments_, stresses_); // no strain: the stress of the start
   material_.rollback();
   space_.add_internal_force(stresses_, reference_force_);
-  least_scale_ = std::max(settings_.least_force, 1e-4 * reference_force_.l2_norm());
+  min_scale_ = std::max(settings_.min_force, 1e-4 * reference_force_.l2_norm());
   pressure_scale_ = mean_modulus(material_, space_.communicator());
   if (settings_.pore_water)
     water_ = std::make_unique<BiotOperator<dim>>(space_);

@@ -39,7 +39,7 @@ struct StaticsSettings
   std::vector<FaceDisplacement> displacements =
       {};                  ///< components that are fixed and not named here stay where they are
   double tolerance = 1e-8; ///< of the residual, in units of the force scale (see Statics)
-  double least_force = 0;  ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
+  double min_force = 0;    ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
   unsigned max_iterations = 25;        ///< of Newton, per sub-step
   unsigned iterations_per_tangent = 1; ///< 1: Newton. More: the tangent is kept (modified Newton), within a sub-step
   unsigned max_halvings = 12;          ///< the smallest sub-step is the step times 2^-max_halvings
@@ -78,7 +78,7 @@ struct StaticsEffort
 ///
 /// Converged when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as forces
 /// by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
-/// reactions, included), least_force and 1e-4 |F0|.
+/// reactions, included), min_force and 1e-4 |F0|.
 ///
 /// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
 /// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
@@ -159,7 +159,7 @@ private:
   Vector load_;
   std::vector<Stress> stresses_;
   Vector reference_force_; ///< F0
-  double least_scale_ = 0; ///< N
+  double min_scale_ = 0;   ///< N
 
   // constant
   std::vector<Place> places_;

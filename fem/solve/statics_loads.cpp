@@ -45,8 +45,8 @@ void Statics<dim>::check_settings() const
     }
   if (!(settings_.tolerance > 0) || settings_.tolerance >= 1)
     throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.tolerance));
-  if (!(settings_.least_force >= 0))
-    throw InputError(fmt::format("least force = {} N; must be >= 0", settings_.least_force));
+  if (!(settings_.min_force >= 0))
+    throw InputError(fmt::format("smallest force = {} N; must be >= 0", settings_.min_force));
   if (settings_.max_iterations == 0 || settings_.iterations_per_tangent == 0)
     throw InputError("max iterations and iterations per tangent must be >= 1");
   if (settings_.max_halvings > 40)

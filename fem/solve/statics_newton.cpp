@@ -57,7 +57,7 @@ void Statics<dim>::start_substep(double duration)
       still = still && p_.local_element(i) == 0;
   left_ = on_every_rank(still) ? 0 : 1;
   trial_stresses_ = stresses_;
-  trial_scale_ = std::max(scale_, least_scale_);
+  trial_scale_ = std::max(scale_, min_scale_);
   find_residual();
 }
 
@@ -99,14 +99,14 @@ template <int dim>
 bool Statics<dim>::search_line(double merit_before)
 {
   constexpr unsigned max_cuts = 6;
-  constexpr double least_gain = 1e-4;
+  constexpr double min_gain = 1e-4;
   double part = 1;
   for (unsigned cut = 0; cut <= max_cuts; ++cut)
     {
       set_part(part);
       const double after = evaluate() ? merit(1 - part) : std::numeric_limits<double>::infinity();
       residual_ = after / trial_scale_;
-      if (after <= std::max((1 - least_gain * part) * merit_before, settings_.tolerance * trial_scale_))
+      if (after <= std::max((1 - min_gain * part) * merit_before, settings_.tolerance * trial_scale_))
         {
           left_ *= 1 - part;
           return true;
@@ -166,7 +166,7 @@ void Statics<dim>::find_residual()
   force_ = 0;
   space_.add_internal_force(trial_stresses_, force_);
   force_ -= reference_force_;
-  trial_scale_ = std::max({scale_, least_scale_, load_.l2_norm(), force_.l2_norm()});
+  trial_scale_ = std::max({scale_, min_scale_, load_.l2_norm(), force_.l2_norm()});
   if (water_)
     {
       for (std::size_t i = 0; i < n_u; ++i)

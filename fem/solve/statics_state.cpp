@@ -44,7 +44,7 @@ StaticsState Statics<dim>::save() const
   for (const Stress &of_point : stresses_)
     stress.insert(stress.end(), of_point.begin(), of_point.end());
   state.numbers = {{"time", time_},         {"duration_before", duration_before_}, {"substep", substep_},
-                   {"force_scale", scale_}, {"least_force_scale", least_scale_},   {"pressure_scale", pressure_scale_}};
+                   {"force_scale", scale_}, {"min_force_scale", min_scale_},       {"pressure_scale", pressure_scale_}};
   state.material = material_.pack();
   return state;
 }
@@ -84,7 +84,7 @@ void Statics<dim>::restore(const StaticsState &state)
   number("duration_before", duration_before_);
   number("substep", substep_);
   number("force_scale", scale_);
-  number("least_force_scale", least_scale_);
+  number("min_force_scale", min_scale_);
   number("pressure_scale", pressure_scale_);
   material_.unpack(state.material);
   step_ = state.step;

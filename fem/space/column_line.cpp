@@ -11,7 +11,7 @@ namespace
 /// Places closer than this are one, m.
 constexpr double near = 1e-9;
 
-double least(double x, MPI_Comm communicator)
+double minimum(double x, MPI_Comm communicator)
 {
   MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MIN, communicator);
   return x;
@@ -29,7 +29,7 @@ PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth)
   };
   for (std::size_t q = 0; q < space.n_points(); ++q)
     best = std::min(best, distance(q));
-  best = least(best, space.communicator());
+  best = minimum(best, space.communicator());
   // of several as near the one with the smallest number in the whole mesh: the same for any number of ranks
   PointAtDepth found;
   double smallest = std::numeric_limits<double>::max();
@@ -39,9 +39,9 @@ PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth)
         smallest = static_cast<double>(space.point_id[q]);
         found = {static_cast<long>(q), height - space.position[q][2]};
       }
-  if (smallest > least(smallest, space.communicator()))
+  if (smallest > minimum(smallest, space.communicator()))
     found = {-1, std::numeric_limits<double>::max()};
-  found.depth = least(found.point < 0 ? std::numeric_limits<double>::max() : found.depth, space.communicator());
+  found.depth = minimum(found.point < 0 ? std::numeric_limits<double>::max() : found.depth, space.communicator());
   return found;
 }
 

@@ -169,13 +169,13 @@ void Discretisation<dim>::tie_faces()
       dealii::DoFTools::extract_boundary_dofs(nodes_, dealii::ComponentMask(), on_face,
                                               {static_cast<dealii::types::boundary_id>(id)});
       std::map<Index, Index> &masters = masters_[tie.component];
-      Index least = nodes_.n_dofs();
+      Index minimum = nodes_.n_dofs();
       for (Index node : on_face)
-        least = std::min(least, master_of(masters, node));
-      MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_UNSIGNED, MPI_MIN, communicator_);
+        minimum = std::min(minimum, master_of(masters, node));
+      MPI_Allreduce(MPI_IN_PLACE, &minimum, 1, MPI_UNSIGNED, MPI_MIN, communicator_);
       for (Index node : on_face)
-        if (node != least)
-          masters[node] = least;
+        if (node != minimum)
+          masters[node] = minimum;
     }
 }
 

@@ -113,7 +113,7 @@ public:
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
   /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held.   Cost: in the loop.
-  double greatest_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const;
+  double max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const;
 
   const MeshSpec &mesh() const { return mesh_; }
   const Supports &supports() const { return supports_; }

@@ -165,19 +165,19 @@ void Discretisation<dim>::make_frequencies()
 }
 
 template <int dim>
-double Discretisation<dim>::greatest_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
+double Discretisation<dim>::max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
 {
-  double greatest = 0;
+  double maximum = 0;
   for (std::size_t cell = 0; cell < n_cells(); ++cell)
     {
       double modulus = 0;
       for (std::size_t q = cell * points_per_cell_; q < (cell + 1) * points_per_cell_; ++q)
         modulus = std::max(modulus, shear_only ? moduli[q].s : moduli[q].p);
-      greatest = std::max(greatest, modulus * cell_frequency_[cell]);
+      maximum = std::max(maximum, modulus * cell_frequency_[cell]);
     }
   if (shared_out_)
-    MPI_Allreduce(MPI_IN_PLACE, &greatest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
-  return greatest;
+    MPI_Allreduce(MPI_IN_PLACE, &maximum, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+  return maximum;
 }
 
 template class Discretisation<1>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/biot.hpp"
 
-#include "fem/space/petsc_check.hpp"
 #include "fem/space/axes.hpp"
+#include "fem/space/petsc_check.hpp"
 #include "fem/water/biot_integrals.hpp"
 
 #include <petscmat.h>
@@ -80,7 +80,7 @@ struct PressureSystem<dim>::Matrices
   std::array<Vector, 3> base_flow;       ///< int kb rho_f grad N_i, along each axis
   std::vector<unsigned> held;            ///< owned unknowns with p = 0: drained, or removed by a tie
   mutable Vector right_hand_side, work;
-  std::unique_ptr<View> of_u, of_p, of_other_p;
+  std::unique_ptr<View> of_u, of_p, of_pressure_residual;
 
   ~Matrices()
   {
@@ -171,7 +171,7 @@ PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double tim
   const std::size_t n_p = m.work.locally_owned_size(), n_u = update.locally_owned_size();
   m.of_u = std::make_unique<View>(communicator, n_u);
   m.of_p = std::make_unique<View>(communicator, n_p);
-  m.of_other_p = std::make_unique<View>(communicator, n_p);
+  m.of_pressure_residual = std::make_unique<View>(communicator, n_p);
   const std::vector<PorousLayer> layers = porous_layers(soil);
   BiotEntries e = integrate(space, layers, soil.water.density);
   make_base_flow(space, layers);
@@ -258,7 +258,7 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
   double *rhs = m.right_hand_side.begin(), *work = m.work.begin();
   for (std::size_t i = 0; i < n; ++i)
     work[i] = 4 * p_before.local_element(i) - p_before_that.local_element(i);
-  check(MatMult(m.storage, m.of_p->of(m.work), m.of_other_p->of(m.right_hand_side)));
+  check(MatMult(m.storage, m.of_p->of(m.work), m.of_pressure_residual->of(m.right_hand_side)));
   m.of_p->release();
   check(MatMult(m.ahead, m.of_u->of(v_star), m.of_p->of(m.work)));
   m.of_u->release();
@@ -275,9 +275,9 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
   for (unsigned held : m.held)
     rhs[held] = 0;
   m.of_p->release();
-  check(MatSolve(m.factor, m.of_other_p->vec(), m.of_p->of(p)));
+  check(MatSolve(m.factor, m.of_pressure_residual->vec(), m.of_p->of(p)));
   m.of_p->release();
-  m.of_other_p->release();
+  m.of_pressure_residual->release();
 }
 
 template <int dim>

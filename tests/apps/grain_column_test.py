@@ -264,7 +264,7 @@ class Alone(GrainColumnTest):
         self.assertTrue((self.folder / "alone/figures/fig_path.png").exists())
 
     def test_other_rates_give_other_stress(self):
-        text, summary = self.replay("-o", "fast", "--no-figures", "--rate-floor", 5, "--rate-ceiling", 5, "--least-steps", 1)
+        text, summary = self.replay("-o", "fast", "--no-figures", "--rate-floor", 5, "--rate-ceiling", 5, "--min-steps", 1)
         self.assertIn("of tau", text)
         self.assertLess(summary["equal"], summary["increments"])
         self.assertGreater(summary["shear_error"], 1e-4)
@@ -274,7 +274,7 @@ class Alone(GrainColumnTest):
             self.assert_refused(self.run_app("rve_replay", *arguments, "-q"), *parts)
         refuse(["whole", "packing.h5", "grains.path_depths"], "whole")
         refuse(["--rate-floor 3", "above the ceiling, 2"], "whole/paths/d0", "--rate-floor", 3)
-        wrong = self.run_app("rve_replay", "whole/paths/d0", "--least-steps", 0)
+        wrong = self.run_app("rve_replay", "whole/paths/d0", "--min-steps", 0)
         self.assertEqual(wrong.returncode, 2)
         self.assertIn("least-steps", wrong.stderr)
         packing = self.folder / "whole/paths/d0/packing.h5"

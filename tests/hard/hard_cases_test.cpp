@@ -29,7 +29,7 @@ public:
           assembly.time_step =
               0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
         assembly.compute_forces();
-        least_p = std::min(least_p, invariants(assembly.wall_stress()).p);
+        min_p = std::min(min_p, invariants(assembly.wall_stress()).p);
         axial_ += direction * rate * assembly.time_step;
         assembly.move(path_.box(isochoric(axial_)));
       }
@@ -39,7 +39,7 @@ public:
   Micromechanics look() const { return micromechanics(assembly.snapshot()); }
 
   Assembly assembly;
-  double least_p = 1e300;
+  double min_p = 1e300;
 
 private:
   StrainPath path_;
@@ -73,7 +73,7 @@ TEST(HardCases, LiquidShearReversalAndResolidification)
   EXPECT_LT(m.p_wall, 2e3);
   EXPECT_LT(m.redundancy, 1) << "a liquid is hypostatic";
   shear.to(-0.002, 2); // reversed while liquid
-  EXPECT_LT(shear.least_p, 200);
+  EXPECT_LT(shear.min_p, 200);
   shear.to(0.06, 5); // enough strain for the network to form again
   m = shear.look();
   std::printf("after 6 %% strain: p' %.2f kPa, I_R %.3f, energy residual/work %.1e\n", m.p_wall / 1e3, m.redundancy,

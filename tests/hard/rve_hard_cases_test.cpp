@@ -39,7 +39,7 @@ RveSettings quick()
 /// What a run of increments went through.
 struct Path
 {
-  double least_p = 1e300, greatest_p = -1e300, greatest_tau = 0;
+  double min_p = 1e300, max_p = -1e300, max_tau = 0;
 };
 
 /// Simple shear at constant volume in equal increments; every one is accepted, finite and keeps the volume.
@@ -55,12 +55,12 @@ Path shear(Rve &rve, double gamma, int increments)
       EXPECT_LT((r.stress - r.stress.transpose()).norm(), 1e-9 * (1 + r.stress.norm()));
       if (r.outcome == RveOutcome::rejected)
         break;
-      path.least_p = std::min(path.least_p, mean_stress(rve));
-      path.greatest_p = std::max(path.greatest_p, mean_stress(rve));
-      path.greatest_tau = std::max(path.greatest_tau, std::abs(r.stress(0, 1)));
+      path.min_p = std::min(path.min_p, mean_stress(rve));
+      path.max_p = std::max(path.max_p, mean_stress(rve));
+      path.max_tau = std::max(path.max_tau, std::abs(r.stress(0, 1)));
     }
   EXPECT_NEAR(rve.assembly().volume() / volume, 1, 1e-12);
-  EXPECT_LT(rve.kinetic_stress().norm(), 0.01 * std::max(path.greatest_p, 0.05 * p0)) << "far from quasi-static";
+  EXPECT_LT(rve.kinetic_stress().norm(), 0.01 * std::max(path.max_p, 0.05 * p0)) << "far from quasi-static";
   return path;
 }
 
@@ -120,10 +120,10 @@ TEST(RveHardCases, ALiquidStaysLiquidOverTenPerCentOfShear)
   Rve rve(test::periodic_specimen(grains, 14), quick());
   liquefy(rve, 0);
   const Path path = shear(rve, 0.1, 50);
-  std::printf("liquid: e %.3f, p' between %.3f and %.3f kPa over 10 %% of shear\n", rve.void_ratio(),
-              path.least_p / 1e3, path.greatest_p / 1e3);
-  EXPECT_LT(path.greatest_p, 0.02 * p0);
-  EXPECT_GE(path.least_p, 0);
+  std::printf("liquid: e %.3f, p' between %.3f and %.3f kPa over 10 %% of shear\n", rve.void_ratio(), path.min_p / 1e3,
+              path.max_p / 1e3);
+  EXPECT_LT(path.max_p, 0.02 * p0);
+  EXPECT_GE(path.min_p, 0);
 }
 
 TEST(RveHardCases, ALiquidDensePackingBecomesSolidAgain)
@@ -142,14 +142,14 @@ TEST(RveHardCases, ReversalsInsideTheLiquidState)
 {
   Rve rve(test::periodic_specimen(grains, 2), quick());
   liquefy(rve, 1.5e-3);
-  double greatest = 0;
+  double maximum = 0;
   for (const double way : {2e-3, -4e-3, 4e-3, -2e-3})
-    greatest = std::max(greatest, shear(rve, way, 20).greatest_p);
-  EXPECT_LT(greatest, 0.02 * p0);
+    maximum = std::max(maximum, shear(rve, way, 20).max_p);
+  EXPECT_LT(maximum, 0.02 * p0);
   double gamma = 0;
   for (; gamma > -0.08 && mean_stress(rve) < p0; gamma -= 2e-3)
     shear(rve, -2e-3, 4);
-  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", greatest / 1e3,
+  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", maximum / 1e3,
               mean_stress(rve) / 1e3, 100 * gamma);
   EXPECT_GT(mean_stress(rve), p0);
   EXPECT_LT(rve.stress()(0, 1), -0.3 * mean_stress(rve)) << "sheared to the left, it resists to the left";
@@ -180,10 +180,10 @@ TEST(RveHardCases, GrainsOneToFiveInSize)
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
   EXPECT_NEAR(mean_stress(rve) / p0, 1, 0.01);
   const Path path = shear(rve, 5e-3, 20);
-  std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, least %.1f kPa\n", packing.max_radius() / packing.min_radius(),
-              mean_stress(rve) / 1e3, path.least_p / 1e3);
-  EXPECT_GE(path.least_p, 0);
-  EXPECT_LT(path.greatest_p, 10e6);
+  std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
+              packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
+  EXPECT_GE(path.min_p, 0);
+  EXPECT_LT(path.max_p, 10e6);
 }
 
 TEST(RveHardCases, GrainsTenTimesStiffer)
@@ -200,8 +200,8 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
   std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
   EXPECT_GT(ratio, 7) << "fewer contacts, but not by much";
   EXPECT_LT(ratio, 11);
-  EXPECT_GE(shear(stiff, 2e-4, 10).least_p, 0);
-  EXPECT_GE(shear(normal, 2e-4, 10).least_p, 0);
+  EXPECT_GE(shear(stiff, 2e-4, 10).min_p, 0);
+  EXPECT_GE(shear(normal, 2e-4, 10).min_p, 0);
 }
 
 TEST(RveHardCases, WithoutFrictionItLosesItsStress)
@@ -215,8 +215,8 @@ TEST(RveHardCases, WithoutFrictionItLosesItsStress)
   EXPECT_EQ(c, rve.stiffness(Sliding::released)) << "no contact can yield";
   const Path path = shear(rve, 0.02, 40);
   std::printf("no friction: E_oed %.0f MPa, G %.1f MPa; p' between %.2f and %.1f kPa over 2 %% of shear\n",
-              c(0, 0) / 1e6, c(5, 5) / 1e6, path.least_p / 1e3, path.greatest_p / 1e3);
-  EXPECT_LT(path.least_p, 0.5 * p0);
+              c(0, 0) / 1e6, c(5, 5) / 1e6, path.min_p / 1e3, path.max_p / 1e3);
+  EXPECT_LT(path.min_p, 0.5 * p0);
   EXPECT_TRUE(rve.stiffness().allFinite());
 }
 
@@ -287,7 +287,7 @@ TEST(RveHardCases, WhatIsNotANumberIsRefused)
 TEST(RveHardCases, AStressOutOfReachIsRefused)
 {
   RveSettings settings;
-  settings.greatest_steps = 5000;
+  settings.max_steps = 5000;
   Rve rve(test::periodic_specimen(grains, 10), settings), twin(test::periodic_specimen(grains, 10), settings);
   MixedIncrement pull;
   pull.stress(1, 1) = 50e3;

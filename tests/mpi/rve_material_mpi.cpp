@@ -165,14 +165,14 @@ void start_in_situ(RveMaterialSettings settings, const std::filesystem::path &fo
   if (rank == 0)
     test::write_library(settings.library);
   MPI_Barrier(MPI_COMM_WORLD);
-  std::vector<SpecimenWish> wishes(n_points);
+  std::vector<SpecimenRequest> requests(n_points);
   std::vector<Stress> wanted(n_points);
   for (std::size_t i = 0; i < n_points; ++i)
     {
-      wishes[i].realisation = i % 2;
+      requests[i].realisation = i % 2;
       wanted[i] = test::in_situ(20e3 + 10e3 * static_cast<double>(i / 2), 0.6);
     }
-  RveMaterial prepared(wishes, settings, MPI_COMM_WORLD), cached(wishes, settings, MPI_COMM_WORLD);
+  RveMaterial prepared(requests, settings, MPI_COMM_WORLD), cached(requests, settings, MPI_COMM_WORLD);
   prepared.set_initial_stress(wanted);
   MPI_Barrier(MPI_COMM_WORLD); // the cache is written
   cached.set_initial_stress(wanted);

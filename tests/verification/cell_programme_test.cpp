@@ -23,7 +23,7 @@ struct Watcher : RunObserver
     rows.push_back({seen, -a.stress(), a.volume()});
   }
   bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
-  double greatest_change_of_volume() const
+  double max_change_of_volume() const
   {
     double worst = 0;
     for (const Row &row : rows)
@@ -115,7 +115,7 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
 TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 {
   const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), test::periodic_specimen(500, 4));
-  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
+  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
   EXPECT_NEAR(result.watcher.rows.back().seen.axial, 5e-3, 1e-6);
   EXPECT_GT(result.watcher.rows.back().seen.q, 20e3);
   EXPECT_EQ(result.end.cell->rotation, Mat3::Identity());
@@ -147,7 +147,7 @@ TEST(CellSimpleShear, OnlyGammaMoves)
 {
   const Snapshot &dense = test::periodic_specimen(500, 4);
   const Result result = run(stage_of(StageKind::undrained_simple_shear, 5e-3), dense);
-  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
+  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
   const PeriodicCell &cell = *result.end.cell;
   Mat3 sheared = Mat3::Identity();
   sheared(0, 1) = result.state.gamma;
@@ -165,15 +165,15 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
   stage.max_cycles = 3;
   const Result result = run(stage, medium(), 20);
   std::printf("cyclic simple shear: %g reversals, overshoot %.1f Pa, volume within %.1e\n", result.state.reversals,
-              result.state.worst_overshoot, result.watcher.greatest_change_of_volume());
+              result.state.worst_overshoot, result.watcher.max_change_of_volume());
   EXPECT_EQ(result.state.reversals, 6);
   EXPECT_GE(result.state.worst_overshoot, 0);
   EXPECT_LT(result.state.worst_overshoot, 500);
-  EXPECT_LT(result.watcher.greatest_change_of_volume(), 1e-12);
-  double greatest = 0;
+  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
+  double maximum = 0;
   for (const auto &row : result.watcher.rows)
-    greatest = std::max(greatest, std::abs(row.seen.tau));
-  EXPECT_NEAR(greatest, 0.12 * 200e3, 600);
+    maximum = std::max(maximum, std::abs(row.seen.tau));
+  EXPECT_NEAR(maximum, 0.12 * 200e3, 600);
 }
 
 TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)

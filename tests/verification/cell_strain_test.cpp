@@ -30,7 +30,7 @@ TEST(SimpleShear, AHundredPercentAtConstantVolumePassWithoutIncident)
   Assembly a(periodic_specimen(500, 20)); // a dense one would go up to 20 MPa
   const double volume = a.volume();
   const Mat3 compression = a.cell()->deformation;
-  double off = 0, skew = 0, torque_gap = 0, unbalanced = 0, least_width = 1;
+  double off = 0, skew = 0, torque_gap = 0, unbalanced = 0, min_width = 1;
   const int steps = 50'000; // some 400/s: a quick one
   for (int look = 0; look < 100; ++look)
     {
@@ -46,11 +46,11 @@ TEST(SimpleShear, AHundredPercentAtConstantVolumePassWithoutIncident)
       const Vec3 torque = a.cell()->rotation * sum_of_torques(a) / -volume;
       torque_gap = std::max(torque_gap, (axial_of(stress) - torque).norm() / p);
       EXPECT_LE((0.5 * (stress + stress.transpose()) - a.stress()).norm(), 1e-9 * p + 1e-3);
-      least_width = std::min(least_width, a.cell()->widths().minCoeff() / std::cbrt(volume));
+      min_width = std::min(min_width, a.cell()->widths().minCoeff() / std::cbrt(volume));
     }
   std::printf("volume off by %.1e; skew part of stress at most %.1e p', unbalanced force %.1e; skew part less torques "
               "%.1e p'; cell >= %.2f V^1/3 wide, %llu flips, |stress| now %.0f kPa\n",
-              off, skew, unbalanced, torque_gap, least_width, static_cast<unsigned long long>(a.cell()->flips),
+              off, skew, unbalanced, torque_gap, min_width, static_cast<unsigned long long>(a.cell()->flips),
               a.stress().norm() / 1e3);
   EXPECT_LE(off, 1e-12);
   EXPECT_GE(a.cell()->flips, 1u);

@@ -63,12 +63,12 @@ void print(const std::string &title, double time_step, const std::vector<Series>
 }
 
 /// The orders of the finer half of the series: further up, terms of higher order still count.
-void expect_order(const Series &s, double least, double greatest)
+void expect_order(const Series &s, double minimum, double maximum)
 {
   for (std::size_t level = s.errors.size() / 2 - 1; level + 1 < s.errors.size(); ++level)
     {
-      EXPECT_GE(s.order(level), least) << s.name << " at level " << level;
-      EXPECT_LE(s.order(level), greatest) << s.name << " at level " << level;
+      EXPECT_GE(s.order(level), minimum) << s.name << " at level " << level;
+      EXPECT_LE(s.order(level), maximum) << s.name << " at level " << level;
     }
 }
 

@@ -83,7 +83,7 @@ double speed_growth(double time_step)
   Assembly a(lattice());
   a.damping = 0;
   a.time_step = time_step;
-  double greatest = 0;
+  double maximum = 0;
   try
     {
       for (int k = 0; k < 1000; ++k)
@@ -91,14 +91,14 @@ double speed_growth(double time_step)
           a.compute_forces();
           a.move(a.box());
           for (std::size_t i = 0; i < a.packing().n_grains(); ++i)
-            greatest = std::max(greatest, a.packing().linear_velocity(i).norm());
+            maximum = std::max(maximum, a.packing().linear_velocity(i).norm());
         }
     }
   catch (const RunFailure &)
     {
-      greatest = INFINITY;
+      maximum = INFINITY;
     }
-  return greatest / 1.7e-9;
+  return maximum / 1.7e-9;
 }
 
 TEST(CriticalStep, TheLimitIsReal)

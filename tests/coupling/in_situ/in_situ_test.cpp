@@ -53,9 +53,9 @@ TEST(NearestEntry, IsNearestInStressOfTheDensityAndSeed)
 TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
 {
   const std::vector<Stress> wanted = {test::in_situ(70e3, 0.5), test::in_situ(40e3, 1), test::in_situ(10e3, 0.6)};
-  const std::vector<SpecimenWish> wishes = {{0.5, 0}, {0.5, 1}, {0.5, 0}};
+  const std::vector<SpecimenRequest> requests = {{0.5, 0}, {0.5, 1}, {0.5, 0}};
   const auto begin = std::chrono::steady_clock::now();
-  RveMaterial first(wishes, settings, MPI_COMM_SELF);
+  RveMaterial first(requests, settings, MPI_COMM_SELF);
   first.set_initial_stress(wanted);
   const auto middle = std::chrono::steady_clock::now();
   std::vector<Stress> stress(3);
@@ -64,7 +64,7 @@ TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
     for (int c = 0; c < 6; ++c)
       EXPECT_NEAR(stress[i][c], wanted[i][c], -0.01 * (wanted[i][0] + wanted[i][1] + wanted[i][2]) / 3) << i << c;
   const auto start = std::chrono::steady_clock::now();
-  RveMaterial second(wishes, settings, MPI_COMM_SELF);
+  RveMaterial second(requests, settings, MPI_COMM_SELF);
   second.set_initial_stress(wanted);
   const double fast = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(first.pack(), second.pack());
@@ -79,7 +79,7 @@ TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
 TEST_F(InSitu, IsAtRest)
 {
   const std::vector<Stress> wanted = {test::in_situ(70e3, 0.5), test::in_situ(5e3, 0.5), test::in_situ(2e3, 0.5)};
-  RveMaterial material(std::vector<SpecimenWish>(3), settings, MPI_COMM_SELF);
+  RveMaterial material(std::vector<SpecimenRequest>(3), settings, MPI_COMM_SELF);
   material.set_initial_stress(wanted);
   std::vector<Stress> before(3), after(3);
   const std::vector<Gradient> nothing(3, Gradient{}), tiny(3, Gradient{{0, 0, 1e-13, 0, 0, 0, 0, 0, 0}});
@@ -107,7 +107,7 @@ TEST_F(InSitu, IsAtRest)
 TEST_F(InSitu, WithoutLateralStrainThePackingChoosesItsK0)
 {
   settings.in_situ.path = InSituPath::no_lateral_strain;
-  RveMaterial material(std::vector<SpecimenWish>(1), settings, MPI_COMM_SELF);
+  RveMaterial material(std::vector<SpecimenRequest>(1), settings, MPI_COMM_SELF);
   material.set_initial_stress(std::vector{test::in_situ(150e3, 0.5)});
   const Mat3 stress = material.element(0)->stress();
   EXPECT_NEAR(stress(2, 2), -150e3, 1500);
@@ -126,15 +126,15 @@ TEST_F(InSitu, GivenElementsGoToTheirStressToo)
 
 TEST_F(InSitu, WhatCannotBeIsSaid)
 {
-  RveMaterial material(std::vector<SpecimenWish>(2), settings, MPI_COMM_SELF);
+  RveMaterial material(std::vector<SpecimenRequest>(2), settings, MPI_COMM_SELF);
   const auto with = [&](const Stress &second) {
     return [&, second] { material.set_initial_stress(std::vector{test::in_situ(70e3, 0.5), second}); };
   };
   EXPECT_THAT(message_of<InputError>(with(test::in_situ(100, 0.5))),
               AllOf(HasSubstr("rve: point 1: sigma'_v = 0.1 kPa"), HasSubstr("below 0.5 kPa")));
   EXPECT_THAT(message_of<InputError>(with(test::in_situ(-70e3, 0.5))), HasSubstr("compressed in all directions"));
-  settings.in_situ.greatest_steps = 3000;
-  RveMaterial hasty(std::vector<SpecimenWish>(1), settings, MPI_COMM_SELF);
+  settings.in_situ.max_steps = 3000;
+  RveMaterial hasty(std::vector<SpecimenRequest>(1), settings, MPI_COMM_SELF);
   EXPECT_THAT(message_of<RunFailure>([&] { hasty.set_initial_stress(std::vector{test::in_situ(60e3, 0.02)}); }),
               AllOf(HasSubstr("rve: point 0: sigma'_v = 60 kPa"), HasSubstr("not reached from a specimen at")));
   std::vector<Stress> stress(1);
@@ -142,7 +142,7 @@ TEST_F(InSitu, WhatCannotBeIsSaid)
               HasSubstr("set_initial_stress"));
   RveMaterialSettings lost;
   lost.library = folder / "none.h5";
-  RveMaterial nowhere(std::vector<SpecimenWish>(1), lost, MPI_COMM_SELF);
+  RveMaterial nowhere(std::vector<SpecimenRequest>(1), lost, MPI_COMM_SELF);
   EXPECT_THAT(message_of<InputError>([&] { nowhere.set_initial_stress(std::vector{test::in_situ(60e3, 1)}); }),
               HasSubstr("none.h5"));
 }

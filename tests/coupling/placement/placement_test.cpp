@@ -24,16 +24,16 @@ std::vector<double> costs_of(std::size_t n, unsigned seed)
   return costs;
 }
 
-double greatest_load(const std::vector<double> &costs, const Owners &owners, int n_ranks)
+double max_load(const std::vector<double> &costs, const Owners &owners, int n_ranks)
 {
   return imbalance(costs, owners, n_ranks) * std::accumulate(costs.begin(), costs.end(), 0.0) / n_ranks;
 }
 
-/// The least greatest load of all placements, by trying them.
+/// The minimax load of all placements, by trying them.
 double best_load(const std::vector<double> &costs, int n_ranks)
 {
   Owners owners(costs.size(), 0);
-  double best = greatest_load(costs, owners, n_ranks);
+  double best = max_load(costs, owners, n_ranks);
   for (;;)
     {
       std::size_t k = 0;
@@ -41,7 +41,7 @@ double best_load(const std::vector<double> &costs, int n_ranks)
         owners[k++] = 0;
       if (k == owners.size())
         return best;
-      best = std::min(best, greatest_load(costs, owners, n_ranks));
+      best = std::min(best, max_load(costs, owners, n_ranks));
     }
 }
 } // namespace
@@ -70,7 +70,7 @@ TEST(Placement, KeepsGrahamsBound)
     for (int ranks : {2, 3})
       {
         const std::vector<double> costs = costs_of(8, seed);
-        const double ratio = greatest_load(costs, longest_first(costs, ranks), ranks) / best_load(costs, ranks);
+        const double ratio = max_load(costs, longest_first(costs, ranks), ranks) / best_load(costs, ranks);
         EXPECT_LE(ratio, 4.0 / 3 - 1.0 / (3 * ranks) + 1e-12);
         worst = std::max(worst, ratio);
       }
@@ -104,8 +104,8 @@ TEST(Placement, MovesOnlyAboveTheThresholdAndForAGain)
   EXPECT_EQ(rebalanced(giant, {1, 0}, 2, {}), (Owners{1, 0}));
 }
 
-TEST(Placement, ThreadsTakeTheDearestFirst)
+TEST(Placement, ThreadsTakeTheCostliestFirst)
 {
-  EXPECT_THAT(dearest_first(std::vector{1.0, 3.0, 2.0, 3.0, 9.0}, {0, 0, 0, 0, 1}, 0), ElementsAre(1, 3, 2, 0));
+  EXPECT_THAT(costliest_first(std::vector{1.0, 3.0, 2.0, 3.0, 9.0}, {0, 0, 0, 0, 1}, 0), ElementsAre(1, 3, 2, 0));
 }
 } // namespace isostat

@@ -50,16 +50,16 @@ double misfit_of_lattices(const Mat3 &lattice, const Mat3 &edges)
 /// Length of the shortest vector of a lattice whose basis is not too skew.
 double shortest(const Mat3 &edges)
 {
-  double least = INFINITY;
+  double minimum = INFINITY;
   for (int a = -3; a <= 3; ++a)
     for (int b = -3; b <= 3; ++b)
       for (int c = -3; c <= 3; ++c)
         if (a || b || c)
-          least = std::min(least, (edges * Vec3(a, b, c)).norm());
-  return least;
+          minimum = std::min(minimum, (edges * Vec3(a, b, c)).norm());
+  return minimum;
 }
 
-double greatest_lean(const Mat3 &edges)
+double max_lean(const Mat3 &edges)
 {
   double lean = 0;
   for (int k = 0; k < 3; ++k)
@@ -233,13 +233,13 @@ TEST(UprightEdges, SpanTheSameLatticeAndLeanLess)
       const auto upright = cell.upright_edges();
       if (!upright)
         {
-          EXPECT_LE(greatest_lean(cell.edges), 0.6);
+          EXPECT_LE(max_lean(cell.edges), 0.6);
           continue;
         }
       ++changed;
       EXPECT_NEAR(upright->determinant() / cell.volume(), 1, 1e-11);
       EXPECT_LE(misfit_of_lattices(cell.edges, *upright), 1e-9);
-      EXPECT_LE(greatest_lean(*upright), 0.6 * (1 + 1e-12));
+      EXPECT_LE(max_lean(*upright), 0.6 * (1 + 1e-12));
       PeriodicCell again;
       again.edges = *upright;
       EXPECT_FALSE(again.upright_edges()) << "what is upright stays";
@@ -252,7 +252,7 @@ TEST(UprightEdges, KeepTheCellWideThroughShearOfTenIn3D)
   // edges that lean by at most 0.6 of each other: a cube sheared along its edges keeps 1/sqrt(1 + 0.6^2) of its width;
   // in any direction, a cell stays at least 0.6 times as wide as the shortest vector of its lattice
   Random random(6);
-  double least_of_cube = 1, least_of_shortest = INFINITY;
+  double min_of_cube = 1, min_of_shortest = INFINITY;
   for (int run = 0; run < 12; ++run)
     {
       PeriodicCell cell = PeriodicCell::with_edges(Vec3::Ones());
@@ -266,16 +266,16 @@ TEST(UprightEdges, KeepTheCellWideThroughShearOfTenIn3D)
           deform(cell, q * gradient * q.transpose());
           const double width = cell.widths().minCoeff();
           if (run < 2)
-            least_of_cube = std::min(least_of_cube, width);
+            min_of_cube = std::min(min_of_cube, width);
           if (step % 10 == 0)
-            least_of_shortest = std::min(least_of_shortest, width / shortest(cell.edges));
+            min_of_shortest = std::min(min_of_shortest, width / shortest(cell.edges));
         }
       EXPECT_GE(cell.flips, 5u);
     }
   std::printf("cube sheared along its edges: width >= %.4f; any direction: width >= %.3f of the shortest vector\n",
-              least_of_cube, least_of_shortest);
-  EXPECT_GE(least_of_cube, 1 / std::sqrt(1.36) - 1e-2);
-  EXPECT_GE(least_of_shortest, 0.6);
+              min_of_cube, min_of_shortest);
+  EXPECT_GE(min_of_cube, 1 / std::sqrt(1.36) - 1e-2);
+  EXPECT_GE(min_of_shortest, 0.6);
 }
 
 TEST(UprightEdges, SmallCyclesAboutTheThresholdFlipOnceOnly)

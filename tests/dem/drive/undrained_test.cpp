@@ -51,10 +51,10 @@ TEST(Undrained, LiquefactionIsNotedOnceWithTheStrainBeforeIt)
   EXPECT_TRUE(onset.notable);
   EXPECT_NE(onset.event.find("initial liquefaction"), std::string::npos);
   EXPECT_EQ(state.liquefaction_step, 6);
-  EXPECT_DOUBLE_EQ(state.greatest_strain_before, 7e-4);
+  EXPECT_DOUBLE_EQ(state.max_strain_before, 7e-4);
   observe_undrained(cyclic(), {50e3, 1e3, 5e-2, 7}, state);
   EXPECT_FALSE(observe_undrained(cyclic(), {1.0e3, 1e3, 3e-4, 8}, state).notable);
-  EXPECT_DOUBLE_EQ(state.greatest_strain_before, 7e-4);
+  EXPECT_DOUBLE_EQ(state.max_strain_before, 7e-4);
 }
 
 TEST(Undrained, EndsAfterTheReversalsAskedFor)

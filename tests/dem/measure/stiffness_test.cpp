@@ -180,7 +180,7 @@ Mat6 dense_stiffness(const Snapshot &s, Sliding sliding)
 
 double misfit(const Eigen::MatrixXd &a, const Eigen::MatrixXd &b) { return (a - b).norm() / b.norm(); }
 
-double least_eigenvalue(const Mat6 &c)
+double min_eigenvalue(const Mat6 &c)
 {
   return Eigen::SelfAdjointEigenSolver<Mat6>(c, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
@@ -345,10 +345,10 @@ TEST(Stiffness, SymmetricAndBetweenZeroAndTheAffineBound)
         const Mat6 c = condensed_stiffness(s, sliding), bound = affine_stiffness(s, sliding);
         const double rounding = 1e-12 * bound.norm();
         EXPECT_EQ((c - c.transpose()).norm(), 0);
-        EXPECT_GE(least_eigenvalue(c), -rounding);
-        EXPECT_GE(least_eigenvalue(bound - c), -rounding);
+        EXPECT_GE(min_eigenvalue(c), -rounding);
+        EXPECT_GE(min_eigenvalue(bound - c), -rounding);
         EXPECT_GT((bound - c).norm(), 0.01 * bound.norm());
-        EXPECT_GE(least_eigenvalue(condensed_stiffness(s) - c), -rounding); // released is never stiffer
+        EXPECT_GE(min_eigenvalue(condensed_stiffness(s) - c), -rounding); // released is never stiffer
       }
 }
 

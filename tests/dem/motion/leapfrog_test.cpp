@@ -196,7 +196,7 @@ TEST_P(Leapfrog, MeasuringChangesNoBit)
   EXPECT_EQ(plain.position, measured.position);
   EXPECT_EQ(plain.velocity, measured.velocity);
   EXPECT_EQ(plain.spin, measured.spin);
-  EXPECT_EQ(first.greatest_speed, second.greatest_speed);
+  EXPECT_EQ(first.max_speed, second.max_speed);
   EXPECT_EQ(first.damping_loss, 0);
 }
 
@@ -223,11 +223,11 @@ TEST_P(Leapfrog, ReportsTheGreatestSpeedAsABound)
   Packing packing = moving_packing(40);
   Action action = resting_action(packing);
   const MotionReport report = integrate(packing, action.data(), 1e-8, 0.2, no_limit, false);
-  double greatest = 0;
+  double maximum = 0;
   for (std::size_t i = 0; i < 40; ++i)
-    greatest = std::max(greatest, packing.linear_velocity(i).norm());
-  EXPECT_GE(report.greatest_speed, greatest);
-  EXPECT_LE(report.greatest_speed, std::sqrt(3.0) * greatest * (1 + 1e-15));
+    maximum = std::max(maximum, packing.linear_velocity(i).norm());
+  EXPECT_GE(report.max_speed, maximum);
+  EXPECT_LE(report.max_speed, std::sqrt(3.0) * maximum * (1 + 1e-15));
   EXPECT_FALSE(report.exploded);
 }
 
@@ -275,7 +275,7 @@ TEST_P(Leapfrog, HomogeneousStrainComesOnTopOfTheMotion)
       EXPECT_EQ(packing.velocity, plain.velocity);
       EXPECT_EQ(packing.spin, plain.spin);
       EXPECT_EQ(action, same);
-      EXPECT_EQ(report.greatest_speed, expected.greatest_speed);
+      EXPECT_EQ(report.max_speed, expected.max_speed);
       EXPECT_EQ(report.damping_loss, expected.damping_loss);
       for (std::size_t i = 0; i < 40; ++i)
         {

@@ -184,16 +184,16 @@ public:
   void step()
   {
     const Mat3 growth = cell_.deform(gradient_);
-    double greatest = 0;
+    double maximum = 0;
     for (std::size_t i = 0; i < packing_.n_grains(); ++i)
       {
         const Vec3 moved = drift_[i] + motion_.jitter * random_.vector();
         packing_.set_centre(i, packing_.centre(i) + growth * packing_.centre(i) + moved);
-        greatest = std::max(greatest, moved.norm());
+        maximum = std::max(maximum, moved.norm());
       }
     if (const auto upright = cell_.upright_edges())
       flip(*upright);
-    list_.update(packing_, cell_, greatest + growth.norm() * 2 * packing_.max_radius(), contacts_);
+    list_.update(packing_, cell_, maximum + growth.norm() * 2 * packing_.max_radius(), contacts_);
     contacts_.set_cell(cell_.edges);
   }
 

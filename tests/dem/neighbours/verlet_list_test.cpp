@@ -80,14 +80,14 @@ public:
         box_.lower[k] *= 1 + strain_[k];
         box_.upper[k] *= 1 + strain_[k];
       }
-    double greatest = 0;
+    double maximum = 0;
     for (std::size_t i = 0; i < packing_.n_grains(); ++i)
       {
         const Vec3 moved = drift_[i] + jitter_ * random_.vector() + packing_.centre(i).cwiseProduct(followed_);
         packing_.set_centre(i, packing_.centre(i) + moved);
-        greatest = std::max(greatest, moved.norm());
+        maximum = std::max(maximum, moved.norm());
       }
-    list_.update(packing_, box_, greatest + (box_.upper - old.upper).cwiseAbs().maxCoeff(), contacts_);
+    list_.update(packing_, box_, maximum + (box_.upper - old.upper).cwiseAbs().maxCoeff(), contacts_);
   }
 
   /// Everything that touches is listed, and pairs that went on touching have their history.

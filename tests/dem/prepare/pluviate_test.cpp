@@ -42,15 +42,15 @@ struct Follower : test::Unobserved
   bool after_step(const Assembly &a, const DriveState &, const Observation &) override
   {
     const double overlap = a.packing().radius(0) - a.packing().centre(0)[1];
-    greatest = std::max(greatest, overlap);
-    if (overlap <= 0 && greatest == 0)
+    maximum = std::max(maximum, overlap);
+    if (overlap <= 0 && maximum == 0)
       {
         speed = -a.packing().linear_velocity(0)[1];
         fallen = a.time();
       }
     return true;
   }
-  double greatest = 0, speed = 0, fallen = 0;
+  double maximum = 0, speed = 0, fallen = 0;
 };
 
 TEST(VoidRatioInside, IsThatOfACubicLattice)
@@ -92,13 +92,13 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
     bool after_step(const Assembly &a, const DriveState &s, const Observation &o) override
     {
       Follower::after_step(a, s, o);
-      return greatest == 0 || a.packing().linear_velocity(0)[1] < 0;
+      return maximum == 0 || a.packing().linear_velocity(0)[1] < 0;
     }
   } once;
   EXPECT_THROW(pluviate(cloud, law, how, once), Interrupted);
   EXPECT_NEAR(once.speed / speed, 1, 1e-3);
   EXPECT_NEAR(once.fallen / std::sqrt(2 * (height - radius) / g), 1, 1e-3);
-  EXPECT_NEAR(once.greatest / wanted, 1, 0.06); // the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)
+  EXPECT_NEAR(once.maximum / wanted, 1, 0.06); // the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)
 }
 
 /// 500 grains of the paper's sand: seconds.
@@ -130,7 +130,7 @@ TEST(Pluviate, GrainsRestUnderTheirWeight)
 TEST(Pluviate, SoftContactsStayRigid)
 {
   EXPECT_LT(deposit().young, test::paper_law().young);
-  EXPECT_LT(deposit().greatest_overlap, 1e-3);
+  EXPECT_LT(deposit().max_overlap, 1e-3);
   EXPECT_LT(deposit().resting_overlap, 1e-4);
 }
 

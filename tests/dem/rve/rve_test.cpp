@@ -276,10 +276,10 @@ TEST(Rve, AnIncrementTooLargeIsRejectedAndNothingChanges)
   EXPECT_EQ(rve.undrained(increment(2)).outcome, RveOutcome::accepted);
 }
 
-TEST(Rve, SmallIncrementsTakeTheLeastSteps)
+TEST(Rve, SmallIncrementsTakeTheMinimumNumberOfSteps)
 {
   RveSettings slow;
-  slow.least_steps = 20;
+  slow.min_steps = 20;
   Rve rve(specimen(), slow), fast(specimen(), {});
   const RveResponse large = rve.advance(simple_shear(1e-4)), same = fast.advance(simple_shear(1e-4));
   EXPECT_GT(large.steps, 20u);
@@ -287,9 +287,9 @@ TEST(Rve, SmallIncrementsTakeTheLeastSteps)
   EXPECT_EQ(large.stress, same.stress);
   EXPECT_EQ(rve.advance(simple_shear(1e-9)).steps, 20u);
   EXPECT_EQ(fast.advance(simple_shear(1e-9)).steps, 1u);
-  for (const std::uint64_t wrong : {std::uint64_t{0}, slow.greatest_steps + 1})
+  for (const std::uint64_t wrong : {std::uint64_t{0}, slow.max_steps + 1})
     {
-      slow.least_steps = wrong;
+      slow.min_steps = wrong;
       EXPECT_THROW(Rve(specimen(), slow), InputError) << wrong;
     }
 }
@@ -297,7 +297,7 @@ TEST(Rve, SmallIncrementsTakeTheLeastSteps)
 TEST(Rve, AFailureOnTheWayGoesBackToTheStateBefore)
 {
   RveSettings few;
-  few.greatest_steps = 2000;
+  few.max_steps = 2000;
   Rve rve(specimen(), few), other(specimen(), few);
   for (int k = 0; k < 12; ++k)
     {
@@ -390,7 +390,7 @@ TEST(Rve, SettingsAreChecked)
   mirrored.frame(0, 0) = -1;
   EXPECT_THROW(Rve(specimen(), mirrored), InputError);
   RveSettings huge;
-  huge.greatest_increment = 1;
+  huge.max_increment = 1;
   EXPECT_THROW(Rve(specimen(), huge), InputError);
   EXPECT_THROW(Rve(test::specimen(200, 8), {}), InputError);
 }

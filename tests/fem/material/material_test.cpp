@@ -27,12 +27,12 @@ std::unique_ptr<Material> make_layers()
   return std::make_unique<LayeredMaterial>(std::move(parts));
 }
 
-std::unique_ptr<Material> make_patchwork()
+std::unique_ptr<Material> make_composite()
 {
-  std::vector<Patchwork::Part> parts;
+  std::vector<CompositeMaterial::Part> parts;
   parts.push_back({std::make_unique<Iwan>(IwanParameters{}, 3), {4, 0, 2}});
   parts.push_back({std::make_unique<Elastic>(ElasticParameters{}, 2), {1, 3}});
-  return std::make_unique<Patchwork>(std::move(parts));
+  return std::make_unique<CompositeMaterial>(std::move(parts));
 }
 
 /// What the solver relies on, of every material.
@@ -144,7 +144,7 @@ TEST_P(MaterialProtocol, NotANumberIsARunFailureThatNamesThePoint)
   catch (const RunFailure &e)
     {
       const char *where = m->name() == "layered"     ? "layer of 'elastic' from point 2 on: elastic: point 2:"
-                          : m->name() == "patchwork" ? "'iwan', whose points are 4, 0, 2 of the mesh: iwan: point 0:"
+                          : m->name() == "composite" ? "'iwan', whose points are 4, 0, 2 of the mesh: iwan: point 0:"
                                                      : "point 4";
       EXPECT_THAT(e.what(), HasSubstr(where));
     }
@@ -169,7 +169,7 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol, testing::Values(make_elastic, make_iwan, make_layers, make_patchwork));
+INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol, testing::Values(make_elastic, make_iwan, make_layers, make_composite));
 
 TEST(LayeredMaterial, PointsOfTheFirstLayerComeFirst)
 {
@@ -188,19 +188,20 @@ TEST(LayeredMaterial, PointsOfTheFirstLayerComeFirst)
   EXPECT_THROW(LayeredMaterial(std::move(parts)), InputError);
 }
 
-TEST(Patchwork, PartsHaveTheirPoints)
+TEST(CompositeMaterial, PartsHaveTheirPoints)
 {
   const auto part = [](double shear_modulus, std::vector<std::size_t> places) {
     const std::size_t points = places.size();
-    return Patchwork::Part{std::make_unique<Elastic>(ElasticParameters{shear_modulus, 0.2}, points), std::move(places)};
+    return CompositeMaterial::Part{std::make_unique<Elastic>(ElasticParameters{shear_modulus, 0.2}, points),
+                                   std::move(places)};
   };
-  const auto patchwork = [&](std::vector<std::size_t> soft, std::vector<std::size_t> stiff) {
-    std::vector<Patchwork::Part> parts;
+  const auto composite = [&](std::vector<std::size_t> soft, std::vector<std::size_t> stiff) {
+    std::vector<CompositeMaterial::Part> parts;
     parts.push_back(part(1e6, std::move(soft)));
     parts.push_back(part(5e6, std::move(stiff)));
-    return Patchwork(std::move(parts));
+    return CompositeMaterial(std::move(parts));
   };
-  Patchwork m = patchwork({2, 0}, {1});
+  CompositeMaterial m = composite({2, 0}, {1});
   ASSERT_EQ(m.n_points(), 3u);
   std::vector<Gradient> h = {Gradient{0, 0, 1e-3}, Gradient{0, 0, 2e-3}, Gradient{0, 0, 3e-3}};
   std::vector<Stress> s(3);
@@ -208,11 +209,11 @@ TEST(Patchwork, PartsHaveTheirPoints)
   EXPECT_DOUBLE_EQ(s[0][4], 1e3);
   EXPECT_DOUBLE_EQ(s[1][4], 10e3);
   EXPECT_DOUBLE_EQ(s[2][4], 3e3);
-  EXPECT_THROW(patchwork({0, 1}, {1}), InputError); // two materials at a point
-  EXPECT_THROW(patchwork({0, 1}, {3}), InputError); // beyond the last
-  std::vector<Patchwork::Part> other;
+  EXPECT_THROW(composite({0, 1}, {1}), InputError); // two materials at a point
+  EXPECT_THROW(composite({0, 1}, {3}), InputError); // beyond the last
+  std::vector<CompositeMaterial::Part> other;
   other.push_back({std::make_unique<Elastic>(ElasticParameters{}, 2), {0}});
-  EXPECT_THROW(Patchwork(std::move(other)), InputError);
+  EXPECT_THROW(CompositeMaterial(std::move(other)), InputError);
 }
 } // namespace
 } // namespace isostat

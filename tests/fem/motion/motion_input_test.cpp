@@ -248,8 +248,8 @@ TEST(Baseline, QuadraticHasTheSmallestVelocities)
     return sum;
   };
   const Motion best = corrected(m, Baseline::quadratic);
-  const double least = sum_of_squares(best);
-  EXPECT_LT(least, sum_of_squares(corrected(m, Baseline::mean)));
+  const double minimum = sum_of_squares(best);
+  EXPECT_LT(minimum, sum_of_squares(corrected(m, Baseline::mean)));
   for (const int power : {1, 2})
     for (const double by : {-1e-4, 1e-4})
       {
@@ -258,7 +258,7 @@ TEST(Baseline, QuadraticHasTheSmallestVelocities)
         std::vector<double> a = best.accelerations();
         for (std::size_t i = 0; i < a.size(); ++i)
           a[i] += by * step.accelerations()[i];
-        EXPECT_GT(sum_of_squares(Motion(a, dt)), least) << power << ' ' << by;
+        EXPECT_GT(sum_of_squares(Motion(a, dt)), minimum) << power << ' ' << by;
       }
 }
 
