@@ -45,7 +45,29 @@ def tiny_scene(specimen='preparation_friction = "10 deg"', motion='strain_rate =
     return TINY.format(specimen=specimen, motion=motion, stages=stages or CYCLIC.format(steps=2000), output=output)
 
 
-class AppTest(unittest.TestCase):
+class ToleranceTest(unittest.TestCase):
+    """Comparisons that say why their tolerance is as large as it is; the twin of tests/support/near.hpp.
+
+    All take numbers or arrays of one shape. The reason is printed by a failure: round-off of n operations, an order of
+    convergence, the digits of a file, a scatter."""
+
+    def assert_near(self, actual, expected, tolerance, reason):
+        """|actual - expected| <= tolerance, a number or one for each value."""
+        actual, expected = np.asarray(actual), np.asarray(expected)
+        self.assertIn(expected.shape, (actual.shape, ()))
+        off = np.abs(actual - expected) - tolerance
+        self.assertTrue((off <= 0).all(), f"{actual} and {expected} differ by more than {tolerance}, because of: {reason}")
+
+    def assert_close(self, actual, expected, relative, reason):
+        """|actual - expected| <= relative times the largest |expected|."""
+        self.assert_near(actual, expected, relative * np.abs(expected).max(), reason)
+
+    def assert_below(self, error, bound, reason):
+        """error <= bound."""
+        self.assertTrue((np.asarray(error) <= bound).all(), f"{error} is more than {bound}, because of: {reason}")
+
+
+class AppTest(ToleranceTest):
     """A test with a folder of its own, in which the programs run. Prepared specimens are kept for the whole script."""
 
     cache = None
