@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ctest `layering`: who may include whom, how long a file may be, what an executable may load.
+"""The ctest `layering`: who may include whom, that no includes run in a circle, what an executable may load.
 
     layering.py [--root REPOSITORY] [EXECUTABLE or LIBRARY ...]
 
@@ -15,7 +15,6 @@ import subprocess
 import sys
 
 CODE = {".cpp", ".hpp", ".h", ".cc"}
-MAX_LINES = 500
 
 # Top folder -> top folders it may include; base is what all share. Tests and benchmarks may look everywhere.
 TOP = {
@@ -136,13 +135,11 @@ def inner_violation(source, target):
     return None
 
 
-def check_file(root, file):
+def check_file(root, file, includes):
     source = file.relative_to(root).as_posix()
     top = source.split("/")[0]
     text = file.read_text(encoding="utf-8", errors="replace").splitlines()
     problems = []
-    if len(text) > MAX_LINES:
-        problems.append(f"{source}: {len(text)} lines; split files above {MAX_LINES}")
     if top in INNER and part_of(source) is None:
         problems.append(f"{source}: in no part of {top}; add it to the table in tests/layering.py")
     for number, line in enumerate(text, 1):
@@ -152,7 +149,8 @@ def check_file(root, file):
         target = match.group(2)
         inner = resolved(root, file, match.group(1) == '"', target)
         if inner:
-            why = inner_violation(source, inner)
+            why = "give the path from the repository's top" if ".." in target else inner_violation(source, inner)
+            includes.setdefault(source, []).append(inner)
         elif HDF5.match(target) and source != HDF5_HOME:
             why = f"only {HDF5_HOME} sees the HDF5 headers"
         else:
@@ -162,11 +160,34 @@ def check_file(root, file):
     return problems
 
 
+def circles(graph):
+    """Every way along the arrows of a graph {node: nodes} that comes back to where it began, once."""
+    found, done, path = [], set(), []
+
+    def follow(node):
+        if node in path:
+            found.append(path[path.index(node):] + [node])
+        elif node not in done:
+            path.append(node)
+            for target in graph.get(node, ()):
+                follow(target)
+            done.add(path.pop())
+
+    for node in graph:
+        follow(node)
+    return found
+
+
 def check_sources(root):
     files = [f for top in (*TOP, "tests", "benchmarks") for f in sorted((root / top).rglob("*")) if f.suffix in CODE]
     if not any(f.relative_to(root).parts[0] == "dem" for f in files):
         return [], [f"{root}: no code below dem/; is this the repository?"]
-    return files, [problem for f in files for problem in check_file(root, f)]
+    includes = {}
+    problems = [problem for f in files for problem in check_file(root, f, includes)]
+    problems += [f"includes in a circle: {' -> '.join(circle)}" for circle in circles(includes)]
+    for top, parts in INNER.items():
+        problems += [f"the table of {top} runs in a circle: {' -> '.join(circle)}" for circle in circles(parts)]
+    return files, problems
 
 
 def output_of(*command):
