@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ctest `style`: how long a file and a function may be, where a header is tested, why a tolerance is what it is.
+
+    style.py [--root REPOSITORY] [--table]
+
+Prints every violation as file:line and returns 1 if there is one; `--table` prints the files' lengths by folder, too.
+"""
+import argparse
+import ast
+import pathlib
+import re
+import statistics
+import sys
+
+MAX_FILE = 400  # lines
+MAX_FUNCTION = 60  # lines: one screen
+LIBRARIES = ("base", "dem", "fem", "coupling", "apps/common", "apps/deposit")
+LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
+
+# A comparison with a tolerance that does not say why; the helpers of tests/support/near.hpp and tests/apps/support.py do.
+SMALL = r"\d(?:\.\d+)?e-\d"
+BARE = {
+    ".cpp": re.compile(rf"\b(?:EXPECT|ASSERT)_(?:NEAR|FLOAT_EQ)\(|\bDoubleNear\(|\b(?:EXPECT|ASSERT)_L[TE]\(.*{SMALL}"),
+    ".py": re.compile(rf"assertAlmostEqual|\ballclose\(|assert_allclose|\bisclose\(|assertLess(?:Equal)?\(.*{SMALL}"),
+}
+HELPERS = {"tests/support/near.hpp", "tests/apps/support.py", "tests/style.py"}
+
+# What opens a block of its own but is no function, and what names an existing test in a header's comment.
+NO_FUNCTION = re.compile(r"(inline )?namespace\b|(template\s*<.*>\s*)?(class|struct|union|enum)\b|extern\b")
+NAMED_TEST = re.compile(r"\btests/[\w/]+\.(?:cpp|py)\b")
+
+
+def indent(line):
+    return len(line) - len(line.lstrip())
+
+
+def cpp_functions(lines):
+    """(line, length) of each function. A function's brace stands alone, as far in as its signature begins; that of a
+    control block stands two further in (.clang-format)."""
+    for at, line in enumerate(lines):
+        if line.strip() != "{":
+            continue
+        depth, first = indent(line), at - 1
+        while first >= 0 and (not lines[first].strip() or indent(lines[first]) > depth):
+            first -= 1
+        signature = lines[first].strip() if first >= 0 else ""
+        if first < 0 or indent(lines[first]) != depth or NO_FUNCTION.match(signature) or signature[-1:] in ";}:{":
+            continue
+        last = next((k for k in range(at + 1, len(lines)) if lines[k].startswith(" " * depth + "}")), at)
+        yield first + 1, last - first + 1
+
+
+def python_functions(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef):
+            yield node.lineno, node.end_lineno - node.lineno + 1
+
+
+def statements(lines):
+    """(line, text) with a call that runs over several lines put into one."""
+    at = 0
+    while at < len(lines):
+        first, text = at, lines[at]
+        while text.count("(") > text.count(")") and at + 1 < len(lines) and at < first + 8:
+            at += 1
+            text += " " + lines[at].strip()
+        yield first + 1, text
+        at += 1
+
+
+def check_tested(root, header, text):
+    """Nothing, or why this header of a library is tested nowhere."""
+    mirror = root / "tests" / header.parent / (header.stem + "_test")
+    named = [root / path for path in NAMED_TEST.findall(text)]
+    if any(mirror.with_suffix(end).is_file() for end in (".cpp", ".py")) or (named and all(p.is_file() for p in named)):
+        return []
+    missing = ", ".join(str(p.relative_to(root)) for p in named if not p.is_file())
+    return [f"{header}: names {missing}, which is not there" if missing else
+            f"{header}: no {mirror.relative_to(root)}.cpp, and no comment names the test that covers it"]
+
+
+def check_file(root, path):
+    name = path.relative_to(root)
+    text = path.read_text(encoding="utf-8")
+    lines = text.splitlines()
+    problems = [] if LICENCE in "".join(lines[:2]) else [f"{name}: does not start with {LICENCE}"]
+    if len(lines) > MAX_FILE:
+        problems.append(f"{name}: {len(lines)} lines, more than {MAX_FILE}")
+    functions = python_functions(text) if path.suffix == ".py" else cpp_functions(lines)
+    problems += [f"{name}:{at}: a function of {n} lines, more than {MAX_FUNCTION}" for at, n in functions if n > MAX_FUNCTION]
+    if path.suffix == ".hpp" and name.as_posix().startswith(tuple(f"{library}/" for library in LIBRARIES)):
+        problems += check_tested(root, name, text)
+    if name.parts[0] == "tests" and name.as_posix() not in HELPERS:
+        bare = BARE[".py" if path.suffix == ".py" else ".cpp"]
+        problems += [f"{name}:{at}: a tolerance without its reason: {line.strip()[:80]}"
+                     for at, line in statements(lines) if bare.search(line)]
+    return problems, len(lines)
+
+
+def print_table(lengths):
+    """Number of files, median and largest length of each folder that holds code."""
+    folders = {}
+    for name, n in lengths.items():
+        folders.setdefault(name.parent.as_posix(), []).append((n, name.name))
+    print(f"{'folder':<40} files  median  largest")
+    for folder, files in sorted(folders.items()):
+        print(f"{folder:<40} {len(files):5} {statistics.median(n for n, _ in files):7.0f}  {max(files)[0]:4} {max(files)[1]}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("--table", action="store_true", help="print files, median and largest length by folder")
+    arguments = parser.parse_args()
+    root = arguments.root.resolve()
+
+    tops = ("base", "dem", "fem", "coupling", "apps", "tests", "benchmarks", "examples", "scripts")
+    files = [f for top in tops for f in sorted((root / top).rglob("*")) if f.suffix in {".cpp", ".hpp", ".py"}]
+    problems, lengths = [], {}
+    for file in files:
+        found, lengths[file.relative_to(root)] = check_file(root, file)
+        problems += found
+    for problem in problems:
+        print(problem)
+    if arguments.table:
+        print_table(lengths)
+    largest = max(lengths, key=lengths.get)
+    print(f"style: {len(files)} files, median {statistics.median(lengths.values()):.0f} lines, largest {largest} with "
+          f"{lengths[largest]}; {len(problems)} violations")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
