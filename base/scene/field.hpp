@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the value of a key lives in the program.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -41,6 +42,47 @@ private:
 using Field = std::variant<std::monostate, double *, std::optional<double> *, std::uint64_t *, unsigned *, bool *,
                            std::string *, EnumField, std::vector<double> *, PercentPair, SizeCurve *>;
 
+namespace detail
+{
+/// A lambda (First &) or (First &, Second &) of an empty type as a function of forgotten types.
+template <class Result, class Lambda, class Returned, class First, class Second>
+constexpr auto erased(Returned (Lambda::*)(First &, Second &) const) -> Result (*)(void *, void *)
+{
+  return [](void *first, void *second) -> Result {
+    return Lambda{}(*static_cast<First *>(first), *static_cast<Second *>(second));
+  };
+}
+template <class Result, class Lambda, class Returned, class First>
+constexpr auto erased(Returned (Lambda::*)(First &) const) -> Result (*)(void *, void *)
+{
+  return [](void *first, void *) -> Result { return Lambda{}(*static_cast<First *>(first)); };
+}
+} // namespace detail
+
+/// Where the struct of a fragment (base/scene/fragment.hpp) lies in a scene: made from a lambda without captures,
+/// (Scene &) -> Part &, or (Scene &, Item &) -> Part &. The types are forgotten.
+class PartAccess
+{
+public:
+  constexpr PartAccess() = default;
+  template <class Lambda>
+  requires std::is_empty_v<Lambda>
+  constexpr PartAccess(Lambda) : call_(detail::erased<Reference>(&Lambda::operator())) {}
+
+  void *operator()(void *scene, void *item) const { return call_(scene, item).place; }
+  constexpr explicit operator bool() const { return call_ != nullptr; }
+
+private:
+  struct Reference
+  {
+    void *place;
+    template <class Part>
+    Reference(Part &part) : place(&part)
+    {}
+  };
+  Reference (*call_)(void *, void *) = nullptr;
+};
+
 /// How a key finds its field: made from a lambda without captures, (Scene &) -> Field, or (Scene &, Item &) -> Field
 /// where Item is what an entry of the key's array of tables becomes. The types are forgotten, so that one machinery
 /// reads every kind of scene; who calls it must pass objects of those types.
@@ -50,31 +92,33 @@ public:
   constexpr FieldAccess() = default;
   template <class Lambda>
   requires std::is_empty_v<Lambda>
-  constexpr FieldAccess(Lambda) : call_(erased<Lambda>(&Lambda::operator())) {}
+  constexpr FieldAccess(Lambda) : call_(detail::erased<Field>(&Lambda::operator())) {}
 
   template <class Scene, class Item>
   requires(!std::is_pointer_v<Scene> && !std::is_pointer_v<Item>) Field operator()(Scene &scene, Item &item) const
   {
-    return call_(&scene, &item);
+    return (*this)(static_cast<void *>(&scene), static_cast<void *>(&item));
   }
-  Field operator()(void *scene, void *item) const { return call_(scene, item); }
+  Field operator()(void *scene, void *item) const
+  {
+    for (std::size_t i = n_parts_; i-- > 0; item = nullptr)
+      scene = parts_[i](scene, item);
+    return call_(scene, item);
+  }
   constexpr explicit operator bool() const { return call_ != nullptr; }
 
+  /// The same field of a struct that lies within a larger one.   @pre at most three levels
+  constexpr FieldAccess within(PartAccess part) const
+  {
+    FieldAccess access = *this;
+    access.parts_[access.n_parts_++] = part;
+    return access;
+  }
+
 private:
-  using Call = Field (*)(void *, void *);
-
-  template <class Lambda, class Scene, class Item>
-  static constexpr Call erased(Field (Lambda::*)(Scene &, Item &) const)
-  {
-    return [](void *scene, void *item) { return Lambda{}(*static_cast<Scene *>(scene), *static_cast<Item *>(item)); };
-  }
-  template <class Lambda, class Scene>
-  static constexpr Call erased(Field (Lambda::*)(Scene &) const)
-  {
-    return [](void *scene, void *) { return Lambda{}(*static_cast<Scene *>(scene)); };
-  }
-
-  Call call_ = nullptr;
+  Field (*call_)(void *, void *) = nullptr;
+  std::array<PartAccess, 3> parts_ = {}; ///< from the innermost outwards
+  std::size_t n_parts_ = 0;
 };
 
 /// How the entries of an array of tables are reached in a scene.

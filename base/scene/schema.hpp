@@ -103,7 +103,7 @@ struct SceneSchema
   const char *defaults_head = "";        ///< first comment of --print-defaults
   const char *manual_head = "";          ///< the manual until the table of units
   /// A key that to_toml leaves out because its value follows from others; null: there is none.
-  bool (*goes_without_saying)(const Key &key, const void *scene) = nullptr;
+  bool (*is_implied)(const Key &key, const void *scene) = nullptr;
 
   const Key *find_key(std::string_view path) const; ///< the first with this path, null if there is none
   const Section *find_section(std::string_view name) const;

@@ -113,7 +113,7 @@ struct Source
       {
         if (key.section() != (section ? section->name : "") || key.kind == Kind::table || !takes_key(key, kind) ||
             gave_way(key) || switched_off(key) ||
-            (schema.goes_without_saying && schema.goes_without_saying(key, scene)))
+            (schema.is_implied && schema.is_implied(key, scene)))
           continue;
         if (const std::string in_file = value(key); !in_file.empty())
           text += fmt::format("{} = {}\n", key.name(), in_file);

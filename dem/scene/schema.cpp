@@ -339,7 +339,7 @@ A scene is one TOML file that says all about a run. This page is generated from 
 // clang-format on
 
 /// A rigid box is always consolidated isotropically. Not writing it keeps the recipes of specimens that are in caches.
-bool goes_without_saying(const Key &key, const void *scene)
+bool is_implied(const Key &key, const void *scene)
 {
   return std::string_view(key.path) == "specimen.consolidation" &&
          static_cast<const Scene *>(scene)->specimen.domain == "rigid-box";
@@ -352,7 +352,7 @@ constexpr SceneSchema schema{.keys = keys,
                              .set_example = "motion.damping=0.3",
                              .defaults_head = defaults_head,
                              .manual_head = manual_head,
-                             .goes_without_saying = goes_without_saying};
+                             .is_implied = is_implied};
 } // namespace
 
 const SceneSchema &scene_schema() { return schema; }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/scene/fragment.hpp"
+
+namespace isostat
+{
+KeyTable::KeyTable(std::initializer_list<KeyRun> runs)
+{
+  for (const KeyRun &run : runs)
+    for (Key key : run.keys)
+      {
+        if (!run.section.empty())
+          key.path = paths_.emplace_back(run.section + "." + key.path).c_str();
+        if (run.kinds != 0)
+          key.kinds = run.kinds;
+        if (run.part)
+          key.field = key.field.within(run.part);
+        keys_.push_back(key);
+      }
+}
+} // namespace isostat
