@@ -10,7 +10,7 @@
 //
 //   biaxial apps/scenes/biaxial/iwan.toml
 //   biaxial apps/scenes/biaxial/grains.toml --set test.steps=100 --threads 2
-#include "apps/biaxial/biaxial_run.hpp"
+#include "apps/biaxial/run.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/main_guard.hpp"
 #include "apps/common/progress_text.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/deposit/column_instant.hpp"
+#include "apps/deposit/instant.hpp"
 #include "base/files/hdf5.hpp"
 #include "fem/space/column_line.hpp"
 

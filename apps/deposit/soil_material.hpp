@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/deposit/column_material.hpp"
+#include "apps/deposit/materials.hpp"
 #include "coupling/batch/rve_material.hpp"
 
 namespace isostat

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Consolidation of a column: the load goes on in an instant, then the water leaves.
-#include "apps/deposit/column_material.hpp"
+#include "apps/deposit/materials.hpp"
+#include "apps/deposit/ranks.hpp"
 #include "apps/deposit/timed_material.hpp"
-#include "apps/soil_column/column_progress.hpp"
-#include "apps/soil_column/column_run.hpp"
-#include "apps/soil_column/ranks.hpp"
+#include "apps/soil_column/progress.hpp"
+#include "apps/soil_column/run.hpp"
 #include "fem/solve/statics.hpp"
 
 #include <cmath>

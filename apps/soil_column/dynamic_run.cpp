@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shaking of a column from its start, or from a checkpoint, to its end.
+#include "apps/deposit/grain_files.hpp"
+#include "apps/deposit/grain_paths.hpp"
+#include "apps/deposit/ranks.hpp"
 #include "apps/deposit/timed_material.hpp"
-#include "apps/soil_column/column_progress.hpp"
-#include "apps/soil_column/column_run.hpp"
-#include "apps/soil_column/grain_files.hpp"
-#include "apps/soil_column/grain_paths.hpp"
-#include "apps/soil_column/ranks.hpp"
+#include "apps/soil_column/progress.hpp"
+#include "apps/soil_column/run.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -15,8 +15,8 @@
 #include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
-#include "apps/soil_column/column_run.hpp"
-#include "apps/soil_column/ranks.hpp"
+#include "apps/deposit/ranks.hpp"
+#include "apps/soil_column/run.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>

@@ -20,7 +20,7 @@ void read_value(const SceneDocument &document, const Key &key, const std::string
                 const Field &field);
 
 /// Keys of one group exclude each other, and of some groups one must be given. @param scene  as filled
-/// @throws InputError      tested: tests/dem/scene/scene_error_test.cpp, tests/apps/deposit/column_scene_error_test.cpp
+/// @throws InputError      tested: tests/dem/scene/scene_error_test.cpp, tests/apps/deposit/scene_error_test.cpp
 void check_groups(const SceneDocument &document, void *scene);
 
 /// Number of the kind of a table, by its filled kind key.  @param item  entry of an array of tables, else anything

@@ -8,7 +8,7 @@ namespace isostat
 /// has no effect is left out: keys foreign to the kind of their table, inside a table that is switched off, or
 /// displaced by another key of their group; and 0 or no text where a key without default is not set.
 /// @param scene  of the type that the schema was made for
-/// tested: tests/dem/scene/scene_test.cpp, tests/apps/deposit/column_scene_test.cpp
+/// tested: tests/dem/scene/scene_test.cpp, tests/apps/deposit/scene_test.cpp
 std::string write_scene(const SceneSchema &schema, const void *scene);
 
 /// A commented scene file with all defaults, units, ranges and one sentence per key (--print-defaults).

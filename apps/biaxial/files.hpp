@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/biaxial/material.hpp"
+#include "base/files/pvd.hpp"
+#include "base/record/recorder.hpp"
+#include "fem/solve/statics.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+/// What a point shows in maps.
+struct PointState
+{
+  double shear = 0;                      ///< sqrt((eps_xx - eps_zz)^2 + gamma_xz^2), in the plane [-]
+  double volumetric = 0;                 ///< compression positive [-]
+  double p = 0, q = 0;                   ///< (s1 + s3)/2 and (s1 - s3)/2 in the plane, compression positive, Pa
+  double void_ratio = 0, redundancy = 0; ///< of its packing; 0 without [-]
+};
+
+PointState point_state(const Gradient &gradient, const Stress &stress);
+
+/// Maps of a block at some instants: maps.h5 with the points' `x`, `z` (m) and, a row for each instant, `axial_strain`
+/// and all of PointState; paraview/block.pvd with displacement at the corners of the elements and the elements' means.
+/// tested: tests/apps/biaxial_test.py
+class BlockFiles
+{
+public:
+  BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material);
+  void map(double axial_strain, const Statics<2> &statics);
+
+private:
+  void write_h5() const;
+  void write_vtu(const std::filesystem::path &path, const Vector &displacement,
+                 const std::vector<PointState> &points) const;
+
+  std::filesystem::path folder_;
+  const Discretisation<2> &space_;
+  const BlockMaterial &material_;
+  PvdCollection pictures_;
+  std::vector<double> strains_;
+  std::vector<std::vector<double>> rows_; ///< of each quantity
+};
+} // namespace isostat

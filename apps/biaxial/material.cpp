@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/biaxial/material.hpp"
+
+#include "apps/deposit/materials.hpp"
+#include "fem/material/composite.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace isostat
+{
+namespace
+{
+RveMaterialSettings grains_settings(const ColumnGrains &spec, int threads)
+{
+  RveMaterialSettings settings;
+  settings.library = spec.library;
+  settings.cache = spec.cache;
+  settings.motion.damping = spec.damping;
+  settings.motion.quasi_static_tolerance = spec.quasi_static_tolerance;
+  settings.motion.rate_floor = spec.rate_floor;
+  settings.motion.rate_ceiling = spec.rate_ceiling;
+  settings.in_situ.motion = settings.motion;
+  settings.undrained = false;
+  settings.threads = threads;
+  return settings;
+}
+
+/// Specimen of every point. The lot is the same on every machine: no distribution of the standard library is used.
+std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretisation<2> &space)
+{
+  std::mt19937_64 lot(1);
+  std::vector<SpecimenRequest> all;
+  for (const auto &place : space.position)
+    {
+      const std::uint64_t drawn = lot() % scene.mixed_realisations;
+      const bool weak = in_weak_zone(scene, place);
+      SpecimenRequest &request = all.emplace_back();
+      const auto density =
+          weak && scene.weak.relative_density ? scene.weak.relative_density : scene.soil.grains.relative_density;
+      if (density)
+        request.relative_density = *density;
+      request.realisation = weak ? scene.weak.realisation : scene.soil.grains.realisation + drawn;
+    }
+  return all;
+}
+
+std::unique_ptr<Material> formula_block(const BiaxialScene &scene, const Discretisation<2> &space)
+{
+  std::vector<std::size_t> places[2];
+  for (std::size_t q = 0; q < space.n_points(); ++q)
+    places[in_weak_zone(scene, space.position[q])].push_back(q);
+  ColumnLayer weak = scene.soil;
+  *weak.shear_modulus *= scene.weak.factor;
+  weak.iwan.strength_ratio *= scene.weak.factor;
+  weak.iwan.phase_transformation_ratio *= scene.weak.factor;
+  std::vector<CompositeMaterial::Part> parts;
+  for (int k = 0; k < 2; ++k)
+    if (!places[k].empty())
+      parts.push_back({formula_material(k ? weak : scene.soil, places[k].size()), places[k]});
+  return std::make_unique<CompositeMaterial>(std::move(parts));
+}
+
+MeshSpec mesh_of(const BiaxialScene &scene)
+{
+  Layer layer;
+  layer.thickness = scene.mesh.height;
+  layer.k0 = 1;
+  layer.cells = scene.mesh.cells_up;
+  MeshSpec mesh;
+  mesh.soil.layers = {layer};
+  mesh.width = {scene.mesh.width, 1};
+  mesh.cells_across = {scene.mesh.cells_across, 1};
+  mesh.degree = scene.mesh.degree;
+  mesh.points_per_direction = scene.mesh.points;
+  return mesh;
+}
+} // namespace
+
+BlockMesh::BlockMesh(const BiaxialScene &scene)
+    : Discretisation<2>(
+          mesh_of(scene),
+          {.tied_sides = false, .fixed = {{Face::base, 2}, {Face::surface, 2}}, .together = {}, .drained = {}})
+{
+  fixed_dofs.push_back(static_cast<unsigned>(find_dof({scene.mesh.width / 2, 0, 0}, 0)));
+  for (unsigned i = 1; i < displacement_vector().locally_owned_size(); i += 3)
+    fixed_dofs.push_back(i);
+  std::sort(fixed_dofs.begin(), fixed_dofs.end());
+  fixed_dofs.erase(std::unique(fixed_dofs.begin(), fixed_dofs.end()), fixed_dofs.end());
+}
+
+bool in_weak_zone(const BiaxialScene &scene, const std::array<double, 3> &place)
+{
+  const auto inside = [&](double x, double size, unsigned cells, unsigned first) {
+    const double cell = x / size * cells;
+    return cell > first && cell < first + scene.weak.cells;
+  };
+  return inside(place[0], scene.mesh.width, scene.mesh.cells_across, scene.weak.column) &&
+         inside(place[2], scene.mesh.height, scene.mesh.cells_up, scene.weak.row);
+}
+
+BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> &space, int threads)
+{
+  BlockMaterial block;
+  if (scene.has_grains())
+    {
+      auto grains =
+          std::make_unique<RveMaterial>(requests(scene, space), grains_settings(scene.grains, threads), MPI_COMM_SELF);
+      block.grains = grains.get();
+      block.material = std::move(grains);
+    }
+  else
+    block.material = formula_block(scene, space);
+  const double p = -scene.test.confinement;
+  block.material->set_initial_stress(std::vector<Stress>(space.n_points(), Stress{p, p, p, 0, 0, 0}));
+  return block;
+}
+} // namespace isostat

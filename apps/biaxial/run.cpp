@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/biaxial/run.hpp"
+
+#include "apps/biaxial/files.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress_text.hpp"
+#include "apps/common/result_folder.hpp"
+#include "apps/deposit/instant.hpp"
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
+{
+  StaticsSettings settings;
+  const double way = scene.test.axial_strain * scene.mesh.height;
+  settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
+  settings.tolerance = tolerance;
+  settings.min_force = scene.test.confinement * scene.mesh.width;
+  settings.max_iterations = scene.newton.max_iterations;
+  settings.iterations_per_tangent = scene.newton.iterations_per_tangent;
+  settings.max_halvings = scene.newton.max_halvings;
+  return settings;
+}
+
+const std::vector<RecordColumn> columns = {
+    {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
+    {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
+    {"shear_mean"}, {"shear_quantile"}, {"shear_max"}};
+
+/// One run from its start to its end.
+class BiaxialRun
+{
+public:
+  explicit BiaxialRun(const BiaxialRequest &request)
+      : request_(request), scene_(request.scene), space_(scene_),
+        material_(block_material(scene_, space_, request.threads)),
+        statics_(space_, *material_.material, settings_of(scene_, scene_.newton.tolerance))
+  {
+    summary_.points = space_.n_points();
+    const double last = scene_.newton.last_tolerance.value_or(0);
+    for (double tolerance = 2 * scene_.newton.tolerance; tolerance <= last * (1 + 1e-9); tolerance *= 2)
+      looser_.push_back(std::make_unique<Statics<2>>(space_, *material_.material, settings_of(scene_, tolerance)));
+  }
+
+  BiaxialSummary go();
+
+private:
+  void open();
+  void record();
+  void step();
+  StaticsEffort solve();
+  void back_to_committed();
+  void say(const std::string &line) const
+  {
+    if (!request_.quiet)
+      std::fprintf(stderr, "%s\n", line.c_str());
+  }
+
+  const BiaxialRequest &request_;
+  const BiaxialScene &scene_;
+  const Clock::time_point begin_ = Clock::now();
+  BlockMesh space_;
+  BlockMaterial material_;
+  Statics<2> statics_;
+  std::vector<std::unique_ptr<Statics<2>>> looser_; ///< for steps that fail; double the tolerance each
+  StaticsEffort effort_;
+  double residual_ = 0;
+  BiaxialSummary summary_;
+  std::unique_ptr<Recorder> history_;
+  std::unique_ptr<BlockFiles> files_;
+};
+
+void BiaxialRun::open()
+{
+  open_result_folder(request_.folder, request_.overwrite ? FolderUse::overwrite : FolderUse::fresh);
+  write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                   {{"threads", std::to_string(request_.threads)}});
+  history_ = std::make_unique<Recorder>(request_.folder, columns);
+  files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
+}
+
+void BiaxialRun::record()
+{
+  std::vector<Gradient> gradients;
+  gradients_of(space_, statics_.displacement(), gradients);
+  std::vector<double> shear;
+  double volume = 0, vertical = 0, lateral = 0, mean = 0;
+  for (std::size_t q = 0; q < space_.n_points(); ++q)
+    {
+      const PointState point = point_state(gradients[q], statics_.stresses()[q]);
+      const double part = space_.weight[q] / (scene_.mesh.width * scene_.mesh.height);
+      volume += part * point.volumetric;
+      vertical -= part * gradients[q][8];
+      lateral -= part * gradients[q][0];
+      mean += part * point.shear;
+      shear.push_back(point.shear);
+    }
+  std::sort(shear.begin(), shear.end());
+  const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
+  const StaticsEffort &effort = effort_;
+  const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
+  history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
+                                       1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
+                                       1.0 * effort.rejected, residual_, mean, quantile, shear.back()});
+  history_->flush();
+  summary_.axial_strain = vertical;
+  summary_.volumetric_strain = volume;
+  summary_.last_stress = stress;
+  summary_.localisation = median > 0 ? quantile / median : 1;
+  if (summary_.steps == 0 || stress > summary_.peak_stress)
+    {
+      summary_.peak_stress = stress;
+      summary_.peak_strain = vertical;
+    }
+}
+
+/// One step; what is left of it after a failure with looser tolerances in turn. The next step starts with the first one
+/// again, and as residuals are those of the whole load, it makes up for what was let through.
+StaticsEffort BiaxialRun::solve()
+{
+  const double end = (summary_.steps + 1.0) / scene_.test.steps;
+  Statics<2> *solver = &statics_;
+  StaticsEffort sum;
+  for (std::size_t failures = 0;; ++failures)
+    {
+      bool done = true;
+      try
+        {
+          solver->step(end - solver->time());
+        }
+      catch (const RunFailure &)
+        {
+          if (failures == looser_.size())
+            {
+              if (solver != &statics_)
+                statics_.restore(solver->save());
+              throw;
+            }
+          done = false;
+        }
+      const StaticsEffort &effort = solver->effort();
+      sum.substeps += effort.substeps;
+      sum.rejected += effort.rejected;
+      sum.iterations += effort.iterations;
+      sum.trials += effort.trials;
+      if (done)
+        break;
+      const StaticsState state = solver->save();
+      solver = looser_[failures].get();
+      solver->restore(state);
+    }
+  residual_ = solver->residual();
+  if (solver != &statics_)
+    statics_.restore(solver->save());
+  return sum;
+}
+
+void BiaxialRun::step()
+{
+  effort_ = solve();
+  ++summary_.steps;
+  const StaticsEffort &effort = effort_;
+  summary_.iterations += effort.iterations;
+  summary_.trials += effort.trials;
+  summary_.substeps += effort.substeps;
+  summary_.rejected += effort.rejected;
+  record();
+  if (summary_.steps % scene_.output.map_every == 0 || summary_.steps == scene_.test.steps)
+    files_->map(summary_.axial_strain, statics_);
+  say(fmt::format("step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
+                  "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
+                  summary_.steps, scene_.test.steps, duration_text(seconds_since(begin_)), summary_.axial_strain,
+                  summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
+                  effort.substeps, effort.rejected, residual_));
+}
+
+/// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.
+void BiaxialRun::back_to_committed()
+{
+  const std::vector<Gradient> still(space_.n_points(), Gradient{});
+  std::vector<Stress> stresses(space_.n_points());
+  material_.material->trial(still, stresses);
+  material_.material->rollback();
+}
+
+BiaxialSummary BiaxialRun::go()
+{
+  open();
+  say(fmt::format("{} points, {} steps", space_.n_points(), scene_.test.steps));
+  record();
+  files_->map(0, statics_);
+  try
+    {
+      while (summary_.steps < scene_.test.steps)
+        {
+          if (stop_requested())
+            throw Interrupted(fmt::format("interrupted after step {}", summary_.steps));
+          step();
+        }
+      summary_.complete = true;
+    }
+  catch (const RunFailure &failure)
+    {
+      summary_.failure = failure.what();
+      back_to_committed();
+      files_->map(summary_.axial_strain, statics_);
+    }
+  summary_.wall_seconds = seconds_since(begin_);
+  if (material_.grains)
+    {
+      const RveMaterialCost &cost = material_.grains->cost();
+      summary_.material_seconds = cost.batch_seconds;
+      summary_.tangent_seconds = cost.wave_seconds;
+      summary_.tangents = cost.stiffnesses;
+      summary_.rve_steps = static_cast<double>(cost.steps);
+    }
+  return summary_;
+}
+} // namespace
+
+BiaxialSummary run_biaxial(const BiaxialRequest &request) { return BiaxialRun(request).go(); }
+} // namespace isostat

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/biaxial/scene.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+struct BiaxialRequest
+{
+  BiaxialScene scene;
+  std::filesystem::path folder;
+  std::string command_line;
+  bool overwrite = false, quiet = false;
+  int threads = 1;
+};
+
+/// What came out.
+struct BiaxialSummary
+{
+  std::size_t steps = 0, points = 0;
+  bool complete = false;
+  std::string failure;                     ///< why it stopped before its end
+  double axial_strain = 0;                 ///< reached
+  double peak_stress = 0, peak_strain = 0; ///< largest axial stress, compression positive, Pa; where
+  double last_stress = 0;                  ///< Pa
+  double volumetric_strain = 0;            ///< at the end, compression positive
+  double localisation = 0;                 ///< 90 % quantile of the points' shear strain over its median; uniform: 1
+  std::size_t iterations = 0, trials = 0, substeps = 0, rejected = 0, tangents = 0;
+  double wall_seconds = 0, material_seconds = 0, tangent_seconds = 0, rve_steps = 0;
+};
+
+/// Runs a scene and leaves all files but the summary. A step without equilibrium ends the run early: what it found so
+/// far stays.
+/// @throws InputError  before anything that is there is changed   @throws Interrupted  after a signal
+/// tested: tests/apps/biaxial_test.py
+BiaxialSummary run_biaxial(const BiaxialRequest &request);
+
+std::string to_text(const BiaxialSummary &summary, const BiaxialScene &scene);
+std::string to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
+} // namespace isostat

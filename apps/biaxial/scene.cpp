@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/biaxial/scene.hpp"
+
+#include "base/scene/reader.hpp"
+#include "base/scene/writer.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
+
+template <class Kind>
+constexpr unsigned bit(Kind kind)
+{
+  return 1u << static_cast<unsigned>(kind);
+}
+constexpr unsigned iwan = bit(LayerMaterial::iwan);
+constexpr unsigned formula = bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned grains = bit(LayerMaterial::grains);
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+constexpr Range not_negative{0, infinity};
+constexpr Range fraction{0, 1, true, true};
+constexpr Range counts{1, 1e6};
+
+// clang-format off
+constexpr Section sections[] = {
+  {.name = "mesh", .text = "The block: plane strain, x across, z up."},
+  {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
+  {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
+  {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
+  {.name = "newton", .text = "Solver of a load step."},
+  {.name = "output", .text = "What is written, and how often. Output never changes a run."},
+};
+
+constexpr Key keys[] = {
+  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
+   .field = [](BiaxialScene &s) -> Field { return &s.title; }},
+
+  {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
+   .range = positive, .text = "Extent along x.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.width; }},
+  {.path = "mesh.height", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "2 m",
+   .range = positive, .text = "Extent along z.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.height; }},
+  {.path = "mesh.cells_across", .kind = Kind::integer, .value = "8", .range = counts, .text = "Elements along x.",
+   .field = [](BiaxialScene &s) -> Field { return &s.mesh.cells_across; }},
+  {.path = "mesh.cells_up", .kind = Kind::integer, .value = "16", .range = counts, .text = "Elements along z.",
+   .field = [](BiaxialScene &s) -> Field { return &s.mesh.cells_up; }},
+  {.path = "mesh.degree", .kind = Kind::integer, .value = "1", .range = {1, 2},
+   .text = "Degree of the displacement in an element.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.degree; }},
+  {.path = "mesh.points", .kind = Kind::integer, .value = "2", .range = {1, 4},
+   .text = "Gauss points of an element along each axis; 1 with degree 1 leaves modes without stiffness.",
+   .field = [](BiaxialScene &s) -> Field { return &s.mesh.points; }},
+
+  {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
+   .choices = material_choices,
+   .text = "Linear elastic, parallel slip elements (Iwan), or a packing of grains at every Gauss point.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
+  {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
+   .presence = Presence::required, .value = "50 MPa", .range = positive, .kinds = formula,
+   .text = "Shear modulus of small strain; of iwan at 100 kPa.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
+  {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
+   .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
+  {.path = "soil.strength_ratio", .value = "0.55", .range = positive, .kinds = iwan,
+   .text = "Shear strength, as sqrt(J2), over p'.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.strength_ratio; }},
+  {.path = "soil.phase_transformation_ratio", .value = "0.4", .range = positive, .kinds = iwan,
+   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.phase_transformation_ratio; }},
+  {.path = "soil.contraction", .value = "0.5", .range = not_negative, .kinds = iwan,
+   .text = "Rate of contraction per plastic shear strain.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.contraction; }},
+  {.path = "soil.dilation", .value = "0.3", .range = {0, 1}, .kinds = iwan,
+   .text = "Rate of dilation per plastic shear strain.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.dilation; }},
+  {.path = "soil.library", .kind = Kind::text, .presence = Presence::required, .value = "library.h5", .kinds = grains,
+   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file.",
+   .field = [](BiaxialScene &s) -> Field { return &s.grains.library; }},
+  {.path = "soil.cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
+   .kinds = grains, .text = "File in which packings at the confinement are kept for the next start.",
+   .field = [](BiaxialScene &s) -> Field { return &s.grains.cache; }},
+  {.path = "soil.relative_density", .presence = Presence::optional, .value = "0.7", .range = {-1, 2}, .kinds = grains,
+   .text = "D_r of the packings; left out: the library has one density only.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.grains.relative_density; }},
+  {.path = "soil.realisation", .kind = Kind::integer, .value = "0", .kinds = grains,
+   .text = "Which seed of the library, counted from 0.",
+   .field = [](BiaxialScene &s) -> Field { return &s.soil.grains.realisation; }},
+  {.path = "soil.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
+   .text = "Each point has one of so many seeds, from `realisation` on, by lot; 1: all points have the same.",
+   .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
+  {.path = "soil.quasi_static_tolerance", .value = "0.01", .range = fraction, .kinds = grains,
+   .text = "Error that inertia of grains may add, as in element tests.",
+   .field = [](BiaxialScene &s) -> Field { return &s.grains.quasi_static_tolerance; }},
+  {.path = "soil.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
+   .range = positive, .kinds = grains, .text = "Smallest strain rate inside a packing.",
+   .field = [](BiaxialScene &s) -> Field { return &s.grains.rate_floor; }},
+  {.path = "soil.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
+   .range = positive, .kinds = grains, .text = "Largest strain rate inside a packing.",
+   .field = [](BiaxialScene &s) -> Field { return &s.grains.rate_ceiling; }},
+  {.path = "soil.damping", .value = "0.2", .range = {0, 1, false, true}, .kinds = grains,
+   .text = "Local damping of the grains.", .field = [](BiaxialScene &s) -> Field { return &s.grains.damping; }},
+
+  {.path = "weak.cells", .kind = Kind::integer, .value = "0",
+   .text = "Elements along each side of the square; 0: there is none.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.cells; }},
+  {.path = "weak.column", .kind = Kind::integer, .value = "0", .text = "Its lowest element along x, counted from 0.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.column; }},
+  {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
+  {.path = "weak.factor", .value = "0.8", .range = positive,
+   .text = "Of stiffness, and of the strength of iwan; of no meaning to grains.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
+  {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
+   .text = "D_r of its packings; left out: that of the soil.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.relative_density; }},
+  {.path = "weak.realisation", .kind = Kind::integer, .value = "0", .text = "Seed of its packings.",
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.realisation; }},
+
+  {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "100 kPa", .range = positive, .text = "Isotropic effective stress at the start, on the sides throughout.",
+   .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
+  {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
+   .text = "At the end: way of the top over the height, compression positive.",
+   .field = [](BiaxialScene &s) -> Field { return &s.test.axial_strain; }},
+  {.path = "test.steps", .kind = Kind::integer, .value = "50", .range = counts, .text = "Equal load steps.",
+   .field = [](BiaxialScene &s) -> Field { return &s.test.steps; }},
+
+  {.path = "newton.tolerance", .value = "1e-6", .range = fraction,
+   .text = "Of the residual over the force scale, which is confinement times width or more. Grains need one above their "
+           "noise, some 1e-2.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.tolerance; }},
+  {.path = "newton.last_tolerance", .presence = Presence::optional, .value = "0.08", .range = fraction,
+   .text = "What is left of a step without equilibrium is tried again with the tolerance doubled, up to this; the next "
+           "step has the first one again. Left out: the run ends there.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.last_tolerance; }},
+  {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25", .range = counts,
+   .text = "Of a sub-step; then it is halved.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.max_iterations; }},
+  {.path = "newton.iterations_per_tangent", .kind = Kind::integer, .value = "1", .range = counts,
+   .text = "1: Newton; more: the tangent is kept for so many iterations of a sub-step.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.iterations_per_tangent; }},
+  {.path = "newton.max_halvings", .kind = Kind::integer, .value = "8", .range = {0, 40},
+   .text = "The smallest sub-step is the step times 2 to the power of minus this.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.max_halvings; }},
+
+  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file.",
+   .field = [](BiaxialScene &s) -> Field { return &s.output.folder; }},
+  {.path = "output.map_every", .kind = Kind::integer, .value = "5", .range = counts,
+   .text = "Load steps between two ParaView files and rows of maps.h5.",
+   .field = [](BiaxialScene &s) -> Field { return &s.output.map_every; }},
+};
+
+constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate};
+
+constexpr SceneSchema schema{.keys = keys, .sections = sections, .groups = {}, .dimensions = dimensions,
+                             .set_example = "test.steps=100",
+                             .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = value\" "
+                                              "is a key without default, with an example."};
+// clang-format on
+
+void check(const SceneDocument &document, const BiaxialScene &scene)
+{
+  if (scene.grains.rate_floor > scene.grains.rate_ceiling)
+    document.refuse("soil.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
+  if (scene.soil.iwan.phase_transformation_ratio > scene.soil.iwan.strength_ratio)
+    document.refuse("soil.phase_transformation_ratio", "must not exceed strength_ratio. Correct one of them.");
+  if (scene.newton.last_tolerance && *scene.newton.last_tolerance < scene.newton.tolerance)
+    document.refuse("newton.last_tolerance", "must not be below newton.tolerance. Correct one of them.");
+  if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
+    document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
+                                               "Correct it.",
+                                               scene.mesh.cells_across));
+  if (scene.weak.row + scene.weak.cells > scene.mesh.cells_up)
+    document.refuse("weak.row", fmt::format("lets the weak zone reach out of the block of {} elements up. Correct it.",
+                                            scene.mesh.cells_up));
+}
+} // namespace
+
+BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides)
+{
+  const SceneDocument document(schema, read_scene_text(path), path, overrides);
+  BiaxialScene scene;
+  fill_scene(document, &scene);
+  check(document, scene);
+  if (scene.has_grains())
+    {
+      const fs::path library = fs::absolute(fs::path(path).parent_path() / scene.grains.library).lexically_normal();
+      std::error_code ignored;
+      if (!fs::is_regular_file(library, ignored))
+        document.refuse("soil.library", fmt::format("is not there ({}). A relative path counts from the folder of the "
+                                                    "scene file; correct it.",
+                                                    library.string()));
+      scene.grains.library = library.string();
+    }
+  if (scene.output.folder.empty())
+    scene.output.folder = "results/" + fs::path(path).stem().string();
+  return scene;
+}
+
+std::string to_toml(const BiaxialScene &scene) { return write_scene(schema, &scene); }
+
+std::string default_biaxial_scene() { return write_defaults(schema); }
+} // namespace isostat

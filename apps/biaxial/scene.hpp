@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run of the biaxial block consists of. Lengths m, stresses Pa.
+#pragma once
+#include "apps/deposit/scene.hpp"
+
+namespace isostat
+{
+/// A block in plane strain: x across, z up.
+struct BiaxialMesh
+{
+  double width = 1, height = 2;             ///< m
+  unsigned cells_across = 8, cells_up = 16; ///< elements
+  unsigned degree = 1;                      ///< of the displacement
+  unsigned points = 2;                      ///< Gauss points of an element along each axis
+
+  bool operator==(const BiaxialMesh &) const = default;
+};
+
+/// A square of elements that differs from the rest.
+struct WeakZone
+{
+  unsigned cells = 0;                     ///< along each side; 0: there is none
+  unsigned column = 0, row = 0;           ///< of its lower left element, from the lower left corner of the block
+  double factor = 0.8;                    ///< of stiffness and strength, of a material from a formula
+  std::optional<double> relative_density; ///< of packings; left out: that of the soil
+  std::uint64_t realisation = 0;          ///< of packings
+
+  bool operator==(const WeakZone &) const = default;
+};
+
+/// Confined on its sides, compressed by its top.
+struct BiaxialTest
+{
+  double confinement = 100e3; ///< isotropic stress at the start, on the sides throughout, Pa
+  double axial_strain = 0.05; ///< at the end, compression positive
+  unsigned steps = 50;
+
+  bool operator==(const BiaxialTest &) const = default;
+};
+
+/// Of StaticsSettings; the smallest force scale is confinement times width.
+struct BiaxialNewton
+{
+  double tolerance = 1e-6;
+  unsigned max_iterations = 25, iterations_per_tangent = 1, max_halvings = 8;
+  std::optional<double> last_tolerance; ///< the largest with which a step that failed is tried again
+
+  bool operator==(const BiaxialNewton &) const = default;
+};
+
+struct BiaxialOutput
+{
+  std::string folder;     ///< default: results/<scene file name>
+  unsigned map_every = 5; ///< steps between two maps
+
+  bool operator==(const BiaxialOutput &) const = default;
+};
+
+/// A whole run: what a scene file says after defaults, overrides and checks.
+struct BiaxialScene
+{
+  std::string title;
+  BiaxialMesh mesh;
+  ColumnLayer soil; ///< its material; no thickness or weight
+  ColumnGrains grains;
+  std::uint64_t mixed_realisations = 1; ///< seeds of which each point has one by lot
+  WeakZone weak;
+  BiaxialTest test;
+  BiaxialNewton newton;
+  BiaxialOutput output;
+
+  bool has_grains() const { return soil.material == LayerMaterial::grains; }
+  bool operator==(const BiaxialScene &) const = default;
+};
+
+/// Reads and checks a scene file. A relative library counts from the folder of the scene file; an output folder left
+/// out becomes results/<scene file name without ending>.
+/// @param overrides  "a.b=c" from --set
+/// @throws InputError with file:line, value, allowed range and remedy   tested: tests/apps/biaxial_test.py
+BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides = {});
+
+std::string to_toml(const BiaxialScene &scene); ///< complete; reads back to the same scene
+std::string default_biaxial_scene();            ///< commented, with all defaults, units and ranges
+} // namespace isostat

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rules that bind several keys of a column's scene.
+#include "apps/deposit/schema.hpp"
+#include "base/scene/reader.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+void check_mesh(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.water.drainage == Drainage::coupled && scene.mesh.degree != 2)
+    document.refuse("mesh.degree",
+                    "must be 2 if water.drainage is \"coupled\", because pore pressures oscillate in pairs "
+                    "of equal degree. Give degree = 2, or drainage = \"undrained\" or \"dry\".");
+  if (scene.water.drainage == Drainage::undrained && scene.mesh.dimension != 1)
+    document.refuse("mesh.dimension",
+                    "must be 1 if water.drainage is \"undrained\", because only in a column the pore "
+                    "pressure follows from vertical equilibrium. Give drainage = \"coupled\", if need "
+                    "be with a permeability of 0 m/s.");
+  if (scene.mesh.distributed && scene.mesh.dimension == 1)
+    document.refuse("mesh.distributed", "must be false in a column (dimension 1), which every rank solves as a whole.");
+  if (scene.water.lagged_compressibility && scene.water.drainage != Drainage::undrained)
+    document.refuse("water.lagged_compressibility",
+                    "has no effect unless water.drainage is \"undrained\": the stiffness "
+                    "of the water is part of \"coupled\". Remove it.");
+}
+
+void check_layer(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
+{
+  const ColumnLayer &layer = scene.layers[i];
+  const std::string prefix = fmt::format("layer.{}", i);
+  if (scene.water.drainage != Drainage::dry && layer.density <= scene.water.density)
+    document.refuse(prefix + ".density", fmt::format("must be above that of water, {} kg/m3, or the soil floats away.",
+                                                     number_text(scene.water.density)));
+  if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
+    document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
+                                              "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water shall move.");
+  if (layer.material == LayerMaterial::iwan && layer.iwan.phase_transformation_ratio > layer.iwan.strength_ratio)
+    document.refuse(prefix + ".phase_transformation_ratio",
+                    "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
+  constexpr unsigned most = 1000000;
+  if (layer.cells == 0 && !(layer.thickness / layer.cell_size <= most))
+    document.refuse(prefix + ".cell_size", fmt::format("would give more than {} cells. Give a larger one.", most));
+}
+
+void check_base(const SceneDocument &document, const ColumnBase &base)
+{
+  if (base.kind == BaseKind::compliant &&
+      base.rock_p_velocity() * base.rock_p_velocity() <= 4.0 / 3.0 * base.shear_velocity * base.shear_velocity)
+    document.refuse("base.p_velocity", "must be more than 1.155 times shear_velocity, or the rock has no bulk modulus. "
+                                       "Leave it out for twice.");
+}
+
+void check_motions(const SceneDocument &document, const ColumnScene &scene)
+{
+  for (std::size_t i = 0; i < scene.motions.size(); ++i)
+    {
+      const ColumnMotion &motion = scene.motions[i];
+      const std::string prefix = fmt::format("motion.{}", i);
+      for (std::size_t j = 0; j < i; ++j)
+        if (scene.motions[j].axis == motion.axis)
+          document.refuse(prefix + ".axis", fmt::format("has its motion already ({}). Give one [[motion]] to an axis.",
+                                                        document.where(fmt::format("motion.{}", j))));
+      if (motion.kind == MotionKind::record && motion.file.empty())
+        document.refuse(prefix + ".file", "must name a file. Give the path of a record.");
+      if (motion.kind == MotionKind::harmonic && 2 * motion.ramp > motion.duration)
+        document.refuse(prefix + ".ramp", fmt::format("must be at most half of the duration, {} s, because the sine "
+                                                      "rises and falls once. Give a shorter one.",
+                                                      number_text(motion.duration)));
+    }
+}
+
+void check_analysis(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.analysis.kind != AnalysisKind::consolidation)
+    return;
+  if (scene.water.drainage != Drainage::coupled)
+    document.refuse("water.drainage", "must be \"coupled\" in a consolidation, which is the flow of the water.");
+  if (scene.load.kind != LoadKind::step)
+    document.refuse("load.kind", "must be \"step\" in a consolidation, which starts with a load. Give [load] kind = "
+                                 "\"step\" and an amplitude.");
+  if (!scene.motions.empty())
+    document.refuse("motion", "has no effect in a consolidation, where nothing shakes. Remove [[motion]].");
+  if (scene.base.kind == BaseKind::compliant)
+    document.refuse("base.kind", "must be \"rigid\" in a consolidation, where no waves have to leave.");
+  if (scene.analysis.last_time <= scene.analysis.first_time)
+    document.refuse("analysis.last_time", fmt::format("must be after first_time, {} s. Correct one of them.",
+                                                      number_text(scene.analysis.first_time)));
+}
+
+void check_depths(const SceneDocument &document, const ColumnScene &scene, const std::string &key,
+                  const std::vector<double> &depths)
+{
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    if (depths[i] > scene.height() * (1 + 1e-12)) // the sum of layers is rounded
+      document.refuse(key, fmt::format("must lie in the soil, in [0 m, {} m], but entry {} is {} m.",
+                                       number_text(scene.height()), i + 1, number_text(depths[i])));
+}
+
+void check_grains(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (!scene.has_grains())
+    return;
+  if (scene.analysis.kind == AnalysisKind::consolidation)
+    document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
+                              "\"dynamic\", or layers another material.");
+  if (scene.grains.library.empty())
+    document.refuse("grains.library", "is missing; layers of grains are made of its specimens. Give library = "
+                                      "\"library.h5\", made by specimen_library.");
+  if (scene.grains.rate_floor > scene.grains.rate_ceiling)
+    document.refuse("grains.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
+  if (!scene.grains.path_depths.empty() && scene.grains.elastic_start > 0)
+    document.refuse("grains.path_depths", "wants packings that run from the start. Remove it, or elastic_start.");
+  check_depths(document, scene, "grains.path_depths", scene.grains.path_depths);
+  check_depths(document, scene, "grains.snapshot_depths", scene.grains.snapshot_depths);
+}
+
+void check_output(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.mesh.distributed)
+    for (const auto &[key, given] : {std::pair("output.profile_interval", scene.output.profile_interval.has_value()),
+                                     std::pair("output.paraview_interval", scene.output.paraview_interval.has_value())})
+      if (given)
+        document.refuse(key, "is not possible if mesh.distributed is true, where no rank has the whole depth. Remove "
+                             "it, or give distributed = false.");
+  check_depths(document, scene, "output.depths", scene.output.depths);
+}
+} // namespace
+
+void check_column(const SceneDocument &document, ColumnScene &scene)
+{
+  check_groups(document, &scene);
+  check_mesh(document, scene);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    check_layer(document, scene, i);
+  check_base(document, scene.base);
+  check_motions(document, scene);
+  check_grains(document, scene);
+  check_analysis(document, scene);
+  check_output(document, scene);
+}
+} // namespace isostat

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/checkpoint.hpp"
+#include "apps/deposit/soil_material.hpp"
+#include "base/files/pvd.hpp"
+#include "base/record/recorder.hpp"
+#include "dem/measure/summary.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+/// What the packings of a column leave in its folder: grain_history/history.csv and .h5, the micromechanics of the
+/// first packing of the points nearest to output.depths (columns as in the element tests' history, prefix d0_, d1_ ...;
+/// `depths` of summary.json says where); grain_profiles/history.csv and .h5, redundancy index, coordination number and
+/// vertical fabric of every point with grains from the surface down (prefix p0_, p1_ ..., its depth in the first row's
+/// `depth` columns); whole packings at grains.snapshot_depths in grains/. Everything is of the instant of the row, the
+/// start of a step. tested: tests/apps/grain_column_test.py
+class GrainFiles
+{
+public:
+  /// On every rank.   @param depths  of the points of the mesh, m   @param resumed  null: start anew
+  GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
+             const std::vector<double> &depths, const ColumnCheckpoint *resumed);
+
+  /// On the rank that writes, but for snapshots.   @param resumed  null: start anew
+  void open(const ColumnCheckpoint *resumed);
+  /// Rows.   Collective; before the step that starts at `time`.   @throws RunFailure  on all ranks
+  void record(std::uint64_t step, double time);
+  void profile(std::uint64_t step, double time);
+  /// Whole packings, each written by the rank that has it.   Collective.   @throws RunFailure  on all ranks
+  void snapshots(double time);
+  void flush();
+  /// What a checkpoint has to keep.
+  std::map<std::string, double> counters() const;
+  /// Smallest redundancy index of any row of the profiles, and where and when.
+  struct Least
+  {
+    double redundancy = 1e300, depth = 0, time = 0;
+  };
+  const Least &minimum() const { return min_; }
+
+private:
+  void write_packings(double time);
+  std::vector<double> measured(const std::vector<std::size_t> &points) const;
+
+  std::filesystem::path folder_;
+  const RveMaterial &grains_;
+  std::vector<double> depths_;          ///< of the points of grains_, m
+  std::vector<std::size_t> from_above_; ///< points of grains_ from the surface down
+  std::vector<std::size_t> chosen_;     ///< nearest to output.depths
+  std::vector<std::size_t> pictured_;   ///< nearest to grains.snapshot_depths
+  std::uint64_t n_snapshots_;           ///< the same on every rank
+  std::unique_ptr<Recorder> history_, profiles_;
+  std::vector<std::unique_ptr<PvdCollection>> pictures_;
+  Least min_;
+};
+} // namespace isostat

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/ranks.hpp"
+
+#include "base/error.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <mpi.h>
+#include <unistd.h>
+
+namespace isostat
+{
+namespace
+{
+int loud_stderr = 2; ///< a copy of it from before silence_others()
+}
+
+Ranks ranks()
+{
+  Ranks r;
+  MPI_Comm_rank(MPI_COMM_WORLD, &r.rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &r.size);
+  return r;
+}
+
+void silence_others()
+{
+  if (ranks().first())
+    return;
+  loud_stderr = dup(2);
+  if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
+    throw RunFailure("/dev/null cannot be opened");
+}
+
+void on_first_rank(const std::function<void()> &task)
+{
+  enum
+  {
+    done,
+    failed,
+    bad_input
+  };
+  int outcome = done;
+  std::string what;
+  if (ranks().first())
+    try
+      {
+        task();
+      }
+    catch (const InputError &error)
+      {
+        outcome = bad_input;
+        what = error.what();
+      }
+    catch (const std::exception &error)
+      {
+        outcome = failed;
+        what = error.what();
+      }
+  MPI_Bcast(&outcome, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  if (outcome == bad_input)
+    throw InputError(what);
+  if (outcome == failed)
+    throw RunFailure(what);
+}
+
+void together(const std::function<void()> &task)
+{
+  const Ranks all = ranks();
+  int lowest = all.size;
+  std::string what;
+  try
+    {
+      task();
+    }
+  catch (const std::exception &error)
+    {
+      lowest = all.rank;
+      what = error.what();
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (lowest == all.size)
+    return;
+  auto length = static_cast<int>(what.size());
+  MPI_Bcast(&length, 1, MPI_INT, lowest, MPI_COMM_WORLD);
+  what.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(what.data(), length, MPI_CHAR, lowest, MPI_COMM_WORLD);
+  throw RunFailure(what);
+}
+
+bool on_any_rank(bool here)
+{
+  int flag = here;
+  MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  return flag != 0;
+}
+
+bool as_first_rank(bool here)
+{
+  int flag = here;
+  MPI_Bcast(&flag, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return flag != 0;
+}
+
+void abort_all(const char *message)
+{
+  const std::string line = std::string("failed: ") + message + "\n";
+  if (write(loud_stderr, line.data(), line.size()) < 0)
+    std::perror("stderr");
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::abort();
+}
+} // namespace isostat

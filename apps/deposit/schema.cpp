@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The keys of a column's scene file. A new key is one entry here, one field in apps/deposit/scene.hpp and, if it
+// takes part in a rule that binds several keys, a line in apps/deposit/checks.cpp.
+#include "apps/deposit/schema.hpp"
+
+namespace isostat
+{
+namespace
+{
+constexpr const char *drainage_choices[] = {"dry", "undrained", "coupled"};
+constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
+constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
+constexpr const char *base_choices[] = {"rigid", "compliant"};
+constexpr const char *axis_choices[] = {"x", "y", "z"};
+constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
+constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
+constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
+constexpr const char *load_choices[] = {"none", "step", "harmonic"};
+constexpr const char *analysis_choices[] = {"dynamic", "consolidation"};
+
+template <class Kind>
+constexpr unsigned bit(Kind kind)
+{
+  return 1u << static_cast<unsigned>(kind);
+}
+constexpr unsigned iwan = bit(LayerMaterial::iwan);
+constexpr unsigned formula = bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned grains = bit(LayerMaterial::grains);
+constexpr unsigned compliant = bit(BaseKind::compliant);
+constexpr unsigned record = bit(MotionKind::record);
+constexpr unsigned harmonic = bit(MotionKind::harmonic);
+constexpr unsigned ricker = bit(MotionKind::ricker);
+constexpr unsigned loaded = bit(LoadKind::step) | bit(LoadKind::harmonic);
+constexpr unsigned dynamic = bit(AnalysisKind::dynamic);
+constexpr unsigned consolidation = bit(AnalysisKind::consolidation);
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+constexpr Range not_negative{0, infinity};
+constexpr Range fraction{0, 1, true, true}; // (0, 1)
+constexpr Range to_one{0, 1, true, false};  // (0, 1]
+constexpr Range counts{1, 1e6};
+
+// clang-format off
+constexpr Section sections[] = {
+  {.name = "mesh", .text = "Elements of the soil. In every dimension the displacement has three components."},
+  {.name = "water", .text = "Pore water; the water table is at the surface, which drains freely."},
+  {.name = "layer",
+   .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
+           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, but for grains, "
+           "exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+   .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
+   .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
+   .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
+  {.name = "base", .text = "What lies under the lowest layer.", .kind_key = "kind", .kinds_title = "Base kinds"},
+  {.name = "motion",
+   .text = "The acceleration of a rigid base, or of the outcrop of the rock if the base is compliant: one `[[motion]]` for "
+           "each axis that moves (x and y horizontal, z up). Without any, the base is at rest.",
+   .kind_key = "kind", .items = items_of<&ColumnScene::motions>,
+   .empty_remedy = "Leave it out if the base is at rest.", .default_kind = "ricker",
+   .set_example = "amplitude=\"0.1 g\"", .kinds_title = "Motion kinds"},
+  {.name = "load", .text = "Traction on the surface.", .kind_key = "kind", .kinds_title = "Load kinds"},
+  {.name = "grains",
+   .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\"; the element tests' own law "
+           "and rate control."},
+  {.name = "analysis",
+   .text = "Waves (dynamic), or the slow flow of water out of loaded soil without inertia (consolidation).",
+   .kind_key = "kind", .kinds_title = "Analysis kinds"},
+  {.name = "output", .text = "What is written, and how often. Output never changes a run."},
+};
+
+constexpr Key keys[] = {
+  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
+   .field = [](ColumnScene &s) -> Field { return &s.title; }},
+
+  {.path = "mesh.dimension", .kind = Kind::integer, .value = "1", .range = {1, 3},
+   .text = "1: a column, one Gauss-point stress per depth; 2: a plane strip (x, z); 3: a block. The sides of 2 and 3 are "
+           "tied, opposite points move as one.",
+   .field = [](ColumnScene &s) -> Field { return &s.mesh.dimension; }},
+  {.path = "mesh.degree", .kind = Kind::integer, .value = "2", .range = {1, 2},
+   .text = "Degree of the displacement in an element; the pore pressure has degree 1.",
+   .field = [](ColumnScene &s) -> Field { return &s.mesh.degree; }},
+  {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
+   .range = positive, .text = "Extent of a strip or block along x, of a block along y too.",
+   .field = [](ColumnScene &s) -> Field { return &s.mesh.width; }},
+  {.path = "mesh.cells_across", .kind = Kind::integer, .value = "1", .range = counts,
+   .text = "Elements over the width.",
+   .field = [](ColumnScene &s) -> Field { return &s.mesh.cells_across; }},
+  {.path = "mesh.distributed", .kind = Kind::boolean, .value = "false",
+   .text = "One mesh shared out over all MPI ranks; false: a copy on every rank, whose results are the same bits for any "
+           "number of ranks.",
+   .field = [](ColumnScene &s) -> Field { return &s.mesh.distributed; }},
+
+  {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_choices,
+   .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure coupled "
+           "(u-p).",
+   .field = [](ColumnScene &s) -> Field { return &s.water.drainage; }},
+  {.path = "water.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
+   .value = "1000 kg/m3", .range = positive, .text = "Density of the water.",
+   .field = [](ColumnScene &s) -> Field { return &s.water.density; }},
+  {.path = "water.bulk_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
+   .value = "2.2 GPa", .range = positive, .text = "Bulk modulus K_f of the water; air in it makes it softer.",
+   .field = [](ColumnScene &s) -> Field { return &s.water.bulk_modulus; }},
+  {.path = "water.gravity", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
+   .value = "9.81 m/s2", .range = positive, .text = "Acceleration of gravity, of the soil's weight too.",
+   .field = [](ColumnScene &s) -> Field { return &s.water.gravity; }},
+  {.path = "water.lagged_compressibility", .kind = Kind::boolean, .value = "false",
+   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness.",
+   .field = [](ColumnScene &s) -> Field { return &s.water.lagged_compressibility; }},
+
+  {.path = "layer.name", .kind = Kind::text, .text = "Name of the layer, for tables and figures.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.name; }},
+  {.path = "layer.thickness", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::required, .value = "5 m", .range = positive, .reason = "because a layer without height has no cells",
+   .text = "Thickness of the layer.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.thickness; }},
+  {.path = "layer.cells", .kind = Kind::integer, .presence = Presence::experiment, .value = "10", .range = counts,
+   .group = "cells", .text = "Elements through the thickness.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cells; }},
+  {.path = "layer.cell_size", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "0.5 m", .range = positive, .group = "cells",
+   .text = "Largest height of an element; the layer gets as few as keep it.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cell_size; }},
+  {.path = "layer.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
+   .value = "2000 kg/m3", .range = positive, .text = "Density of soil and water together; of the dry soil if there is no water.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.density; }},
+  {.path = "layer.porosity", .value = "0.4", .range = fraction, .text = "Volume of pores over the whole.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.porosity; }},
+  {.path = "layer.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
+   .presence = Presence::experiment, .value = "1e-5 m/s", .range = not_negative, .reason = "because water flows down the gradient",
+   .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.permeability; }},
+  {.path = "layer.k0", .value = "0.5", .range = {0, 5, true}, .reason = "because horizontal stress is compression too",
+   .text = "Horizontal over vertical effective stress in situ.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.k0; }},
+  {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
+   .choices = material_choices,
+   .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
+           "the mean effective stress, or a packing of grains at every Gauss point, see [grains].",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
+  {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
+   .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",
+   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan, at the reference pressure.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
+  {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
+   .presence = Presence::optional, .value = "80 MPa", .range = positive, .kinds = formula, .group = "stiffness",
+   .text = "Shear modulus G of small strain. Of iwan, at the reference pressure.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
+  {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
+   .reason = "because the skeleton is compressible without its water", .kinds = formula, .text = "Poisson's ratio of the drained skeleton.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
+  {.path = "layer.reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "100 kPa", .range = positive, .kinds = iwan,
+   .text = "Mean effective stress p_r at which the stiffness is given.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.reference_pressure; }},
+  {.path = "layer.exponent", .value = "0.5", .range = {0, 1}, .kinds = iwan,
+   .text = "n of the small-strain stiffness G (p'/p_r)^n.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.exponent; }},
+  {.path = "layer.strength_ratio", .value = "0.55", .range = positive, .kinds = iwan,
+   .text = "M: shear strength over p', shear stress as sqrt(J2), which in simple shear is tau.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.strength_ratio; }},
+  {.path = "layer.phase_transformation_ratio", .value = "0.4", .range = positive, .kinds = iwan,
+   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.phase_transformation_ratio; }},
+  {.path = "layer.contraction", .value = "0.5", .range = not_negative, .kinds = iwan,
+   .text = "Rate of contraction per plastic shear strain; 0 here and for `dilation`: p' feels no shear.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.contraction; }},
+  {.path = "layer.dilation", .value = "0.3", .range = {0, 1}, .reason = "because plastic work would be negative above",
+   .kinds = iwan, .text = "Rate of dilation per plastic shear strain.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.dilation; }},
+  {.path = "layer.fabric_limit", .value = "8", .range = not_negative, .kinds = iwan,
+   .text = "After much dilation the soil contracts 1 + this times as fast.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_limit; }},
+  {.path = "layer.fabric_rate", .value = "1000", .range = not_negative, .kinds = iwan,
+   .text = "How soon that limit is reached, per volumetric strain of dilation.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_rate; }},
+  {.path = "layer.critical_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "1000 kPa", .range = positive, .kinds = iwan, .text = "Mean effective stress at which dilation ends.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.critical_pressure; }},
+  {.path = "layer.elements", .kind = Kind::integer, .value = "12", .range = {4, 32}, .kinds = iwan,
+   .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.elements; }},
+
+  {.path = "layer.relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2}, .kinds = grains,
+   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.relative_density; }},
+  {.path = "layer.realisation", .kind = Kind::integer, .value = "0", .kinds = grains,
+   .text = "Which seed of the library, counted from 0; with `grains.realisations` the first of them.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.realisation; }},
+
+  {.path = "base.kind", .kind = Kind::choice, .value = "rigid", .choices = base_choices,
+   .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion is "
+           "that of its outcrop.",
+   .field = [](ColumnScene &s) -> Field { return &s.base.kind; }},
+  {.path = "base.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
+   .presence = Presence::required, .value = "2300 kg/m3", .range = positive, .kinds = compliant,
+   .text = "Density of the rock.",
+   .field = [](ColumnScene &s) -> Field { return &s.base.density; }},
+  {.path = "base.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
+   .presence = Presence::required, .value = "800 m/s", .range = positive, .kinds = compliant,
+   .text = "Velocity of shear waves in the rock.",
+   .field = [](ColumnScene &s) -> Field { return &s.base.shear_velocity; }},
+  {.path = "base.p_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
+   .presence = Presence::optional, .value = "1600 m/s", .range = positive, .kinds = compliant,
+   .text = "Velocity of P waves in the rock; left out: twice the shear velocity.",
+   .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
+
+  {.path = "motion.axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.axis; }},
+  {.path = "motion.kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
+   .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.kind; }},
+  {.path = "motion.file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
+   .kinds = record,
+   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.file; }},
+  {.path = "motion.unit", .kind = Kind::choice, .value = "g", .choices = unit_choices, .kinds = record,
+   .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.unit; }},
+  {.path = "motion.baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
+   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that lets the displacement "
+           "drift smallest.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.baseline; }},
+  {.path = "motion.factor", .value = "1", .kinds = record, .group = "scale",
+   .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.factor; }},
+  {.path = "motion.peak", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
+   .presence = Presence::optional, .value = "0.2 g", .range = positive, .kinds = record, .group = "scale",
+   .text = "Largest acceleration to which the record is scaled; excludes `factor`.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.peak; }},
+  {.path = "motion.amplitude", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
+   .presence = Presence::required, .value = "0.1 g", .kinds = harmonic | ricker, .text = "Amplitude of the acceleration.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.amplitude; }},
+  {.path = "motion.frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
+   .presence = Presence::required, .value = "2 Hz", .range = positive, .kinds = harmonic | ricker,
+   .text = "Frequency of the sine; of a wavelet the one where its spectrum is largest.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.frequency; }},
+  {.path = "motion.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::required, .value = "10 s", .range = positive, .kinds = harmonic, .text = "Duration of the sine.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.duration; }},
+  {.path = "motion.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
+   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.ramp; }},
+  {.path = "motion.centre", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "0.75 s", .range = positive, .kinds = ricker,
+   .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.centre; }},
+  {.path = "motion.interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = harmonic | ricker,
+   .text = "Time between samples, straight in between; left out: 1 / (500 frequency).",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.interval; }},
+  {.path = "motion.again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "20 s", .range = positive,
+   .text = "Time at which the same motion starts for the second time; left out: it comes once.",
+   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.again; }},
+
+  {.path = "load.kind", .kind = Kind::choice, .value = "none", .choices = load_choices,
+   .text = "How the traction runs in time.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.kind; }},
+  {.path = "load.surcharge", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "0 kPa",
+   .range = not_negative, .text = "Vertical load that is there from the start and part of the in-situ effective stress.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.surcharge; }},
+  {.path = "load.direction", .kind = Kind::choice, .value = "z", .choices = axis_choices, .kinds = loaded,
+   .text = "Direction of the traction; along z compression is positive.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.direction; }},
+  {.path = "load.amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .presence = Presence::required, .value = "10 kPa", .kinds = loaded, .text = "The traction, or the amplitude of its sine.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.amplitude; }},
+  {.path = "load.frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
+   .presence = Presence::required, .value = "1 Hz", .range = positive, .kinds = bit(LoadKind::harmonic),
+   .text = "Frequency of the sine.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.frequency; }},
+  {.path = "load.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
+   .range = not_negative, .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing.",
+   .field = [](ColumnScene &s) -> Field { return &s.load.ramp; }},
+
+  {.path = "grains.library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
+   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file. Needed by layers of "
+           "grains.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.library; }},
+  {.path = "grains.cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
+   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
+           "directory. Left out: none are kept.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.cache; }},
+  {.path = "grains.in_situ", .kind = Kind::choice, .value = "all-stresses", .choices = in_situ_choices,
+   .text = "Packings start at the vertical and horizontal stress that weight and `layer.k0` say, or, without lateral "
+           "strain, at the horizontal stress that they give themselves.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.in_situ; }},
+  {.path = "grains.realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
+   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.realisations; }},
+  {.path = "grains.quasi_static_tolerance", .value = "0.01", .range = fraction,
+   .text = "Error that inertia of grains may add, as in element tests.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.quasi_static_tolerance; }},
+  {.path = "grains.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
+   .range = positive, .text = "Smallest strain rate inside a packing.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_floor; }},
+  {.path = "grains.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
+   .range = positive, .text = "Largest strain rate inside a packing.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_ceiling; }},
+  {.path = "grains.min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
+   .text = "Time steps of the grains in each step of the column, at least: small increments would be over in one or two, "
+           "before the grains find their places.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.min_steps; }},
+  {.path = "grains.damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.damping; }},
+  {.path = "grains.elastic_start", .value = "0", .range = {0, 1, false, true},
+   .text = "A packing is an elastic body of its own stiffness until the stress would be wrong by this part of its change; then "
+           "it is started and runs what it has missed. 0: all run from the start.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.elastic_start; }},
+  {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
+   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_depths; }},
+  {.path = "grains.path_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"5 m\"]", .range = not_negative,
+   .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, which "
+           "sends the packing the same way again, alone.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.path_depths; }},
+  {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .value = "1 s", .range = positive, .text = "Time between them.",
+   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_interval; }},
+
+  {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_choices,
+   .text = "What is solved.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.kind; }},
+  {.path = "analysis.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::required, .value = "20 s", .range = positive, .kinds = dynamic, .text = "End of the run.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.duration; }},
+  {.path = "analysis.time_step", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "ms",
+   .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = dynamic,
+   .text = "Time step, checked against the stable one; left out: `safety` times the stable one at the start.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.time_step; }},
+  {.path = "analysis.safety", .value = "0.8", .range = to_one, .reason = "because beyond the stable step the motion explodes",
+   .kinds = dynamic, .text = "Part of the stable time step that may be used.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.safety; }},
+  {.path = "analysis.mass_damping", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "0 1/s", .range = not_negative, .kinds = dynamic,
+   .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of critical.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.mass_damping; }},
+  {.path = "analysis.first_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::required, .value = "10 s", .range = positive, .kinds = consolidation,
+   .text = "End of the first time step after loading; those that follow rise geometrically.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.first_time; }},
+  {.path = "analysis.last_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::required, .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.last_time; }},
+  {.path = "analysis.steps", .kind = Kind::integer, .value = "50", .range = {2, 1e6}, .kinds = consolidation,
+   .text = "Number of time steps.",
+   .field = [](ColumnScene &s) -> Field { return &s.analysis.steps; }},
+
+  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.folder; }},
+  {.path = "output.history_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .value = "0.01 s", .range = positive, .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.history_interval; }},
+  {.path = "output.depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
+   .text = "Depths below the surface whose stress paths and motions get histories of their own.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
+  {.path = "output.profile_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "0.1 s", .range = positive,
+   .text = "Time between profiles over the depth, rounded likewise; left out: none but largest values. A consolidation writes every step.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.profile_interval; }},
+  {.path = "output.paraview_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "0.5 s", .range = positive,
+   .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.paraview_interval; }},
+  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
+   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.checkpoint_minutes; }},
+  {.path = "output.spectrum_damping", .value = "0.05", .range = {0, 1, false, true},
+   .reason = "because this is a fraction of critical", .text = "Damping of the oscillators of response spectra.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.spectrum_damping; }},
+};
+
+constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
+
+constexpr Dimension dimensions[] = {
+  Dimension::length, Dimension::pressure, Dimension::rate, Dimension::density, Dimension::velocity,
+  Dimension::acceleration, Dimension::frequency, Dimension::duration, Dimension::interval};
+
+constexpr const char *defaults_head =
+    "A soil column with the defaults of every key. A line \"# key = value\" is a key without default, with an example. "
+    "What makes the experiment (layers, motion, duration) has no default and shows an example.";
+
+constexpr const char *manual_head =
+R"(# Scene reference of the soil column
+
+A scene is one TOML file that says all about a run of `soil_column`. This page is generated from the table in
+`apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/column`.
+
+- Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
+  unit of something else, is an error. What has no dimension is a plain number.
+- An unknown key is an error, and so is a key twice. Compression is positive; z points up, depths count downwards.
+- `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
+  `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
+  other, the one set this way replaces the one in the file.
+
+)";
+
+constexpr SceneSchema schema{.keys = keys, .sections = sections, .groups = groups, .dimensions = dimensions,
+                             .set_example = "analysis.safety=0.5", .defaults_head = defaults_head,
+                             .manual_head = manual_head};
+// clang-format on
+} // namespace
+
+const SceneSchema &column_schema() { return schema; }
+} // namespace isostat

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/files.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+std::size_t counter(const ColumnCheckpoint *checkpoint, const char *name)
+{
+  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
+}
+
+std::vector<double> chosen(const std::vector<double> &values, const std::vector<std::size_t> &which)
+{
+  std::vector<double> some;
+  for (std::size_t k : which)
+    some.push_back(values[k]);
+  return some;
+}
+} // namespace
+
+template <int dim>
+ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
+                              const std::array<Motion, 3> &motions)
+    : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
+      paraview_(scene.output.paraview_interval.has_value()), history_(scene, space, motions)
+{
+  if (!scene.mesh.distributed)
+    line_ = column_line(space);
+}
+
+template <int dim>
+void ColumnFiles<dim>::open(const ColumnCheckpoint *resumed)
+{
+  recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"));
+  if (line_)
+    profiles_ =
+        std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,
+                                      chosen(history_.vertical_stress(), line_->points), counter(resumed, "profiles"));
+  if (paraview_)
+    {
+      fs::create_directories(folder_ / "paraview");
+      pvd_ = std::make_unique<PvdCollection>(folder_ / "paraview" / "column.pvd", counter(resumed, "paraview"));
+    }
+}
+
+template <int dim>
+void ColumnFiles<dim>::record(const ColumnInstant &instant)
+{
+  const std::vector<double> row = history_.row(instant);
+  if (recorder_)
+    recorder_->append(row);
+}
+
+template <int dim>
+void ColumnFiles<dim>::profile(const ColumnInstant &instant)
+{
+  if (!profiles_)
+    return;
+  const std::size_t m = line_->points.size();
+  std::vector<double> values(m * ProfileFile::n_quantities);
+  for (std::size_t k = 0; k < m; ++k)
+    {
+      const std::size_t q = line_->points[k];
+      const auto row =
+          point_values(instant.gradients[q], instant.stresses[q], instant.pressure[q], history_.vertical_stress()[q])
+              .row();
+      for (std::size_t j = 0; j < row.size(); ++j)
+        values[j * m + k] = row[j];
+    }
+  profiles_->append(instant.time, values);
+}
+
+template <int dim>
+void ColumnFiles<dim>::paraview(const ColumnInstant &instant)
+{
+  if (!pvd_)
+    return;
+  const std::string name = fmt::format("column_{:05d}.vtu", pvd_->n_entries());
+  write_column_vtu(folder_ / "paraview" / name, space_, instant, history_.vertical_stress());
+  pvd_->append(instant.time, name);
+}
+
+template <int dim>
+void ColumnFiles<dim>::flush()
+{
+  if (recorder_)
+    recorder_->flush();
+  if (profiles_)
+    profiles_->flush();
+}
+
+template <int dim>
+void ColumnFiles<dim>::save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more)
+{
+  if (!recorder_)
+    return;
+  flush();
+  ColumnCheckpoint checkpoint{std::move(state), std::move(more), {}, scene_text_};
+  peaks.save(checkpoint);
+  history_.state.save(checkpoint);
+  checkpoint.numbers["rows"] = static_cast<double>(recorder_->n_rows());
+  checkpoint.numbers["profiles"] = profiles_ ? static_cast<double>(profiles_->n_rows()) : 0;
+  checkpoint.numbers["paraview"] = pvd_ ? static_cast<double>(pvd_->n_entries()) : 0;
+  write_column_checkpoint(folder_ / "checkpoint", checkpoint);
+}
+
+template <int dim>
+void ColumnFiles<dim>::finish(const ColumnPeaks &peaks)
+{
+  flush();
+  if (profiles_)
+    profiles_->finish(peaks.line_gamma, line_->node_depths, peaks.line_acceleration);
+}
+
+template <int dim>
+std::string ColumnFiles<dim>::last_checkpoint() const
+{
+  const fs::path last = folder_ / "checkpoint" / "last.h5";
+  return "last good checkpoint: " + (fs::exists(last) ? last.string() : "none was written yet");
+}
+
+template class ColumnFiles<1>;
+template class ColumnFiles<2>;
+template class ColumnFiles<3>;
+} // namespace isostat

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/soil_column/history.hpp"
+#include "apps/soil_column/peaks.hpp"
+#include "base/files/pvd.hpp"
+
+#include <memory>
+
+namespace isostat
+{
+/// What a run of a column leaves in its folder while it goes on: history, profiles, files for ParaView, checkpoints.
+/// Never changes the run. Only a rank that calls open() touches the disk.
+/// tested: tests/apps/soil_column_test.py
+template <int dim>
+class ColumnFiles
+{
+public:
+  /// Collective. Touches nothing yet.
+  ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
+              const std::array<Motion, 3> &motions);
+  /// Starts or cuts the files, on the rank that writes.   @param resumed  null: start anew
+  /// @throws InputError  files that have been cut off or changed since the checkpoint
+  void open(const ColumnCheckpoint *resumed);
+
+  /// A row of the history.   Collective.
+  void record(const ColumnInstant &instant);
+  void profile(const ColumnInstant &instant);
+  void paraview(const ColumnInstant &instant);
+
+  /// Brings all files up to date, then writes a checkpoint of a state with its peaks.
+  /// @param more  numbers that the run wants back
+  void save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
+  void flush();
+  /// Adds the largest values to the profiles.   @pre the last call
+  void finish(const ColumnPeaks &peaks);
+
+  const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
+  ColumnHistory<dim> &history() { return history_; }
+  /// A line for a failure: where the last good checkpoint is.
+  std::string last_checkpoint() const;
+
+private:
+  std::filesystem::path folder_;
+  std::string scene_text_;
+  const Discretisation<dim> &space_;
+  bool paraview_;
+  ColumnHistory<dim> history_;
+  std::optional<ColumnLine> line_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<ProfileFile> profiles_;
+  std::unique_ptr<PvdCollection> pvd_;
+};
+} // namespace isostat

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/history.hpp"
+
+#include "apps/deposit/materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::size_t input_at = 2, base_at = 5, surface_at = 8, displacement_at = 14, settlement_at = 17;
+
+double reduced(double x, MPI_Op operation, MPI_Comm communicator)
+{
+  MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, operation, communicator);
+  return x;
+}
+
+template <int dim>
+std::array<long, 3> node_at(const Discretisation<dim> &space, double z)
+{
+  return {space.find_dof({0, 0, z}, 0), space.find_dof({0, 0, z}, 1), space.find_dof({0, 0, z}, 2)};
+}
+
+/// The node's values, 0 on ranks that do not have it.
+void append(const std::vector<double> &values, const std::array<long, 3> &node, std::vector<double> &row)
+{
+  for (long dof : node)
+    row.push_back(dof < 0 ? 0 : values[static_cast<std::size_t>(dof)]);
+}
+
+template <typename Number, typename State>
+auto fields(State &s)
+{
+  return std::array<std::pair<const char *, Number *>, 7>{{{"last_time", &s.time},
+                                                           {"last_surface_acceleration", &s.surface_acceleration},
+                                                           {"last_ru", &s.max_ru},
+                                                           {"last_p_ratio", &s.min_p_ratio},
+                                                           {"last_settlement", &s.settlement},
+                                                           {"last_residual", &s.residual},
+                                                           {"max_energy", &s.max_energy}}};
+}
+} // namespace
+
+void ColumnState::save(ColumnCheckpoint &checkpoint) const
+{
+  for (const auto &[name, value] : fields<const double>(*this))
+    checkpoint.numbers[name] = *value;
+}
+
+void ColumnState::restore(const ColumnCheckpoint &checkpoint)
+{
+  for (const auto &[name, value] : fields<double>(*this))
+    *value = checkpoint.numbers.at(name);
+}
+
+template <int dim>
+ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
+                                  const std::array<Motion, 3> &motions)
+    : space_(space), motions_(motions), rigid_(scene.base.kind == BaseKind::rigid),
+      area_(std::pow(scene.mesh.width, dim - 1)), base_(node_at(space, 0)),
+      surface_(node_at(space, space.mesh().soil.height()))
+{
+  for (double depth : scene.output.depths)
+    points_.push_back(point_at_depth(space, depth));
+  for (const Stress &stress : in_situ_stress(scene, space))
+    {
+      vertical_stress_.push_back(-stress[2]);
+      mean_stress_.push_back(mean_effective(stress));
+    }
+}
+
+template <int dim>
+std::vector<RecordColumn> ColumnHistory<dim>::columns() const
+{
+  std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
+  for (const auto &[what, unit] :
+       {std::pair("input_a", "m/s2"), std::pair("base_a", "m/s2"), std::pair("surface_a", "m/s2"),
+        std::pair("surface_v", "m/s"), std::pair("surface_u", "m")})
+    for (const char *axis : {"x", "y", "z"})
+      columns.push_back({std::string(what) + axis, unit});
+  columns.insert(columns.end(), {{"settlement", "m"},
+                                 {"max_ru", "-"},
+                                 {"max_ru_depth", "m"},
+                                 {"min_p_ratio", "-"},
+                                 {"kinetic", "J/m2"},
+                                 {"internal", "J/m2"},
+                                 {"external", "J/m2"},
+                                 {"residual", "J/m2"}});
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    for (const auto &[name, unit] : point_columns)
+      columns.push_back({fmt::format("d{}_{}", k, name), unit});
+  return columns;
+}
+
+template <int dim>
+typename ColumnHistory<dim>::Extremes ColumnHistory<dim>::extremes(const ColumnInstant &instant) const
+{
+  double ru = -std::numeric_limits<double>::infinity(), depth = 0, ratio = std::numeric_limits<double>::infinity();
+  for (std::size_t q = 0; q < vertical_stress_.size(); ++q)
+    {
+      ratio = std::min(ratio, mean_effective(instant.stresses[q]) / mean_stress_[q]);
+      if (const double here = instant.pressure[q] / vertical_stress_[q]; here > ru)
+        {
+          ru = here;
+          depth = space_.mesh().soil.height() - space_.position[q][2];
+        }
+    }
+  if (!space_.shared_out())
+    return {ru, depth, ratio};
+  const MPI_Comm all = space_.communicator();
+  const double maximum = reduced(ru, MPI_MAX, all);
+  return {maximum, reduced(ru == maximum ? depth : std::numeric_limits<double>::max(), MPI_MIN, all),
+          reduced(ratio, MPI_MIN, all)};
+}
+
+template <int dim>
+void ColumnHistory<dim>::append_points(const ColumnInstant &instant, std::vector<double> &row) const
+{
+  for (const PointAtDepth &at : points_)
+    {
+      const auto q = static_cast<std::size_t>(at.point);
+      const auto values =
+          at.point < 0
+              ? std::array<double, 9>{}
+              : point_values(instant.gradients[q], instant.stresses[q], instant.pressure[q], vertical_stress_[q]).row();
+      row.insert(row.end(), values.begin(), values.end());
+    }
+}
+
+template <int dim>
+std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
+{
+  std::vector<double> row = {0, 0, 0, 0, 0};
+  append(instant.acceleration, base_, row);
+  append(instant.acceleration, surface_, row);
+  append(instant.velocity, surface_, row);
+  append(instant.displacement, surface_, row);
+  row.resize(settlement_at + 8, 0.0);
+  append_points(instant, row);
+  if (space_.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, row.data(), static_cast<int>(row.size()), MPI_DOUBLE, MPI_SUM, space_.communicator());
+
+  row[0] = static_cast<double>(instant.step);
+  row[1] = state.time = instant.time;
+  state.surface_acceleration = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double input = row[input_at + axis] = motions_[axis].acceleration(instant.time);
+      if (rigid_) // unknowns count from the moving base
+        {
+          row[base_at + axis] += input;
+          row[surface_at + axis] += input;
+        }
+      state.surface_acceleration = std::max(state.surface_acceleration, std::abs(row[surface_at + axis]));
+    }
+  const Extremes extreme = extremes(instant);
+  const DynamicsEnergy &energy = instant.energy;
+  state.settlement = 0 - row[displacement_at + 2]; // never -0
+  state.max_ru = extreme.ru;
+  state.min_p_ratio = extreme.p_ratio;
+  state.residual = energy.residual() / area_;
+  const double tail[] = {state.settlement,        extreme.ru,
+                         extreme.ru_depth,        extreme.p_ratio,
+                         energy.kinetic / area_,  energy.internal / area_,
+                         energy.external / area_, state.residual};
+  std::copy(std::begin(tail), std::end(tail), row.begin() + settlement_at);
+  for (std::size_t k = 4; k < 7; ++k)
+    state.max_energy = std::max(state.max_energy, std::abs(tail[k]));
+  return row;
+}
+
+template class ColumnHistory<1>;
+template class ColumnHistory<2>;
+template class ColumnHistory<3>;
+} // namespace isostat

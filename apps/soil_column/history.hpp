@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/checkpoint.hpp"
+#include "apps/deposit/output.hpp"
+#include "apps/deposit/scene.hpp"
+#include "base/record/recorder.hpp"
+
+namespace isostat
+{
+/// What of the last row progress and summary show.
+struct ColumnState
+{
+  double time = 0, surface_acceleration = 0; ///< s, largest of x, y, z by size, m/s2
+  double max_ru = 0, min_p_ratio = 1;        ///< [-]
+  double settlement = 0, residual = 0;       ///< m, J/m2
+  double max_energy = 0;                     ///< largest of the energies of any row, J/m2
+
+  void save(ColumnCheckpoint &checkpoint) const;
+  void restore(const ColumnCheckpoint &checkpoint);
+};
+
+/// Rows of history.csv/.h5. Every quantity of a row is of the one instant `time` (see observe_step). Accelerations are
+/// absolute; velocities and displacements count from a rigid base and are absolute above a compliant one.
+/// tested: tests/apps/soil_column_test.py
+template <int dim>
+class ColumnHistory
+{
+public:
+  /// Collective.
+  ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space, const std::array<Motion, 3> &motions);
+
+  std::vector<RecordColumn> columns() const;
+  /// Collective, the same on every rank of the mesh.
+  std::vector<double> row(const ColumnInstant &instant);
+
+  const std::vector<double> &vertical_stress() const { return vertical_stress_; } ///< sigma'_v0 of every point, Pa
+  const std::vector<PointAtDepth> &points() const { return points_; }             ///< of the scene's depths
+  ColumnState state;                                                              ///< of the last row
+
+private:
+  using Trio = std::array<long, 3>;
+  struct Extremes
+  {
+    double ru = 0, ru_depth = 0, p_ratio = 1;
+  };
+  Extremes extremes(const ColumnInstant &instant) const;
+  void append_points(const ColumnInstant &instant, std::vector<double> &row) const;
+
+  const Discretisation<dim> &space_;
+  const std::array<Motion, 3> &motions_;
+  bool rigid_;
+  double area_; ///< of the mesh in plan, m2
+  Trio base_, surface_;
+  std::vector<PointAtDepth> points_;
+  std::vector<double> vertical_stress_, mean_stress_;
+};
+} // namespace isostat

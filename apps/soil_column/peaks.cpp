@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/peaks.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace isostat
+{
+namespace
+{
+template <typename Number, typename Peaks>
+auto fields(Peaks &p)
+{
+  return std::array<std::pair<const char *, Number *>, 7>{{{"peak_input", &p.input},
+                                                           {"peak_surface", &p.surface},
+                                                           {"peak_gamma", &p.gamma},
+                                                           {"peak_gamma_depth", &p.gamma_depth},
+                                                           {"peak_ru", &p.ru},
+                                                           {"peak_ru_depth", &p.ru_depth},
+                                                           {"peak_ru_time", &p.ru_time}}};
+}
+
+double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
+
+/// The largest of all ranks, and what belongs to it.
+void take_max(double &value, std::initializer_list<double *> with, MPI_Comm communicator)
+{
+  const double here = value;
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, communicator);
+  for (double *other : with)
+    {
+      double x = here == value ? *other : std::numeric_limits<double>::max();
+      MPI_Allreduce(&x, other, 1, MPI_DOUBLE, MPI_MIN, communicator);
+    }
+}
+} // namespace
+
+void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
+{
+  for (const auto &[name, value] : fields<const double>(*this))
+    checkpoint.numbers[name] = *value;
+  checkpoint.vectors["peak_gamma"] = line_gamma;
+  checkpoint.vectors["peak_acceleration"] = line_acceleration;
+}
+
+void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
+{
+  for (const auto &[name, value] : fields<double>(*this))
+    *value = checkpoint.numbers.at(name);
+  line_gamma = checkpoint.vectors.at("peak_gamma");
+  line_acceleration = checkpoint.vectors.at("peak_acceleration");
+}
+
+template <int dim>
+PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLine *line,
+                                const std::vector<double> &vertical_stress)
+    : space_(space), line_(line), vertical_stress_(vertical_stress)
+{
+  for (unsigned c = 0; c < 2; ++c)
+    surface_[c] = space.find_dof({0, 0, space.mesh().soil.height()}, c);
+  if (line)
+    {
+      peaks.line_gamma.assign(line->points.size(), 0.0);
+      peaks.line_acceleration.assign(line->nodes.size(), 0.0);
+    }
+}
+
+template <int dim>
+void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<double> &pressure, double time)
+{
+  gradients_of(space_, displacement, gradients_);
+  const auto depth = [&](std::size_t q) { return space_.mesh().soil.height() - space_.position[q][2]; };
+  for (std::size_t q = 0; q < gradients_.size(); ++q)
+    {
+      if (const double gamma = shear(gradients_[q]); gamma > peaks.gamma)
+        {
+          peaks.gamma = gamma;
+          peaks.gamma_depth = depth(q);
+        }
+      if (const double ru = pressure[q] / vertical_stress_[q]; ru > peaks.ru)
+        {
+          peaks.ru = ru;
+          peaks.ru_depth = depth(q);
+          peaks.ru_time = time;
+        }
+    }
+  if (line_)
+    for (std::size_t k = 0; k < line_->points.size(); ++k)
+      peaks.line_gamma[k] = std::max(peaks.line_gamma[k], shear(gradients_[line_->points[k]]));
+}
+
+template <int dim>
+void PeakFollower<dim>::follow(const Dynamics<dim> &run)
+{
+  const bool coupled = run.settings().drainage == Drainage::coupled;
+  const double now = run.time() - run.time_step(); // what accelerations are of
+  follow(run.displacement(), run.point_pressure(), coupled ? now : run.time());
+  const Base &base = run.settings().base;
+  const double ax = base.motion[0].acceleration(now), ay = base.motion[1].acceleration(now);
+  const double frame_x = base.compliant ? 0 : ax, frame_y = base.compliant ? 0 : ay;
+  const Vector &a = run.acceleration();
+  const auto size = [&](long x, long y) {
+    return std::hypot(a.local_element(static_cast<unsigned>(x)) + frame_x,
+                      a.local_element(static_cast<unsigned>(y)) + frame_y);
+  };
+  peaks.input = std::max(peaks.input, std::hypot(ax, ay));
+  if (surface_[0] >= 0 && surface_[1] >= 0)
+    peaks.surface = std::max(peaks.surface, size(surface_[0], surface_[1]));
+  if (line_)
+    for (std::size_t k = 0; k < line_->nodes.size(); ++k)
+      peaks.line_acceleration[k] = std::max(peaks.line_acceleration[k], size(line_->nodes[k], line_->nodes[k] + 1));
+}
+
+template <int dim>
+void PeakFollower<dim>::gather()
+{
+  if (!space_.shared_out())
+    return;
+  const MPI_Comm all = space_.communicator();
+  take_max(peaks.surface, {}, all);
+  take_max(peaks.gamma, {&peaks.gamma_depth}, all);
+  take_max(peaks.ru, {&peaks.ru_depth, &peaks.ru_time}, all);
+}
+
+template class PeakFollower<1>;
+template class PeakFollower<2>;
+template class PeakFollower<3>;
+} // namespace isostat

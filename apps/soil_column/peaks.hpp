@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/checkpoint.hpp"
+#include "apps/deposit/instant.hpp"
+#include "fem/space/column_line.hpp"
+
+namespace isostat
+{
+/// Largest values of a run, looked at in every step, not only in those that are recorded.
+struct ColumnPeaks
+{
+  double input = 0, surface = 0;                     ///< horizontal acceleration by size, m/s2
+  double gamma = 0, gamma_depth = 0;                 ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
+  double ru = 0, ru_depth = 0, ru_time = 0;          ///< [-], m, s
+  std::vector<double> line_gamma, line_acceleration; ///< on a ColumnLine; empty if the mesh is shared out
+
+  void save(ColumnCheckpoint &checkpoint) const;
+  void restore(const ColumnCheckpoint &checkpoint);
+};
+
+/// Follows them.
+template <int dim>
+class PeakFollower
+{
+public:
+  /// @param line  null: the mesh is shared out   @param vertical_stress  sigma'_v0 of every point, Pa
+  PeakFollower(const Discretisation<dim> &space, const ColumnLine *line, const std::vector<double> &vertical_stress);
+  /// After each step.
+  void follow(const Dynamics<dim> &run);
+  /// Strain and r_u of any solution.
+  void follow(const Vector &displacement, const std::vector<double> &pressure, double time);
+  /// Largest over all ranks.   Collective.
+  void gather();
+
+  ColumnPeaks peaks;
+
+private:
+  const Discretisation<dim> &space_;
+  const ColumnLine *line_;
+  const std::vector<double> &vertical_stress_;
+  std::array<long, 2> surface_;
+  std::vector<Gradient> gradients_;
+};
+} // namespace isostat

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/soil_column/history.hpp"
+#include "apps/soil_column/peaks.hpp"
+
+#include <optional>
+
+namespace isostat
+{
+/// Of the packings of a column.
+struct GrainsSummary
+{
+  std::size_t packings = 0;
+  double slowest = 0, fastest = 0;                                              ///< V_s at the (re)start, m/s
+  bool has_profiles = false;                                                    ///< what follows is known
+  double min_redundancy = 0, min_redundancy_depth = 0, min_redundancy_time = 0; ///< of all profiles [-], m, s
+};
+
+/// What a person wants to know of a finished run. Nothing in it depends on the machine: see RunTimes for that.
+struct ColumnSummary
+{
+  std::size_t cells = 0, points = 0; ///< of the whole mesh
+  double steps = 0, time_step = 0;   ///< s; 0 in a consolidation
+  std::vector<double> point_depths;  ///< of the points whose histories were asked for, m
+  ColumnPeaks peaks;
+  ColumnState last;                        ///< of the last row
+  double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
+  std::optional<GrainsSummary> grains;
+};
+
+/// What the run took on this machine.
+struct RunTimes
+{
+  double wall = 0, solver = 0, material = 0; ///< s: from start to end, in steps without the material, in the material
+  double steps = 0;                          ///< that were made, after a resume fewer than the run has
+  double packing_trials = 0, packing_steps = 0; ///< calls of packings, their own time steps
+  double in_packings = 0, all_packings = 0;     ///< s: in packings of the busiest rank, of all ranks together
+  double waves = 0;                             ///< s: for their wave velocities
+};
+
+/// For the terminal and summary.txt.
+std::string to_text(const ColumnSummary &summary, const ColumnScene &scene);
+std::string to_text(const RunTimes &times);
+/// For summary.json: read by scripts/plots_soil_column.py. No number is ever nan.
+std::string to_json(const ColumnSummary &summary, const ColumnScene &scene);
+} // namespace isostat

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a column's scene says; what is refused is in tests/apps/deposit/scene_error_test.cpp.
+#include "apps/deposit/scene.hpp"
+
+#include "apps/deposit/schema.hpp"
+#include "fem/material/iwan.hpp"
+#include "tests/apps/deposit/scene_texts.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <map>
+#include <random>
+
+namespace isostat
+{
+namespace
+{
+namespace fs = std::filesystem;
+const std::string several = R"(title = "Three layers"
+[mesh]
+degree = 2
+[water]
+drainage = "coupled"
+bulk_modulus = "200 MPa"
+[[layer]]
+name = "crust"
+thickness = "2 m"
+cell_size = "0.3 m"
+permeability = "0 m/s"
+material = "elastic"
+shear_modulus = "30 MPa"
+[[layer]]
+name = "sand"
+thickness = "6 m"
+cells = 12
+density = "1900 kg/m3"
+permeability = "1e-2 cm/s"
+material = "iwan"
+shear_velocity = "160 m/s"
+strength_ratio = 0.65
+phase_transformation_ratio = 0.35
+[base]
+kind = "compliant"
+density = "2300 kg/m3"
+shear_velocity = "800 m/s"
+[[motion]]
+axis = "y"
+kind = "record"
+file = "motions/a.at2"
+peak = "0.2 g"
+baseline = "quadratic"
+[[motion]]
+kind = "ricker"
+amplitude = "-1 m/s2"
+frequency = "3 Hz"
+[[motion]]
+axis = "z"
+kind = "harmonic"
+amplitude = "5 gal"
+frequency = "10 Hz"
+duration = "8 s"
+ramp = "1 s"
+[load]
+kind = "harmonic"
+surcharge = "5 kPa"
+amplitude = "2 kPa"
+frequency = "1 Hz"
+[analysis]
+duration = "1 min"
+time_step = "0.5 ms"
+[output]
+depths = ["0 m", "200 cm", "8 m"]
+profile_interval = "0.1 s"
+)";
+
+std::string read_all(const std::string &path)
+{
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(ColumnScene, ReadsEverySection)
+{
+  const ColumnScene scene = parse_column_scene(several, "column.toml");
+  EXPECT_EQ(scene.water.drainage, Drainage::coupled);
+  EXPECT_EQ(scene.water.bulk_modulus, 200e6);
+  ASSERT_EQ(scene.layers.size(), 2u);
+  EXPECT_EQ(scene.layers[0].small_strain_modulus(), 30e6);
+  EXPECT_EQ(scene.layers[0].n_cells(), 7u);
+  EXPECT_EQ(scene.layers[1].small_strain_modulus(), 1900.0 * 160 * 160);
+  EXPECT_EQ(scene.layers[1].permeability, 1e-4);
+  EXPECT_EQ(scene.layers[1].material, LayerMaterial::iwan);
+  EXPECT_EQ(scene.layers[1].iwan.strength_ratio, 0.65);
+  EXPECT_EQ(scene.layers[1].iwan.contraction, 0.5);
+  EXPECT_EQ(scene.base.kind, BaseKind::compliant);
+  EXPECT_EQ(scene.base.rock_p_velocity(), 1600);
+  ASSERT_EQ(scene.motions.size(), 3u);
+  EXPECT_EQ(scene.motions[0].axis, Axis::y);
+  EXPECT_EQ(scene.motions[0].peak, 0.2 * 9.80665);
+  EXPECT_EQ(scene.motions[0].baseline, Baseline::quadratic);
+  EXPECT_EQ(scene.motions[1].axis, Axis::x);
+  EXPECT_EQ(scene.motions[1].amplitude, -1);
+  EXPECT_EQ(scene.motions[1].peak_time(), 0.5);
+  EXPECT_EQ(scene.motions[2].amplitude, 0.05);
+  EXPECT_EQ(scene.load.kind, LoadKind::harmonic);
+  EXPECT_EQ(scene.load.direction, Axis::z);
+  EXPECT_EQ(scene.analysis.duration, 60);
+  EXPECT_EQ(scene.analysis.time_step, 0.5e-3);
+  EXPECT_EQ(scene.output.depths, (std::vector<double>{0, 2, 8}));
+  EXPECT_FALSE(scene.output.paraview_interval);
+}
+
+/// The defaults of the table are those of the structs.
+TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
+{
+  ColumnScene expected;
+  expected.water.drainage = Drainage::dry;
+  expected.analysis.duration = 20;
+  ColumnLayer one;
+  one.thickness = 5;
+  one.cells = 10;
+  one.shear_velocity = 200;
+  expected.layers = {one};
+  EXPECT_EQ(parse_column_scene(smallest, "s"), expected);
+
+  one.material = LayerMaterial::iwan;
+  one.cells = 5;
+  expected.layers = {one};
+  EXPECT_EQ(parse_column_scene(sand + dry + dynamic, "s"), expected);
+  EXPECT_EQ(ColumnScene().water.drainage, parse_column_scene(consolidation, "s").water.drainage);
+  EXPECT_EQ(ColumnScene().analysis.steps, parse_column_scene(consolidation, "s").analysis.steps);
+}
+
+TEST(ColumnScene, DefaultSandIsThatOfTheMaterial)
+{
+  const IwanSpec ours;
+  const IwanParameters theirs;
+  EXPECT_EQ(ours.reference_pressure, theirs.reference_pressure);
+  EXPECT_EQ(ours.exponent, theirs.exponent);
+  EXPECT_EQ(ours.strength_ratio, theirs.strength_ratio);
+  EXPECT_EQ(ours.phase_transformation_ratio, theirs.phase_transformation_ratio);
+  EXPECT_EQ(ours.contraction, theirs.contraction);
+  EXPECT_EQ(ours.dilation, theirs.dilation);
+  EXPECT_EQ(ours.fabric_limit, theirs.fabric_limit);
+  EXPECT_EQ(ours.fabric_rate, theirs.fabric_rate);
+  EXPECT_EQ(ours.critical_pressure, theirs.critical_pressure);
+  EXPECT_EQ(ours.elements, theirs.elements);
+}
+
+TEST(ColumnScene, ProfileCountsFromTheBase)
+{
+  const ColumnScene scene = parse_column_scene(several, "s");
+  const SoilProfile profile = soil_profile(scene);
+  ASSERT_EQ(profile.layers.size(), 2u);
+  EXPECT_EQ(profile.layers[0].name, "sand");
+  EXPECT_EQ(profile.layers[0].cells, 12u);
+  EXPECT_EQ(profile.layers[1].name, "crust");
+  EXPECT_EQ(profile.layers[1].cells, 7u);
+  EXPECT_EQ(profile.height(), scene.height());
+  EXPECT_EQ(profile.water.bulk_modulus, 200e6);
+  EXPECT_NEAR(profile.vertical_effective_stress(0), (2 * 1000 + 6 * 900) * 9.81, 1e-9);
+  // all weight is effective without water
+  EXPECT_NEAR(soil_profile(parse_column_scene(smallest, "s")).vertical_effective_stress(0), 5 * 2000 * 9.81, 1e-9);
+}
+
+TEST(ColumnScene, CellsFromTheirSize)
+{
+  const auto cells = [](const char *size) {
+    return parse_column_scene(layer_without_cells + dry + dynamic, "s", {std::string("layer.0.cell_size=") + size})
+        .layers[0]
+        .n_cells();
+  };
+  EXPECT_EQ(cells("0.1 m"), 50u);
+  EXPECT_EQ(cells("0.5 m"), 10u);
+  EXPECT_EQ(cells("0.49 m"), 11u);
+  EXPECT_EQ(cells("50 m"), 1u);
+}
+
+TEST(ColumnScene, TractionAndTimes)
+{
+  const ColumnScene step = parse_column_scene(consolidation, "s");
+  EXPECT_EQ(step.load.traction(-1), 0);
+  EXPECT_EQ(step.load.traction(0), -100e3);
+  EXPECT_EQ(parse_column_scene(consolidation, "s", {"load.direction=x"}).load.traction(3), 100e3);
+  EXPECT_NEAR(parse_column_scene(consolidation, "s", {"load.ramp=2 s"}).load.traction(1), -50e3, 1e-9);
+  EXPECT_NEAR(parse_column_scene(several, "s").load.traction(0.25), -2e3, 1e-9);
+  EXPECT_EQ(ColumnLoad().traction(1), 0);
+
+  const std::vector<double> times = step.analysis.times();
+  ASSERT_EQ(times.size(), 50u);
+  EXPECT_EQ(times.front(), 1);
+  EXPECT_EQ(times.back(), 7200);
+  for (std::size_t i = 2; i < times.size(); ++i)
+    EXPECT_NEAR(times[i] / times[i - 1], times[1] / times[0], 1e-12);
+}
+
+TEST(ColumnScene, OverridesReachLayersAndMotions)
+{
+  const ColumnScene scene = parse_column_scene(
+      several, "s",
+      {"layer.1.thickness=4 m", "layer.0.cells=3", "layer.1.shear_modulus=50MPa", "motion.0.factor=2",
+       "output.depths=['1 m']", "base.kind=rigid", "base={ kind = 'rigid' }", "water.drainage=undrained"});
+  EXPECT_EQ(scene.layers[1].thickness, 4);
+  EXPECT_EQ(scene.layers[0].cells, 3u);
+  EXPECT_EQ(scene.layers[0].cell_size, 0);
+  EXPECT_EQ(scene.layers[1].shear_modulus, 50e6);
+  EXPECT_FALSE(scene.layers[1].shear_velocity);
+  EXPECT_EQ(scene.motions[0].factor, 2);
+  EXPECT_FALSE(scene.motions[0].peak);
+  EXPECT_EQ(scene.output.depths, std::vector<double>{1});
+  EXPECT_EQ(scene.base.kind, BaseKind::rigid);
+}
+
+/// A value the key can hold, with random digits.
+void scramble(const Key &key, const Field &field, std::mt19937_64 &random)
+{
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double low = std::max(key.range.low, 0.0), high = std::min(key.range.high, 1e3);
+  double number = low + (high - low) * (0.1 + 0.8 * unit(random));
+  if (key.dimension == Dimension::angle && key.kind == Kind::quantity)
+    number = 0.01 + unit(random);
+  if (double *const *plain = std::get_if<double *>(&field); plain && **plain != 0)
+    **plain = number;
+  else if (std::optional<double> *const *maybe = std::get_if<std::optional<double> *>(&field); maybe && **maybe)
+    **maybe = number;
+  else if (std::string *const *text = std::get_if<std::string *>(&field))
+    **text = (*text)->empty() ? "" : "a \"b\" \\ c\n\t# \u00b5";
+}
+
+TEST(ColumnScene, RoundTripToTheBit)
+{
+  std::mt19937_64 random(5);
+  for (const std::string &text : {several, smallest, consolidation, sand + undrained + dynamic})
+    for (int repeat = 0; repeat < 50; ++repeat)
+      {
+        ColumnScene scene = parse_column_scene(text, "s");
+        EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
+        for (const Key &key : column_schema().keys)
+          if (key.section() == "layer")
+            for (ColumnLayer &item : scene.layers)
+              scramble(key, key.field(scene, item), random);
+          else if (key.section() == "motion")
+            for (ColumnMotion &item : scene.motions)
+              scramble(key, key.field(scene, item), random);
+          else
+            scramble(key, key.field(scene, scene), random);
+        for (ColumnLayer &item : scene.layers) // what rules bind, and what is not written
+          {
+            item.density = scene.water.density + 1 / 3.0;
+            item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanSpec{};
+            if (item.material == LayerMaterial::iwan)
+              item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;
+          }
+        for (ColumnMotion &item : scene.motions)
+          {
+            item.ramp = item.duration / 3;
+            item.factor = item.peak || item.kind != MotionKind::record ? 1 : item.factor;
+          }
+        if (scene.base.kind == BaseKind::rigid)
+          scene.base = {};
+        if (scene.analysis.kind == AnalysisKind::consolidation)
+          scene.analysis.safety = ColumnAnalysis{}.safety;
+        scene.analysis.last_time = 7 * scene.analysis.first_time;
+        for (double &depth : scene.output.depths)
+          depth = scene.height() / 3;
+        EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
+      }
+}
+
+TEST(ColumnScene, PrintedDefaultsAreAScene)
+{
+  const ColumnScene scene = parse_column_scene(default_column_scene(), "default.toml");
+  EXPECT_EQ(scene.layers.size(), 1u);
+  EXPECT_EQ(scene.motions.size(), 1u);
+  EXPECT_EQ(scene.motions[0].kind, MotionKind::ricker);
+  for (const Key &key : column_schema().keys)
+    EXPECT_NE(default_column_scene().find(std::string(key.name()) + " = "), std::string::npos) << key.path;
+}
+
+TEST(ColumnSchema, EveryKeyIsDescribed)
+{
+  std::map<std::string, unsigned> paths;
+  for (const Key &key : column_schema().keys)
+    {
+      EXPECT_TRUE(paths.try_emplace(key.path, 0).second) << key.path << " twice";
+      EXPECT_TRUE(std::string_view(key.text).ends_with('.')) << key.path;
+      EXPECT_TRUE(key.field) << key.path;
+      EXPECT_TRUE(key.section().empty() || column_schema().find_section(key.section())) << key.path;
+      EXPECT_TRUE(key.presence == Presence::standard || *key.value) << key.path << " needs an example";
+      EXPECT_TRUE((key.kind != Kind::quantity && key.kind != Kind::quantity_list) || *key.unit) << key.path;
+    }
+}
+
+TEST(ColumnManual, EqualsTheFileInDocs)
+{
+  EXPECT_EQ(read_all(ISOSTAT_SOURCE_DIR "/docs/column_scene_reference.md"), column_scene_manual())
+      << "regenerate docs/column_scene_reference.md from column_scene_manual()";
+}
+
+TEST(ColumnScenes, AllParseAndSayWhatTheyShow)
+{
+  int n_scenes = 0;
+  for (const auto &entry : fs::directory_iterator(ISOSTAT_SOURCE_DIR "/apps/scenes/column"))
+    {
+      if (entry.path().extension() != ".toml")
+        continue;
+      SCOPED_TRACE(entry.path().string());
+      ++n_scenes;
+      // Libraries of specimens are made by the user: any file stands for them here.
+      std::ifstream file(entry.path());
+      const std::string text((std::istreambuf_iterator<char>(file)), {});
+      std::vector<std::string> overrides;
+      if (text.find("\n[grains]") != std::string::npos)
+        overrides = {"grains.library=" + entry.path().string()};
+      const ColumnScene scene = read_column_scene(entry.path().string(), overrides);
+      EXPECT_FALSE(scene.title.empty());
+      EXPECT_EQ(scene.output.folder, "results/" + entry.path().stem().string());
+      EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved.toml"), scene);
+    }
+  EXPECT_GE(n_scenes, 4);
+}
+} // namespace
+} // namespace isostat
