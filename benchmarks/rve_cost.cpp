@@ -7,7 +7,7 @@
 //   state     bytes per grain; microseconds of save, restore, pack; milliseconds of the condensed stiffness
 //
 //   rve_cost --grains 1000 --rounds 7
-#include "apps/common/main_guard.hpp"
+#include "apps/common/command_line.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "dem/rve/rve.hpp"
@@ -124,13 +124,13 @@ void measure_element(std::uint64_t grains, int rounds)
 
 int main(int argc, char **argv)
 {
-  CLI::App app{"Cost of a representative volume element beside the box of the element tests"};
+  CommandLine line("Cost of a representative volume element beside the box of the element tests", argc, argv);
   std::uint64_t grains = 1000;
   int rounds = 7, steps = 2000;
-  app.add_option("--grains", grains, "grains of either packing")->check(CLI::Range(100, 20000));
-  app.add_option("--rounds", rounds, "rounds of cell and box in turns")->check(CLI::Range(1, 1000));
-  app.add_option("--steps", steps, "steps of a round")->check(CLI::Range(10, 1000000));
-  return parse_and_run(app, argc, argv, [&] {
+  line.option("--grains", grains, "grains of either packing").within(100, 20000);
+  line.option("--rounds", rounds, "rounds of cell and box in turns").within(1, 1000);
+  line.option("--steps", steps, "steps of a round").within(10, 1000000);
+  return line.run([&] {
     compare_steps(grains, rounds, steps);
     measure_element(grains, rounds);
   });

@@ -9,7 +9,7 @@
 //   Shear increments of 1e-5 at constant volume, in turns; processor time, medians of the rounds.
 //
 //   rve_material_cost --elements 20 --grains 1000 --rounds 5
-#include "apps/common/main_guard.hpp"
+#include "apps/common/command_line.hpp"
 #include "coupling/batch/rve_material.hpp"
 #include "tests/support/periodic.hpp"
 
@@ -189,16 +189,16 @@ void prepare_column(const Snapshot &start, const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App app{"Cost of a material of representative volume elements beside the elements alone"};
+  CommandLine line("Cost of a material of representative volume elements beside the elements alone", argc, argv);
   Options options;
-  app.add_option("--elements", options.elements, "elements of the batch")->check(CLI::Range(1, 1000));
-  app.add_option("--grains", options.grains, "grains of each")->check(CLI::Range(100, 20000));
-  app.add_option("--rounds", options.rounds, "rounds that count")->check(CLI::Range(1, 1000));
-  app.add_option("--increments", options.increments, "increments of a round")->check(CLI::Range(1, 100000));
-  app.add_option("--threads", options.threads, "threads of the batch")->check(CLI::Range(1, 1000));
-  app.add_option("--young", options.young, "contact modulus, Pa")->check(CLI::PositiveNumber);
+  line.option("--elements", options.elements, "elements of the batch").within(1, 1000);
+  line.option("--grains", options.grains, "grains of each").within(100, 20000);
+  line.option("--rounds", options.rounds, "rounds that count").within(1, 1000);
+  line.option("--increments", options.increments, "increments of a round").within(1, 100000);
+  line.option("--threads", options.threads, "threads of the batch").within(1, 1000);
+  line.option("--young", options.young, "contact modulus, Pa").positive();
   MPI_Init(&argc, &argv);
-  const int result = parse_and_run(app, argc, argv, [&] {
+  const int result = line.run([&] {
     const Snapshot start = specimen(options);
     compare(start, options);
     measure_batch(start, options);

@@ -6,7 +6,8 @@
 //
 //   rve_tables rotation --grains 1000
 //   rve_tables twisting --grains 1000 --realisations 3
-#include "apps/common/main_guard.hpp"
+#include "apps/common/command_line.hpp"
+#include "base/error.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
@@ -167,15 +168,17 @@ void print_twisting(std::uint64_t grains, double degrees, std::uint64_t realisat
 
 int main(int argc, char **argv)
 {
-  CLI::App app{"Tables of docs/results/rve.md: rotation of principal stresses, sensitivity to the twisting stiffness"};
+  CommandLine line(
+      "Tables of docs/results/rve.md: rotation of principal stresses, sensitivity to the twisting stiffness", argc,
+      argv);
   std::uint64_t grains = 1000, realisations = 3;
   double degrees = 7;
   std::string table;
-  app.add_option("table", table, "rotation or twisting")->required()->check(CLI::IsMember({"rotation", "twisting"}));
-  app.add_option("--grains", grains, "grains of a packing")->check(CLI::Range(200, 20000));
-  app.add_option("--degrees", degrees, "preparation friction")->check(CLI::Range(0.1, 60.0));
-  app.add_option("--realisations", realisations, "packings of the twisting table")->check(CLI::Range(1, 100));
-  return parse_and_run(app, argc, argv, [&] {
+  line.option("table", table, "rotation or twisting").required().one_of({"rotation", "twisting"});
+  line.option("--grains", grains, "grains of a packing").within(200, 20000);
+  line.option("--degrees", degrees, "preparation friction").within(0.1, 60.0);
+  line.option("--realisations", realisations, "packings of the twisting table").within(1, 100);
+  return line.run([&] {
     const auto begin = std::chrono::steady_clock::now();
     if (table == "twisting")
       print_twisting(grains, degrees, realisations);

@@ -6,7 +6,7 @@
 //   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
 //   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
 //   whole_step specimen.h5 --copies 10           ten copies in a row in one box
-#include "apps/common/main_guard.hpp"
+#include "apps/common/command_line.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/drive/strain_path.hpp"
@@ -109,19 +109,19 @@ void measure(const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App app{"Time per step of constant-volume shear"};
+  CommandLine line("Time per step of constant-volume shear", argc, argv);
   Options options;
-  app.add_option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres")->required();
-  app.add_option("--export", options.exported, "write the packing as text and stop");
-  app.add_option("--copies", options.copies, "run so many copies of the packing, side by side, without contact history")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--rate", options.rate, "axial strain rate, 1/s");
-  app.add_option("--time-step", options.time_step, "s");
-  app.add_option("--friction", options.friction_degrees, "degrees");
-  app.add_option("--damping", options.damping, "local damping");
-  app.add_option("--steps", options.steps, "timed steps per repeat");
-  app.add_option("--warm-up", options.warm_up, "steps before");
-  app.add_option("--threads", options.threads, "threads that share a step");
-  app.add_option("--repeats", options.repeats, "timed blocks");
-  return parse_and_run(app, argc, argv, [&] { measure(options); });
+  line.option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres").required();
+  line.option("--export", options.exported, "write the packing as text and stop");
+  line.option("--copies", options.copies, "run so many copies of the packing, side by side, without contact history")
+      .positive();
+  line.option("--rate", options.rate, "axial strain rate, 1/s");
+  line.option("--time-step", options.time_step, "s");
+  line.option("--friction", options.friction_degrees, "degrees");
+  line.option("--damping", options.damping, "local damping");
+  line.option("--steps", options.steps, "timed steps per repeat");
+  line.option("--warm-up", options.warm_up, "steps before");
+  line.option("--threads", options.threads, "threads that share a step");
+  line.option("--repeats", options.repeats, "timed blocks");
+  return line.run([&] { measure(options); });
 }

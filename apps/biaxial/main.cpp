@@ -11,11 +11,12 @@
 //   biaxial apps/scenes/biaxial/iwan.toml
 //   biaxial apps/scenes/biaxial/grains.toml --set test.steps=100 --threads 2
 #include "apps/biaxial/run.hpp"
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
@@ -62,14 +63,14 @@ int run_with_mpi(const SceneOptions &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"A block of soil in plane strain, confined and compressed: does a shear band form?"};
+  CommandLine line("A block of soil in plane strain, confined and compressed: does a shear band form?", argc, argv);
   SceneOptions options;
-  add_scene_options(app, options,
+  add_scene_options(line, options,
                     {"scene file (TOML); see --print-defaults", "test.steps=100",
                      "threads that share the packings, 0: all the process may use; results do not depend on it"});
-  options.command_line = command_line(argc, argv);
+  options.command_line = line.text();
   bool ready = false; // not after --help
-  const int code = parse_and_run(app, argc, argv, [&] {
+  const int code = line.run([&] {
     if (options.print_defaults)
       fmt::print("{}", default_biaxial_scene());
     else if (options.scene.empty())

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <CLI/CLI.hpp>
+#include "apps/common/command_line.hpp"
+#include "apps/common/result_folder.hpp"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,21 +33,5 @@ struct SceneOptionTexts
   const char *manual = nullptr;          ///< page that --print-manual prints; null: no such option, and no --resume
 };
 
-inline void add_scene_options(CLI::App &app, SceneOptions &o, const SceneOptionTexts &texts)
-{
-  app.add_option("scene", o.scene, texts.scene);
-  app.add_option("-o,--output", o.output, "results folder (default: results/<scene name>)");
-  app.add_option("--set", o.set, std::string("override a key, e.g. --set ") + texts.example + " (repeatable)");
-  app.add_flag("--validate", o.validate, "check the scene, print it with every key, and stop");
-  app.add_flag("--print-defaults", o.print_defaults, "print a commented scene with all keys, units and ranges");
-  auto *overwrite = app.add_flag("--overwrite", o.overwrite, "replace results that are there");
-  if (texts.manual)
-    {
-      app.add_flag("--print-manual", o.print_manual, std::string("print ") + texts.manual + ": every key of a scene");
-      app.add_flag("--resume", o.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
-    }
-  app.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", o.no_figures, "do not draw figures at the end");
-  app.add_option("-t,--threads", o.threads, texts.threads)->check(CLI::Range(0, 1024));
-}
+void add_scene_options(CommandLine &line, SceneOptions &options, const SceneOptionTexts &texts);
 } // namespace isostat

@@ -11,12 +11,13 @@
 //   element_test apps/scenes/quick_cyclic_liquefies.toml
 //   element_test apps/scenes/cyclic_dr64.toml --set motion.quasi_static_tolerance=0.02 --output results/coarse
 //   element_test apps/scenes/cyclic_dr64.toml --resume
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
 #include "apps/common/scene_options.hpp"
 #include "apps/common/test_summary.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
 
@@ -116,18 +117,19 @@ void run_test(const SceneOptions &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{
-      "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic"};
+  CommandLine line(
+      "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic", argc,
+      argv);
   SceneOptions options;
   options.threads = 0;
   add_scene_options(
-      app, options,
+      line, options,
       {"scene file (TOML); see docs/scene_reference.md", "motion.damping=0.3",
        "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
        "results do not depend on it. Give 1 to runs that go side by side",
        "docs/scene_reference.md"});
-  options.command_line = command_line(argc, argv);
-  return parse_and_run(app, argc, argv, [&] {
+  options.command_line = line.text();
+  return line.run([&] {
     if (options.print_defaults)
       fmt::print("{}", default_scene());
     else if (options.print_manual)

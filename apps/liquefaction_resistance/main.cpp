@@ -10,13 +10,14 @@
 //
 //   liquefaction_resistance apps/scenes/quick_cyclic_simple_shear.toml --ratios 0.10,0.13,0.16,0.20,0.25
 //   liquefaction_resistance apps/scenes/quick_cyclic_dr64_periodic.toml --ratios 0.1,0.15,0.2 --realisations 5 --jobs 2
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/liquefaction_resistance/child_runs.hpp"
 #include "apps/liquefaction_resistance/folder_lock.hpp"
 #include "apps/liquefaction_resistance/progress.hpp"
 #include "apps/liquefaction_resistance/report.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <algorithm>
@@ -182,30 +183,28 @@ void find_resistance(Options options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction"};
+  CommandLine line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction", argc, argv);
   Options options;
-  app.add_option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
-      ->required();
-  app.add_option("--ratios", options.ratios,
-                 "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
-                 "triaxial tests")
-      ->required();
-  app.add_option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--cycles", options.plan.cycles, "a run ends after so many (default 100)")
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--reversals-after", options.plan.reversals_after,
-                 "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
-      ->check(CLI::Range(0, 1000));
-  app.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
-      ->check(CLI::Range(1, 1024));
-  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
-  app.add_option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
-  app.add_flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", options.no_figures, "do not draw the figure");
-  options.command_line = command_line(argc, argv);
-  return parse_and_run(app, argc, argv, [&] { find_resistance(options); });
+  line.option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
+      .required();
+  line.option("--ratios", options.ratios,
+              "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
+              "triaxial tests")
+      .required();
+  line.option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
+      .within(1, 1000);
+  line.option("--cycles", options.plan.cycles, "a run ends after so many (default 100)").within(1, 100000);
+  line.option("--reversals-after", options.plan.reversals_after,
+              "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
+      .within(0, 1000);
+  line.option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)").within(1, 1024);
+  line.option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
+  line.option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
+  line.flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
+  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.flag("--no-figures", options.no_figures, "do not draw the figure");
+  options.command_line = line.text();
+  return line.run([&] { find_resistance(options); });
 }
 } // namespace
 

@@ -11,10 +11,11 @@
 //   micromechanics results/quick_cyclic_liquefies
 //   micromechanics results/quick_cyclic_liquefies/snapshots/snapshot_0003.h5 --output one
 //   micromechanics specimens/dr64.h5 --output dr64.csv
-#include "apps/common/main_guard.hpp"
+#include "apps/common/command_line.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/micromechanics/analysis.hpp"
 #include "apps/micromechanics/snapshot_series.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <fmt/format.h>
@@ -186,14 +187,14 @@ void analyse(const Options &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions"};
+  CommandLine line("Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions",
+                   argc, argv);
   Options options;
-  app.add_option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)")->required();
-  app.add_option(
-      "-o,--output", options.output,
-      "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
-  app.add_flag("--no-figures", options.no_figures, "do not draw figures");
-  return parse_and_run(app, argc, argv, [&] { analyse(options); });
+  line.option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)").required();
+  line.option("-o,--output", options.output,
+              "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
+  line.flag("--no-figures", options.no_figures, "do not draw figures");
+  return line.run([&] { analyse(options); });
 }
 } // namespace
 

@@ -9,11 +9,12 @@
 //
 //   rve_replay results/quick_grains_10m/paths/d0
 //   rve_replay results/quick_grains_10m/paths/d0 --rate-floor 0.02 --tolerance 0.002 --output slow
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/rve_replay/replay.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <chrono>
@@ -88,27 +89,23 @@ void run(const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App app{"The packing of one depth of a column, sent the same way again, alone"};
+  CommandLine line("The packing of one depth of a column, sent the same way again, alone", argc, argv);
   Options options;
-  app.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
-  app.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
-  app.add_option("--tolerance", options.changes.tolerance, "another quasi-static tolerance")
-      ->check(CLI::Range(1e-9, 1.0));
-  app.add_option("--rate-floor", options.changes.rate_floor, "another smallest strain rate, 1/s")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--rate-ceiling", options.changes.rate_ceiling, "another largest strain rate, 1/s")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--min-steps", options.changes.min_steps, "time steps of an increment, at least")
-      ->check(CLI::Range(1, 1000000));
-  app.add_option("--damping", options.changes.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
-  app.add_option("--every", options.every, "increments between two rows of micromechanics")
-      ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str();
-  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  app.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  options.command_line = command_line(argc, argv);
-  return parse_and_run(app, argc, argv, [&] {
+  line.option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run").required();
+  line.option("-o,--output", options.output, "results folder (default: RECORD/replay)");
+  line.option("--tolerance", options.changes.tolerance, "another quasi-static tolerance").within(1e-9, 1.0);
+  line.option("--rate-floor", options.changes.rate_floor, "another smallest strain rate, 1/s").positive();
+  line.option("--rate-ceiling", options.changes.rate_ceiling, "another largest strain rate, 1/s").positive();
+  line.option("--min-steps", options.changes.min_steps, "time steps of an increment, at least").within(1, 1000000);
+  line.option("--damping", options.changes.damping, "other local damping").within(0.0, 0.99);
+  line.option("--every", options.every, "increments between two rows of micromechanics")
+      .within(1, 1000000000)
+      .shows_default();
+  line.flag("--overwrite", options.overwrite, "replace results that are there");
+  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  options.command_line = line.text();
+  return line.run([&] {
     catch_signals();
     run(options);
   });

@@ -11,12 +11,13 @@
 //   soil_column apps/scenes/column/uniform_layer.toml
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
@@ -115,17 +116,17 @@ bool print_something(const SceneOptions &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"A column of saturated soil in layers: shaken, loaded, consolidating"};
+  CommandLine line("A column of saturated soil in layers: shaken, loaded, consolidating", argc, argv);
   SceneOptions options;
   add_scene_options(
-      app, options,
+      line, options,
       {"scene file (TOML); see docs/column_scene_reference.md", "analysis.safety=0.5",
        "threads of each rank that share its packings of grains, 0: all the process may use; results do not "
        "depend on it",
        "docs/column_scene_reference.md"});
-  options.command_line = command_line(argc, argv);
+  options.command_line = line.text();
   bool ready = false; // not after --help
-  const int code = parse_and_run(app, argc, argv, [&] { ready = print_something(options); });
+  const int code = line.run([&] { ready = print_something(options); });
   return ready ? run_on_ranks(options) : code;
 }
 } // namespace

@@ -10,10 +10,11 @@
 //   specimen_library apps/scenes/rve_library.toml --realisations 5 --pressures "20 kPa,50 kPa,100 kPa"
 //                    --relative-densities 0.5,0.64 --consolidation k0 --jobs 2 --output results/library.h5 --append
 //   specimen_library --list --output results/library.h5
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/specimen_library/prepare.hpp"
+#include "base/error.hpp"
 #include "base/units.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/io/specimen_library.hpp"
@@ -254,29 +255,30 @@ void run(const Options &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"A library of periodic specimens: realisations at several pressures and densities in one file"};
+  CommandLine line("A library of periodic specimens: realisations at several pressures and densities in one file", argc,
+                   argv);
   Options options;
-  app.add_option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run");
-  app.add_option("-o,--output", options.output, "library (default: results/<scene name>.h5)");
-  app.add_option("-n,--realisations", options.realisations,
-                 "seeds at each pressure and density, from grading.seed of the scene on (default 1)")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}));
-  app.add_option("--pressures", options.pressures,
-                 "instead of specimen.pressure, e.g. \"20 kPa,50 kPa\"; with k0 the vertical stress");
-  app.add_option("--relative-densities", options.relative_densities,
-                 "instead of the density or preparation friction of the scene, e.g. 0.5,0.64");
-  app.add_option("--consolidation", options.consolidation, "instead of specimen.consolidation")
-      ->check(CLI::IsMember({"isotropic", "k0"}));
-  app.add_option("-j,--jobs", options.jobs,
-                 "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
-                 "Specimens do not depend on it")
-      ->check(CLI::Range(0, 1024));
-  app.add_option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
-  app.add_flag("--list", options.list, "print what is in the library, and stop");
-  auto *overwrite = app.add_flag("--overwrite", options.overwrite, "replace a library that is there");
-  app.add_flag("--append", options.append, "add what a library that is there lacks")->excludes(overwrite);
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  return parse_and_run(app, argc, argv, [&] { run(options); });
+  line.option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run");
+  line.option("-o,--output", options.output, "library (default: results/<scene name>.h5)");
+  line.option("-n,--realisations", options.realisations,
+              "seeds at each pressure and density, from grading.seed of the scene on (default 1)")
+      .within(1, 1000000);
+  line.option("--pressures", options.pressures,
+              "instead of specimen.pressure, e.g. \"20 kPa,50 kPa\"; with k0 the vertical stress");
+  line.option("--relative-densities", options.relative_densities,
+              "instead of the density or preparation friction of the scene, e.g. 0.5,0.64");
+  line.option("--consolidation", options.consolidation, "instead of specimen.consolidation")
+      .one_of({"isotropic", "k0"});
+  line.option("-j,--jobs", options.jobs,
+              "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
+              "Specimens do not depend on it")
+      .within(0, 1024);
+  line.option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
+  line.flag("--list", options.list, "print what is in the library, and stop");
+  const auto overwrite = line.flag("--overwrite", options.overwrite, "replace a library that is there");
+  line.flag("--append", options.append, "add what a library that is there lacks").excludes(overwrite);
+  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
+  return line.run([&] { run(options); });
 }
 } // namespace
 

@@ -11,10 +11,11 @@
 //   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml
 //   void_ratio_limits apps/scenes/void_ratio_limits.toml --fall 2 --output results/limits_fall2
 //   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml --set grading.seed=2 --output results/limits_seed2
+#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/main_guard.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
+#include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/measure/summary.hpp"
@@ -204,16 +205,17 @@ void find_limits(const Options &options)
 
 int run_command(int argc, char **argv)
 {
-  CLI::App app{"Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)"};
+  CommandLine line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)",
+                   argc, argv);
   Options options;
-  app.add_option("scene", options.scene, "scene file (TOML) without stages")->required();
-  app.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  app.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
-  app.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
-  app.add_flag("--overwrite", options.overwrite, "replace results that are there");
-  app.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  options.command_line = command_line(argc, argv);
-  return parse_and_run(app, argc, argv, [&] { find_limits(options); });
+  line.option("scene", options.scene, "scene file (TOML) without stages").required();
+  line.option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  line.option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
+  line.option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
+  line.flag("--overwrite", options.overwrite, "replace results that are there");
+  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
+  options.command_line = line.text();
+  return line.run([&] { find_limits(options); });
 }
 } // namespace
 
