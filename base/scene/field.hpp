@@ -19,7 +19,8 @@ struct PercentPair
 };
 using SizeCurve = std::vector<std::pair<double, double>>;
 
-/// A pointer to an enumeration whose values 0, 1, ... are the words of the key in their order.
+/// A pointer to an enumeration whose values 0, 1, ... are the words of the key in their order, or to a variant whose
+/// alternatives are: setting it makes the alternative with its defaults.
 class EnumField
 {
 public:
@@ -27,6 +28,14 @@ public:
   requires std::is_enum_v<Enum> EnumField(Enum *place)
       : place_(place), get_([](const void *p) { return static_cast<std::size_t>(*static_cast<const Enum *>(p)); }),
         set_([](void *p, std::size_t word) { *static_cast<Enum *>(p) = static_cast<Enum>(word); })
+  {}
+  template <class... Kinds>
+  EnumField(std::variant<Kinds...> *place)
+      : place_(place), get_([](const void *p) { return static_cast<const std::variant<Kinds...> *>(p)->index(); }),
+        set_([](void *p, std::size_t word) {
+          static const std::variant<Kinds...> kinds[] = {Kinds{}...};
+          *static_cast<std::variant<Kinds...> *>(p) = kinds[word];
+        })
   {}
 
   std::size_t get() const { return get_(place_); }

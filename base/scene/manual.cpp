@@ -2,7 +2,9 @@
 // The manual of a kind of scene file, from its schema.
 #include "base/scene/writer.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <vector>
 
 namespace isostat
 {
@@ -85,9 +87,19 @@ std::string table(const SceneSchema &schema, const Section *section)
   const Section *kinds_of = section && *section->kind_key ? section : nullptr;
   std::string text = fmt::format("| Key | Kind | Default | Allowed | {}Meaning |\n|---|---|---|---|---|{}\n",
                                  kinds_of ? std::string(section->kinds_title) + " | " : "", kinds_of ? "---|" : "");
+  std::vector<Key> rows; // kinds that share a description share a row
   for (const Key &key : schema.keys)
     if (key.section() == (section ? section->name : ""))
-      text += row(schema, kinds_of, key);
+      {
+        const auto shared =
+            std::find_if(rows.begin(), rows.end(), [&](const Key &other) { return other.reads_as(key); });
+        if (shared == rows.end())
+          rows.push_back(key);
+        else
+          shared->kinds |= key.kinds;
+      }
+  for (const Key &key : rows)
+    text += row(schema, kinds_of, key);
   return text;
 }
 } // namespace

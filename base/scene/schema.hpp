@@ -40,6 +40,7 @@ struct Range
   bool low_excluded = false, high_excluded = false;
 
   bool contains(double x) const; ///< false for infinities and not-a-number
+  bool operator==(const Range &) const = default;
 };
 
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
@@ -60,8 +61,9 @@ struct Key
   const char *text = "";  ///< one sentence
   FieldAccess field = {};
 
-  std::string_view section() const; ///< "motion"; "" at the top of the file
-  std::string_view name() const;    ///< path within the section, "rolling.limit"
+  std::string_view section() const;      ///< "motion"; "" at the top of the file
+  std::string_view name() const;         ///< path within the section, "rolling.limit"
+  bool reads_as(const Key &other) const; ///< the same path, default, range and words: only kinds or fields may differ
   /// @param number  or enumerator of a kind
   template <class KindNumber>
   bool belongs_to(KindNumber number) const

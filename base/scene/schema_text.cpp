@@ -82,6 +82,14 @@ std::string_view Key::name() const
   return whole.substr(whole.find('.') + 1);
 }
 
+bool Key::reads_as(const Key &other) const
+{
+  const auto same = [](const char *a, const char *b) { return std::string_view(a) == b; };
+  return same(path, other.path) && kind == other.kind && dimension == other.dimension && same(unit, other.unit) &&
+         presence == other.presence && same(value, other.value) && range == other.range && same(reason, other.reason) &&
+         choices.data() == other.choices.data() && same(group, other.group) && same(text, other.text);
+}
+
 const Key *SceneSchema::find_key(std::string_view path) const
 {
   for (const Key &key : keys)

@@ -112,8 +112,7 @@ struct Source
     for (const Key &key : schema.keys)
       {
         if (key.section() != (section ? section->name : "") || key.kind == Kind::table || !takes_key(key, kind) ||
-            gave_way(key) || switched_off(key) ||
-            (schema.is_implied && schema.is_implied(key, scene)))
+            gave_way(key) || switched_off(key) || (schema.is_implied && schema.is_implied(key, scene)))
           continue;
         if (const std::string in_file = value(key); !in_file.empty())
           text += fmt::format("{} = {}\n", key.name(), in_file);

@@ -80,5 +80,79 @@ TEST(SceneFragment, IsWrittenAndCheckedAsKeysOfTheScene)
   EXPECT_THROW(parsed("[[body]]\nstiffness = -1\n"), InputError);
   EXPECT_EQ(schema().nearest_path("body.stifness"), "body.stiffness");
 }
+
+struct Circle
+{
+  double radius = 3;
+};
+struct Square
+{
+  double edge = 4, radius = 5; ///< of its corners
+};
+using Shape = std::variant<Circle, Square>;
+struct Drawing
+{
+  std::vector<Shape> shapes;
+};
+
+const std::vector<Key> shape_keys[] = {
+    {{.path = "radius",
+      .value = "3",
+      .text = "Size.",
+      .field = [](Shape &s) -> Field { return &std::get<Circle>(s).radius; }}},
+    {{.path = "edge",
+      .value = "4",
+      .text = "Size.",
+      .field = [](Shape &s) -> Field { return &std::get<Square>(s).edge; }},
+     {.path = "radius", .value = "5", .text = "Of corners.", .field = [](Shape &s) -> Field {
+        return &std::get<Square>(s).radius;
+      }}}};
+constexpr const char *shape_names[] = {"circle", "square"};
+constexpr Key kind_keys[] = {{.path = "shape.kind",
+                              .kind = Kind::choice,
+                              .presence = Presence::required,
+                              .value = "circle",
+                              .choices = shape_names,
+                              .kinds = 3,
+                              .text = "Which.",
+                              .field = [](Drawing &, Shape &s) -> Field { return EnumField(&s); }}};
+
+const SceneSchema &drawing_schema()
+{
+  static const std::vector<Key> of_shapes = interleave(shape_keys);
+  static const KeyTable table{
+      kind_keys, splice("shape", SceneFragment<Shape>{of_shapes}, 0, [](Drawing &, Shape &s) -> Shape & { return s; })};
+  static constexpr Section sections[] = {
+      {.name = "shape", .text = "s", .kind_key = "kind", .items = items_of<&Drawing::shapes>}};
+  static const SceneSchema schema{.keys = table.keys(), .sections = sections, .groups = {}, .dimensions = {}};
+  return schema;
+}
+
+Drawing drawing(const std::string &text)
+{
+  Drawing scene;
+  fill_scene(SceneDocument(drawing_schema(), text, "drawing.toml", {}), &scene);
+  return scene;
+}
+
+TEST(SceneFragment, OfAVariantBelongsToItsAlternative)
+{
+  const Drawing scene = drawing("[[shape]]\nkind = \"square\"\nedge = 9\n[[shape]]\nkind = \"circle\"\n");
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_EQ(std::get<Square>(scene.shapes[0]).edge, 9);
+  EXPECT_EQ(std::get<Square>(scene.shapes[0]).radius, 5);
+  EXPECT_EQ(std::get<Circle>(scene.shapes[1]).radius, 3);
+  EXPECT_EQ(write_scene(drawing_schema(), &scene), "\n[[shape]]\nkind = \"square\"\nedge = 9\nradius = 5\n\n"
+                                                   "[[shape]]\nkind = \"circle\"\nradius = 3\n");
+  EXPECT_THROW(drawing("[[shape]]\nkind = \"circle\"\nedge = 9\n"), InputError);
+}
+
+TEST(SceneFragment, KindsInterleave)
+{
+  std::string paths;
+  for (const Key &key : drawing_schema().keys)
+    paths += std::string(key.path) + " ";
+  EXPECT_EQ(paths, "shape.kind shape.edge shape.radius shape.radius ");
+}
 } // namespace
 } // namespace isostat
