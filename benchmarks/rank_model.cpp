@@ -145,7 +145,7 @@ std::vector<std::vector<std::size_t>> orders_of(const std::vector<double> &mean,
 Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const Options &o)
 {
   constexpr double forget = 0.1; // as RveMaterial
-  constexpr std::size_t row_bytes = 11 * sizeof(double);
+  constexpr std::size_t row_bytes = 9 * sizeof(double);
   const std::size_t n = block.n_packings();
   std::vector<double> seconds(n), mean(n, 1.0);
   Owners owners = longest_first(mean, ranks);

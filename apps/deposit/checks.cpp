@@ -112,8 +112,6 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
                                       "\"library.h5\", made by specimen_library.");
   if (scene.grains.rate_floor > scene.grains.rate_ceiling)
     document.refuse("grains.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
-  if (!scene.grains.path_depths.empty() && scene.grains.elastic_start > 0)
-    document.refuse("grains.path_depths", "wants packings that run from the start. Remove it, or elastic_start.");
   check_depths(document, scene, "grains.path_depths", scene.grains.path_depths);
   check_depths(document, scene, "grains.snapshot_depths", scene.grains.snapshot_depths);
 }

@@ -220,7 +220,6 @@ struct ColumnGrains
   std::vector<double> snapshot_depths;       ///< below the surface; whole packings are stored there, m
   double snapshot_interval = 1;              ///< s
   std::vector<double> path_depths;           ///< below the surface; whole strain histories are stored there, m
-  double elastic_start = 0;                  ///< error of stress up to which packings are elastic bodies; 0: never [-]
 
   bool operator==(const ColumnGrains &) const = default;
 };

@@ -304,10 +304,6 @@ constexpr Key keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.grains.min_steps; }},
   {.path = "grains.damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
    .field = [](ColumnScene &s) -> Field { return &s.grains.damping; }},
-  {.path = "grains.elastic_start", .value = "0", .range = {0, 1, false, true},
-   .text = "A packing is an elastic body of its own stiffness until the stress would be wrong by this part of its change; then "
-           "it is started and runs what it has missed. 0: all run from the start.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.elastic_start; }},
   {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",

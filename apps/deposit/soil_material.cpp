@@ -28,7 +28,6 @@ RveMaterialSettings grains_settings(const ColumnScene &scene, int threads)
   settings.undrained = scene.water.drainage == Drainage::undrained;
   settings.min_steps = spec.min_steps;
   settings.realisations = spec.realisations;
-  settings.elastic_start = spec.elastic_start;
   settings.threads = threads;
   return settings;
 }

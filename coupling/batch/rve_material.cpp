@@ -17,9 +17,8 @@ namespace isostat
 {
 namespace
 {
-constexpr std::size_t row_width = 11;  ///< stress (6), seconds, steps, failed, seconds that will not come again, asleep
-constexpr double sleeping_cost = 1e-6; ///< s: all are alike, so that sleepers move for nothing but others' costs
-constexpr double forget = 0.1;         ///< weight of the last trial in the running mean of costs
+constexpr std::size_t row_width = 9; ///< stress (6), seconds, steps, failed
+constexpr double forget = 0.1;       ///< weight of the last trial in the running mean of costs
 
 double seconds_since(std::chrono::steady_clock::time_point begin)
 {
@@ -33,8 +32,6 @@ void RveMaterialSettings::check() const
     throw InputError("rve: realisations = 0; a point needs at least one element");
   if (halvings > 20)
     throw InputError(fmt::format("rve: halvings = {}; at most 20 (a million parts)", halvings));
-  if (!(elastic_start >= 0 && elastic_start < 1))
-    throw InputError(fmt::format("rve: elastic_start = {:g}; must be >= 0 and below 1", elastic_start));
   if (threads < 0)
     throw InputError(fmt::format("rve: threads = {}; must be >= 0", threads));
   if (!(balance.threshold >= 1 && balance.min_gain >= 0) || balance_interval == 0)
@@ -59,7 +56,6 @@ RveMaterial::RveMaterial(std::size_t n_points, const RveMaterialSettings &settin
   increments_.assign(n_points, Gradient{});
   committed_.assign(n, Stress{});
   trial_.assign(n, Stress{});
-  asleep_.assign(n, 0);
   rows_.assign(row_width * n, 0.0);
   waves_.resize(n);
   skeleton_.resize(n);
@@ -79,7 +75,6 @@ RveMaterial::RveMaterial(const std::vector<Snapshot> &specimens, const RveMateri
                                  settings.realisations));
   exchange_.stop_together(
       for_mine([&](std::size_t id) { elements_[id] = make_element(Rve(specimens[id], element_settings())); }));
-  let_sleep();
   start();
 }
 
@@ -118,19 +113,13 @@ std::optional<Exchange::Failure> RveMaterial::for_mine(const std::function<void(
 /// Elements have their stress: what is known of them on all ranks starts here.
 void RveMaterial::start()
 {
-  constexpr std::size_t width = 7;
+  constexpr std::size_t width = 6;
   std::vector<double> rows(width * n_elements(), 0.0);
   for (std::size_t id : order_)
-    {
-      std::ranges::copy(to_stress(elements_[id]->stress()), &rows[width * id]);
-      rows[width * id + 6] = elements_[id]->asleep();
-    }
+    std::ranges::copy(to_stress(elements_[id]->rve().stress()), &rows[width * id]);
   exchange_.share(all_, owners_, width, rows);
   for (std::size_t id = 0; id < n_elements(); ++id)
-    {
-      std::copy_n(&rows[width * id], 6, committed_[id].begin());
-      asleep_[id] = rows[width * id + 6] != 0;
-    }
+    std::copy_n(&rows[width * id], 6, committed_[id].begin());
   std::ranges::fill(waves_, Wave{});
   skeleton_known_ = has_trial_ = false;
   commits_ = 0;
@@ -165,8 +154,6 @@ void RveMaterial::run_element(std::size_t id, const Gradient &increment)
       reason = error.what();
     }
   row[6] = seconds_since(begin);
-  row[9] = elements_[id]->replay_seconds();
-  row[10] = elements_[id]->asleep();
   if (row[8] != 0)
     {
 #pragma omp critical(isostat_rve_material_failure)
@@ -253,8 +240,7 @@ void RveMaterial::count_costs()
   for (std::size_t id = 0; id < n_elements(); ++id)
     {
       const double seconds = rows_[row_width * id + 6];
-      const double again = rows_[row_width * id + 10] != 0 ? sleeping_cost : seconds - rows_[row_width * id + 9];
-      costs_[id] = cost_.trials == 0 ? again : (1 - forget) * costs_[id] + forget * again;
+      costs_[id] = cost_.trials == 0 ? seconds : (1 - forget) * costs_[id] + forget * seconds;
       loads[owners_[id]] += seconds;
       cost_.rve_seconds += seconds;
       steps += rows_[row_width * id + 7];
@@ -273,8 +259,6 @@ void RveMaterial::commit()
   if (failure)
     throw RunFailure(failure->message);
   std::swap(committed_, trial_);
-  for (std::size_t id = 0; id < n_elements(); ++id)
-    asleep_[id] = rows_[row_width * id + 10] != 0;
   ++commits_;
   mark_due();
   if (commits_ % settings_.balance_interval == 0)

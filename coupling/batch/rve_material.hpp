@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "coupling/batch/exchange.hpp"
-#include "coupling/element/sleeping_element.hpp"
+#include "coupling/element/rve_element.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 #include "fem/material/material.hpp"
 
@@ -23,7 +23,6 @@ struct RveMaterialSettings
   std::size_t realisations = 1; ///< elements of a point; its stress is their mean
   std::uint64_t min_steps = 20; ///< time steps that an increment takes at least, see RveSettings
   unsigned halvings = 6;        ///< a rejected increment is taken in up to 2^halvings parts
-  double elastic_start = 0;     ///< tolerance of find_elastic_start(); 0: elements never sleep [-]
   int threads = 1;              ///< that share the elements of a rank; 0: as many as the process may use
   BalanceRule balance;
   std::uint64_t balance_interval = 100;    ///< commits between two looks at the balance
@@ -51,9 +50,6 @@ struct RveMaterialCost
 /// All calls are collective: every rank of the communicator calls them in the same order with the same arguments, and
 /// gets the same answer to the bit, whatever the number of ranks and threads, and wherever elements live. Placement
 /// follows the measured cost of each element (running mean of the last ten trials or so), known to all ranks.
-///
-/// With RveMaterialSettings::elastic_start elements sleep from their stress in situ until they are strained too far,
-/// see SleepingElement; what they are from then on does not depend on it.
 ///
 /// An element that rejects an increment in all its parts stops all ranks with one and the same RunFailure; all elements
 /// are back at the committed state then. A trial that is committed costs no copy of an element, see RveElement.
@@ -96,8 +92,8 @@ public:
 
   /// Standard deviation of the stress over the realisations of each point, at the committed state; 0 for one. Pa
   void scatter(std::span<Stress> deviations) const;
-  /// An element for micromechanics and figures, as the last trial left it, or as committed if there is none, or its
-  /// initial packing while it sleeps; null where it lives on another rank.
+  /// An element for micromechanics and figures, as the last trial left it, or as committed if there is none;
+  /// null where it lives on another rank.
   const Rve *element(std::size_t point, std::size_t realisation = 0) const;
 
   /// How its elements are run.
@@ -118,7 +114,6 @@ public:
   void place(const Owners &owners);
   const Owners &owners() const { return owners_; }
   const RveMaterialCost &cost() const { return cost_; }
-  std::size_t sleepers() const; ///< elements that are asleep at the committed state, on all ranks
 
 private:
   RveMaterial(std::size_t n_points, const RveMaterialSettings &settings, MPI_Comm comm);
@@ -126,10 +121,8 @@ private:
   std::size_t point_of(std::size_t id) const { return id / settings_.realisations; }
   bool is_mine(std::size_t id) const { return owners_[id] == exchange_.rank(); }
   std::string label(std::size_t id) const;
-  std::unique_ptr<SleepingElement> make_element(Rve rve) const;
-  std::unique_ptr<SleepingElement> unpack_element(std::span<const std::byte> bytes) const;
-  bool may_sleep() const { return settings_.elastic_start > 0; }
-  void let_sleep();
+  std::unique_ptr<RveElement> make_element(Rve rve) const;
+  std::unique_ptr<RveElement> unpack_element(std::span<const std::byte> bytes) const;
   std::optional<Exchange::Failure> for_mine(const std::function<void(std::size_t)> &work) const;
   void run_element(std::size_t id, const Gradient &increment);
   void stop_if_failed();
@@ -150,13 +143,12 @@ private:
   Exchange exchange_;
   std::vector<SpecimenRequest> requests_; ///< empty: elements were given as they are
   Owners owners_;
-  std::vector<std::size_t> all_, order_;                   ///< every id; mine, dearest first
-  std::vector<double> costs_;                              ///< s per trial, of each element
-  std::vector<std::unique_ptr<SleepingElement>> elements_; ///< null where it is not mine
+  std::vector<std::size_t> all_, order_;              ///< every id; mine, dearest first
+  std::vector<double> costs_;                         ///< s per trial, of each element
+  std::vector<std::unique_ptr<RveElement>> elements_; ///< null where it is not mine
   bool ready_ = false, has_trial_ = false;
   std::vector<Gradient> increments_;      ///< of each point in the last trial
   std::vector<Stress> committed_, trial_; ///< of each element
-  std::vector<char> asleep_;              ///< each element at the committed state
   std::vector<double> rows_;              ///< what a trial gave, shared between ranks
   std::map<std::size_t, std::string> reasons_;
   std::uint64_t commits_ = 0;

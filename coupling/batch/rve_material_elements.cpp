@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Single elements: how they are made, and which of them sleep.
+// Single elements.
 #include "coupling/batch/rve_material.hpp"
-
-#include <algorithm>
 
 namespace isostat
 {
@@ -15,31 +13,14 @@ RveSettings RveMaterial::element_settings() const
   return settings;
 }
 
-std::unique_ptr<SleepingElement> RveMaterial::make_element(Rve rve) const
+std::unique_ptr<RveElement> RveMaterial::make_element(Rve rve) const
 {
-  return std::make_unique<SleepingElement>(std::move(rve), settings_.undrained, settings_.halvings, may_sleep());
+  return std::make_unique<RveElement>(std::move(rve), settings_.undrained, settings_.halvings);
 }
 
-std::unique_ptr<SleepingElement> RveMaterial::unpack_element(std::span<const std::byte> bytes) const
+std::unique_ptr<RveElement> RveMaterial::unpack_element(std::span<const std::byte> bytes) const
 {
-  return std::make_unique<SleepingElement>(
-      SleepingElement::unpack(bytes, element_settings(), settings_.undrained, settings_.halvings, may_sleep()));
-}
-
-/// Elements in their initial state.
-void RveMaterial::let_sleep()
-{
-  if (!may_sleep())
-    return;
-  exchange_.stop_together(for_mine([&](std::size_t id) {
-    elements_[id]->sleep(
-        find_elastic_start(elements_[id]->rve(), element_settings(), settings_.undrained, settings_.elastic_start));
-  }));
-}
-
-std::size_t RveMaterial::sleepers() const
-{
-  return static_cast<std::size_t>(std::ranges::count_if(asleep_, [](char asleep) { return asleep != 0; }));
+  return std::make_unique<RveElement>(Rve::unpack(bytes, element_settings()), settings_.undrained, settings_.halvings);
 }
 
 const Rve *RveMaterial::element(std::size_t point, std::size_t realisation) const

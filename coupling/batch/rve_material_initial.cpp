@@ -155,7 +155,6 @@ void RveMaterial::set_initial_stress(std::span<const Stress> effective)
     check_reached(element->rve().stress(), to_matrix(effective[point_of(id)]), settings_.in_situ.path);
     elements_[id] = std::move(element);
   }));
-  let_sleep();
   start();
 }
 } // namespace isostat

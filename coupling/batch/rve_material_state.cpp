@@ -10,7 +10,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t version = 1, version_with_sleepers = 2;
+constexpr std::uint64_t version = 1;
 } // namespace
 
 std::vector<std::byte> RveMaterial::pack() const
@@ -20,8 +20,7 @@ std::vector<std::byte> RveMaterial::pack() const
   exchange_.stop_together(for_mine([&](std::size_t id) { packed[id] = elements_[id]->pack(); }));
   ByteWriter out;
   out.text(name());
-  out.count(may_sleep() ? version_with_sleepers : version), out.count(n_points_), out.count(settings_.realisations),
-      out.count(settings_.undrained);
+  out.count(version), out.count(n_points_), out.count(settings_.realisations), out.count(settings_.undrained);
   out.count(commits_);
   for (std::size_t id = 0; id < n_elements(); ++id)
     {
@@ -38,7 +37,7 @@ void RveMaterial::unpack(std::span<const std::byte> bytes)
 {
   ByteReader in(bytes, name());
   in.expect(in.text(), name());
-  in.expect(in.count(), may_sleep() ? version_with_sleepers : version, "as their version (1, with elastic_start 2)");
+  in.expect(in.count(), version, "as their version");
   in.expect(in.count(), n_points_, "points");
   in.expect(in.count(), settings_.realisations, "realisations");
   in.expect(in.count(), settings_.undrained, "as their drainage (1 is undrained)");
@@ -53,7 +52,7 @@ void RveMaterial::unpack(std::span<const std::byte> bytes)
       blocks[id] = in.block();
     }
   in.expect_end();
-  std::vector<std::unique_ptr<SleepingElement>> elements(n_elements());
+  std::vector<std::unique_ptr<RveElement>> elements(n_elements());
   exchange_.stop_together(for_mine([&](std::size_t id) { elements[id] = unpack_element(blocks[id]); }));
   elements_ = std::move(elements);
   start();

@@ -46,7 +46,7 @@ void RveMaterial::find_stiffnesses() const
     if (!has_trial_)
       elements_[id]->rollback();
     Eigen::Map<Stiffness> row(&rows[n_entries * id]);
-    row = elements_[id]->stiffness();
+    row = elements_[id]->rve().stiffness();
   }));
   exchange_.share(all_, owners_, n_entries, rows);
   for (std::size_t id = 0; id < n_elements(); ++id)
@@ -101,7 +101,8 @@ void RveMaterial::wave_moduli(std::span<WaveModuli> moduli) const
       exchange_.stop_together(for_mine([&](std::size_t id) {
         if (!waves_[id].due)
           return;
-        const WaveModuli m = max_wave_moduli(elements_[id]->committed_stiffness());
+        const WaveModuli m =
+            max_wave_moduli(elements_[id]->at_committed([](const Rve &rve) { return Stiffness(rve.stiffness()); }));
         found[2 * id] = m.p, found[2 * id + 1] = m.s;
       }));
       for (std::size_t id : due)

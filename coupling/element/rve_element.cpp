@@ -19,11 +19,11 @@ Mat3 half_of(const Mat3 &h)
 }
 
 /// An element in the same state that has cost nothing yet.
-Rve newborn(const Rve &rve, const RveState &state)
+Rve newborn(const Rve &rve)
 {
   RveSettings plain; // bytes hold no settings
   Rve fresh(rve.assembly().snapshot(), plain);
-  fresh.restore(state);
+  fresh.restore(rve.save());
   return fresh;
 }
 } // namespace
@@ -100,16 +100,6 @@ void RveElement::keep_copy()
 
 std::vector<std::byte> RveElement::pack()
 {
-  return at_committed([&](const Rve &rve) { return pack_of(rve.save()); });
-}
-
-std::vector<std::byte> RveElement::pack_of(const RveState &state) const { return newborn(rve_, state).pack(); }
-
-void RveElement::restart(const RveState &state)
-{
-  rve_.restore(state);
-  trial_.clear();
-  went_back_ = false;
-  keep_copy();
+  return at_committed([](const Rve &rve) { return newborn(rve).pack(); });
 }
 } // namespace isostat

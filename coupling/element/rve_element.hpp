@@ -57,10 +57,6 @@ public:
   std::vector<std::byte> pack();
   /// The same with the cost, for a move to another rank.   @pre no trial is pending
   std::vector<std::byte> pack_to_move() const { return rve_.pack(); }
-  /// The bytes of this element in another state of its own.
-  std::vector<std::byte> pack_of(const RveState &state) const;
-  /// A state that was committed once is the committed one again; trial and way back are forgotten.
-  void restart(const RveState &state);
 
 private:
   bool advance(const Mat3 &h, unsigned halvings, ElementTrial &result);

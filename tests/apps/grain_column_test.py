@@ -310,7 +310,6 @@ class Mistakes(GrainColumnTest):
                  "does not belong"),
                 (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "specimen_library"),
                 ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths", "entry 1 is 4 m"),
-                ('path_depths', 'elastic_start = 0.1\npath_depths', "path_depths", "elastic_start"),
                 ('depths = ["0.5 m", "2 m"]', 'depths = ["4 m"]', "output.depths", "4 m"),
                 ('drainage = "undrained"', 'drainage = "coupled"', "degree = 2")):
             self.assertIn(old, text)

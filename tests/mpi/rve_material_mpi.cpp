@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "tests/coupling/rve_column.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -112,30 +111,6 @@ void run_and_move(const RveMaterialSettings &settings)
   expect(common_hash(run(still, 24, 30)) == common_hash(run(resumed, 24, 30)), "unpacked elements go another way");
 }
 
-/// Elements that sleep, wake up one after the other, and move.
-void wake_up(RveMaterialSettings settings)
-{
-  settings.elastic_start = 0.1;
-  settings.balance_interval = 4;
-  RveMaterial still(specimens(), settings, MPI_COMM_WORLD), moved(specimens(), settings, MPI_COMM_WORLD);
-  std::vector<Stress> a(n_points), b(n_points);
-  for (int k = 0; k < 20; ++k)
-    {
-      const auto increments = test::column_increments(n_points, k, 1e-6 * std::pow(1.6, k));
-      still.trial(increments, a), still.commit();
-      moved.trial(increments, b), moved.commit();
-      expect(common_hash(a) == common_hash(b), "a move changes sleepers");
-      if (k % 5 == 4)
-        {
-          moved.place(next_place(moved.owners()));
-          RveMaterial resumed(specimens(), settings, MPI_COMM_WORLD);
-          resumed.unpack(still.pack());
-          expect(common_hash(resumed.pack()) == common_hash(moved.pack()), "sleepers unpack to other bytes");
-          say(fmt::format("asleep {} of {}           {:016x}", still.sleepers(), n_points, common_hash(a)));
-        }
-    }
-}
-
 /// One element fails on its rank: all ranks stop with one message, and can go on.
 void fail_on_purpose(const RveMaterialSettings &settings)
 {
@@ -205,7 +180,6 @@ int main(int argc, char **argv)
   RveMaterialSettings settings;
   settings.threads = std::atoi(argv[1]);
   run_and_move(settings);
-  wake_up(settings);
   fail_on_purpose(settings);
   start_in_situ(settings, argv[2]);
   MPI_Finalize();
