@@ -2,15 +2,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what Isostat needs on Debian 12. Run it as often as you like: nothing happens, and the network is not
 # touched, when every package is there.
+#
+#   scripts/setup.sh            what building, testing and drawing need
+#   scripts/setup.sh --gates    and what scripts/check_all.sh needs
 set -euo pipefail
 
 packages=(
-  git g++ cmake ninja-build pkg-config clang-format
+  git g++ cmake ninja-build pkg-config
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev libhwy-dev librandom123-dev
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev
   libdeal.ii-dev libpetsc-real-dev openmpi-bin
   python3 python3-matplotlib python3-numpy python3-h5py
 )
+if [[ "${1:-}" == --gates ]]; then
+  packages+=(clang-format clang-tidy)
+fi
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
 

@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from support import AppTest, contents
+from support import AppTest, PATIENCE, contents
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
                   OMP_NUM_THREADS="1")
@@ -69,7 +69,7 @@ class ColumnTest(AppTest):
 
     def run_on_ranks(self, n, *arguments):
         command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120, check=False)
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
 
     def assert_same_files(self, one, other):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""

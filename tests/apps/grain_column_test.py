@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 from column_support import NO_FILES, ColumnTest, history, settings
-from support import contents, main
+from support import PATIENCE, contents, main
 
 SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
 GRAINS = """title = "grains"
@@ -117,7 +117,7 @@ class Bits(GrainColumnTest):
         last, begin = self.folder / "parts/checkpoint/last.h5", time.time()
         with subprocess.Popen(self.command_on_ranks(n, self.scene, "-o", "parts", "-q", *more), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-            while process.poll() is None and time.time() < begin + 60:
+            while process.poll() is None and time.time() < begin + 60 * PATIENCE:
                 with contextlib.suppress(FileNotFoundError):
                     if last.stat().st_mtime > begin:
                         break
@@ -126,7 +126,7 @@ class Bits(GrainColumnTest):
             with contextlib.suppress(ProcessLookupError, FileNotFoundError):
                 ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
                 os.kill(int(ranks.split()[-1]), with_signal)
-            _, message = process.communicate(timeout=60)
+            _, message = process.communicate(timeout=60 * PATIENCE)
         return process.returncode, message
 
     def test_kills_and_other_ranks(self):
@@ -218,7 +218,7 @@ class Failures(GrainColumnTest):
         run = ("-o", "disk/out", "-q")
         with subprocess.Popen(self.command_on_ranks(n, self.scene, *run, "--overwrite"), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-            last, end = disk / "out/checkpoint/last.h5", time.time() + 60
+            last, end = disk / "out/checkpoint/last.h5", time.time() + 60 * PATIENCE
             while process.poll() is None and time.time() < end and not last.exists():
                 time.sleep(0.002)
             with open(disk / "filler", "wb", buffering=0) as filler:
@@ -227,7 +227,7 @@ class Failures(GrainColumnTest):
                         filler.write(b"\0" * 4096)
                 except OSError as error:
                     self.assertEqual(error.errno, errno.ENOSPC)
-            _, message = process.communicate(timeout=60)
+            _, message = process.communicate(timeout=60 * PATIENCE)
         self.assertEqual(process.returncode, 1, message)
         self.assertEqual(message.count("failed: "), 1, message)
         self.assertRegex(message, r"failed: step \d+ \(t = [\d.]+ s\): disk/out/.*free space")

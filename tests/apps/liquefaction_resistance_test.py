@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 
-from support import AppTest, MONOTONIC, contents, main, tiny_scene
+from support import AppTest, MONOTONIC, PATIENCE, contents, main, tiny_scene
 
 STAGE = '[[stage]]\nkind = "{}"\nuntil = {{ strain = 0.05 }}\nliquefaction_ratio = 0.3\n'
 CELL = 'domain = "periodic-cell"\npreparation_friction = "14 deg"'
@@ -94,11 +94,11 @@ class LiquefactionResistance(AppTest):
         arguments = (self.scene, "--ratios", "0.1,0.15,0.25", "-n", "1", "--cycles", "15", "--no-figures", "-o")
         with subprocess.Popen(self.command("liquefaction_resistance", *arguments, "out"), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            end = time.time() + 60
+            end = time.time() + 60 * PATIENCE
             while "csr0.25_seed1" not in self.finish_times() and time.time() < end:
                 time.sleep(0.005)
             process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=60), 130)
+            self.assertEqual(process.wait(timeout=60 * PATIENCE), 130)
         self.assertEqual(self.table()[0]["status"], "liquefied")
         self.assertEqual(self.table()[-1]["status"], "missing")
         before = self.finish_times()

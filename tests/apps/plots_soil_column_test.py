@@ -20,7 +20,7 @@ from column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothe
 from column_results import Column, quantity  # noqa: E402
 from plots_column_grains import first  # noqa: E402
 from plots_column_soil import outline  # noqa: E402
-from support import main  # noqa: E402
+from support import PATIENCE, main  # noqa: E402
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
 
@@ -115,7 +115,7 @@ class Figures(unittest.TestCase):
 
     def draw(self, folder, *arguments):
         return subprocess.run([sys.executable, str(SCRIPTS / "plots_soil_column.py"), str(folder), *arguments],
-                              capture_output=True, text=True, timeout=120, check=False)
+                              capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
 
     def expect(self, folder, *names):
         result = self.draw(folder)

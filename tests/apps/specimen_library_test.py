@@ -7,7 +7,7 @@ import time
 
 import h5py
 
-from support import AppTest, main, tiny_scene
+from support import AppTest, PATIENCE, main, tiny_scene
 
 # a narrow grading, so that so few grains fill a cell wider than two of the largest
 CELL = 'domain = "periodic-cell"\npressure = "50 kPa"\n'
@@ -98,11 +98,11 @@ class Library(AppTest):
         command = self.command("specimen_library", scene, *NARROW, "-n", "40", "-j", "1", "-o", "library.h5", "-q")
         with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                               text=True) as process:
-            end = time.time() + 60
+            end = time.time() + 60 * PATIENCE
             while len(list(self.cache.glob("*.h5"))) < 2 and time.time() < end and process.poll() is None:
                 time.sleep(0.005)
             process.send_signal(signal.SIGINT)
-            _, message = process.communicate(timeout=60)
+            _, message = process.communicate(timeout=60 * PATIENCE)
         self.assertEqual(process.returncode, 130, message)
         self.assertIn("of 40 specimens are in", message)
         self.assertFalse((self.folder / "library.h5").exists())

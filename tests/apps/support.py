@@ -4,6 +4,7 @@
 Every test script takes the folder of the executables as its first argument.
 """
 import contextlib
+import os
 import pathlib
 import shutil
 import signal
@@ -17,6 +18,8 @@ import h5py
 import numpy as np
 
 BIN = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
+
+PATIENCE = float(os.environ.get("ISOSTAT_PATIENCE", "1"))  # sanitizers make programs slower
 
 TINY = """title = "tiny"
 [grading]
@@ -95,7 +98,7 @@ class AppTest(ToleranceTest):
 
     def run_app(self, program, *arguments):
         return subprocess.run(self.command(program, *arguments), cwd=self.folder, capture_output=True, text=True,
-                              timeout=120, check=False)
+                              timeout=120 * PATIENCE, check=False)
 
     def run_test(self, *arguments):
         """element_test without figures, which are not the matter here."""
@@ -120,7 +123,7 @@ class AppTest(ToleranceTest):
         with subprocess.Popen(self.command(program, *arguments, "--no-figures", "--quiet"), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             path, newer = started_file
-            while process.poll() is None and time.time() < begin + 60:
+            while process.poll() is None and time.time() < begin + 60 * PATIENCE:
                 with contextlib.suppress(FileNotFoundError):
                     if path.stat().st_mtime >= begin or not newer:
                         break
@@ -128,7 +131,7 @@ class AppTest(ToleranceTest):
             time.sleep(wait)
             with contextlib.suppress(ProcessLookupError):
                 process.send_signal(with_signal)
-            return process.wait(timeout=60)
+            return process.wait(timeout=60 * PATIENCE)
 
     def assert_same_h5(self, one, other):
         """Same items, same bytes in all datasets and attributes."""

@@ -8,13 +8,14 @@ import os
 import subprocess
 import sys
 
+TIME_LIMIT = 200 * float(os.environ.get("ISOSTAT_PATIENCE", "1"))  # s
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
                    OPENBLAS_NUM_THREADS="1")
 
 
 def numbers_on(ranks, program):
     """Cells of the smallest part, and the lines of numbers a program prints."""
-    run = subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), program], env=ENVIRONMENT, timeout=200,
+    run = subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), program], env=ENVIRONMENT, timeout=TIME_LIMIT,
                          capture_output=True, text=True, check=False)
     assert run.returncode == 0, f"{ranks} ranks: exit code {run.returncode}\n{run.stderr[-2000:]}"
     lines = [line.split() for line in run.stdout.splitlines()]

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The gates beside the tests of the release preset. All are tried, and the last lines say what each found.
+#
+#   scripts/check_all.sh             the whole tree, with fem, coupling and MPI: more than an hour on two cores
+#   scripts/check_all.sh --grains    base and dem alone, as continuous integration does: some 20 minutes
+#
+#   format      clang-format on every file
+#   tidy        clang-tidy (.clang-tidy) on the libraries and programs; tests are left out, as the macros of GoogleTest
+#               break a dozen of its rules in each of them
+#   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions, warnings being errors;
+#               of the grains the unit and hard tests, of the whole tree all
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=asan
+folders=(base dem fem coupling apps)
+tidy_options=()
+if [[ "${1:-}" == --grains ]]; then
+  preset=asan-grains
+  folders=(base dem)
+  tidy_options=(-DISOSTAT_FEM=OFF)
+fi
+
+format() {
+  git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+}
+
+# One process for each file. What clang-tidy writes on its error output is how many warnings of others it has left out.
+tidy() {
+  cmake --preset tidy "${tidy_options[@]}" >/dev/null &&
+    git ls-files "${folders[@]/%//*.cpp}" |
+    xargs --max-procs="$(nproc)" --max-args=1 clang-tidy --quiet -p build/tidy 2>/dev/null
+}
+
+sanitizers() {
+  cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$(nproc)" &&
+    ctest --preset "$preset" --parallel "$(nproc)"
+}
+
+failed=0
+verdicts=()
+gate() {
+  echo "== $1"
+  local start=$SECONDS verdict=passed
+  "$1" || { verdict=FAILED; failed=1; }
+  verdicts+=("$1: $verdict after $(((SECONDS - start + 30) / 60)) min")
+}
+
+scripts/setup.sh --gates || exit 1
+gate format
+gate tidy
+gate sanitizers
+printf 'check_all: %s\n' "${verdicts[@]}"
+exit $failed
