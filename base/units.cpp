@@ -173,7 +173,7 @@ std::string format_angle(double tangent)
   for (int digits = 1; digits <= 17; ++digits)
     {
       const double rounded = to_double(scan_decimal(fmt::format("{:.{}g}", degrees, digits)), 0);
-      if (const std::string text = number_text(rounded) + " deg"; comes_back(text))
+      if (std::string text = number_text(rounded) + " deg"; comes_back(text))
         return text;
     }
   for (double below = degrees, above = degrees; above - degrees < 1e-14 * degrees;)
@@ -181,7 +181,7 @@ std::string format_angle(double tangent)
       below = std::nextafter(below, 0.0);
       above = std::nextafter(above, 90.0);
       for (const double near : {below, above})
-        if (const std::string text = number_text(near) + " deg"; comes_back(text))
+        if (std::string text = number_text(near) + " deg"; comes_back(text))
           return text;
     }
   return number_text(tangent) + " tan";
@@ -286,7 +286,7 @@ std::string number_text(double value, int shift)
   if (exponent < 0)
     return fmt::format("{}0.{}{}", sign, std::string(static_cast<std::size_t>(-exponent - 1), '0'), digits);
   if (n_digits <= exponent + 1)
-    return sign + digits + std::string(static_cast<std::size_t>(exponent + 1 - n_digits), '0');
+    return sign + digits + std::string(static_cast<std::size_t>(exponent) + 1 - static_cast<std::size_t>(n_digits), '0');
   const auto whole = static_cast<std::size_t>(exponent + 1);
   return fmt::format("{}{}.{}", sign, digits.substr(0, whole), digits.substr(whole));
 }

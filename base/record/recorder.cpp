@@ -17,7 +17,7 @@ namespace isostat
 {
 namespace fs = std::filesystem;
 
-Recorder::Recorder(fs::path folder, std::vector<RecordColumn> columns, std::size_t resume_rows)
+Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows)
     : csv_(folder / "history.csv"), hdf5_(folder / "history.h5"), columns_(std::move(columns)), n_rows_(resume_rows)
 {
   assert(!columns_.empty());

@@ -36,7 +36,7 @@ public:
   /// @param resume_rows  0: start anew, replacing what is there. Otherwise both files are cut to their first
   /// resume_rows
   ///                     rows; InputError if they hold fewer, or other columns
-  Recorder(std::filesystem::path folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0);
+  Recorder(const std::filesystem::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0);
   /// Flushes; a failure is lost here, so call flush() where it matters.
   ~Recorder();
   Recorder(const Recorder &) = delete;

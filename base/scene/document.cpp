@@ -189,7 +189,7 @@ toml::table *SceneDocument::parent_of(const std::string &path)
       if (const toml::array *array = node->as_array(); array && *as_index(words[i]) >= array->size())
         throw InputError(fmt::format("--set {}: there is no {} {}; {} has {}, counted from 0.", path, words[0],
                                      words[i], name_, array->size()));
-      toml::node *next = const_cast<toml::node *>(child(*node, words[i]));
+      auto *next = const_cast<toml::node *>(child(*node, words[i]));
       if (!next)
         throw InputError(fmt::format("--set {}: {} has no {}.", path, name_, words[i]));
       node = next;

@@ -189,7 +189,7 @@ std::string choices_text(const Key &key)
 {
   std::vector<std::string> words;
   for (const char *choice : key.choices)
-    words.push_back(quoted(choice));
+    words.emplace_back(quoted(choice));
   return enumerate(words);
 }
 

@@ -49,7 +49,7 @@ Mat3 PeriodicCell::deform(const Mat3 &displacement_gradient)
   strain_step = 0.5 * (own + own.transpose());
   if (strain_step.isZero(0.0))
     return Mat3::Zero();
-  const Mat3 growth = strain_step + 0.5 * strain_step * strain_step;
+  Mat3 growth = strain_step + 0.5 * strain_step * strain_step;
   edges += (growth * edges).eval();
   deformation += (growth * deformation).eval();
   volume_strain += strain_step.trace();

@@ -89,7 +89,7 @@ void check_header(const hdf5::Group &root)
         fmt::format("{}: HDF5, but without the attribute format = \"{}\"; another program wrote it. Give a "
                     "specimen made by Isostat",
                     file, format_name));
-  const std::string format = root.attribute<std::string>("format");
+  const auto format = root.attribute<std::string>("format");
   if (format != format_name)
     throw InputError(fmt::format("{}: format = \"{}\", expected \"{}\"; give a specimen made by Isostat, of a library "
                                  "one of its entries ({}#s0001)",
