@@ -33,9 +33,10 @@ INNER = {
     "base": {
         "error": set(),
         "types": set(),
+        "stopwatch": set(),
         "units": {"error"},
         "files": {"error", "types"},
-        "record": {"error", "files"},
+        "record": {"error", "files", "stopwatch"},
         "scene": {"error", "units"},
     },
     "dem": {

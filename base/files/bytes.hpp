@@ -7,16 +7,33 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace isostat
 {
-/// Appends texts, counts and numbers to a row of bytes. What pack() of a material is written with.
+/// Appends values, texts and rows of numbers to a row of bytes, in the machine's own representation: what travels between
+/// ranks and into checkpoints, the state of materials and packings. A row or text stands behind its length.
+/// Tested: tests/base/files/bytes_test.cpp.
 class ByteWriter
 {
 public:
-  void count(std::uint64_t n) { raw(&n, sizeof n); }
+  template <typename T>
+  void value(const T &x)
+  {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    raw(&x, sizeof x);
+  }
+  void count(std::uint64_t n) { value(n); }
+  template <typename T, typename A>
+  void row(const std::vector<T, A> &values)
+  {
+    // A pair of numbers is copied by its bytes as well, although its assignment is not trivial.
+    static_assert(std::is_trivially_copy_constructible_v<T> && std::is_trivially_destructible_v<T>);
+    count(values.size());
+    raw(values.data(), sizeof(T) * values.size());
+  }
   void text(const std::string &s)
   {
     count(s.size());
@@ -30,8 +47,10 @@ public:
   void block(std::span<const std::byte> b)
   {
     count(b.size());
-    raw(b.data(), b.size());
+    append(b);
   }
+  /// Without its length: what the reader takes as the rest.
+  void append(std::span<const std::byte> b) { raw(b.data(), b.size()); }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
 private:
@@ -43,17 +62,34 @@ private:
   std::vector<std::byte> bytes_;
 };
 
-/// Takes them out again in the same order; whatever does not fit is an InputError that begins with `reader`.
+/// Takes them out again in the same order; whatever does not fit is an InputError that begins with `reader` and ends with
+/// what the user can do.
 class ByteReader
 {
 public:
-  ByteReader(std::span<const std::byte> bytes, std::string reader) : bytes_(bytes), reader_(std::move(reader)) {}
+  ByteReader(std::span<const std::byte> bytes, std::string reader,
+             std::string remedy = "continue with the soil that the state was stored with")
+      : bytes_(bytes), reader_(std::move(reader)), remedy_(std::move(remedy))
+  {}
 
+  template <typename T>
+  void value(T &x)
+  {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    raw(&x, sizeof x);
+  }
   std::uint64_t count()
   {
     std::uint64_t n = 0;
-    raw(&n, sizeof n);
+    value(n);
     return n;
+  }
+  /// As many values as were written.
+  template <typename T, typename A>
+  void row(std::vector<T, A> &values)
+  {
+    values.resize(length(sizeof(T)));
+    raw(values.data(), sizeof(T) * values.size());
   }
   std::string text()
   {
@@ -74,6 +110,7 @@ public:
     bytes_ = bytes_.subspan(n);
     return b;
   }
+  std::span<const std::byte> rest() const { return bytes_; }
   void expect(std::uint64_t found, std::uint64_t expected, const char *what) const
   {
     if (found != expected)
@@ -92,8 +129,7 @@ public:
   }
   [[noreturn]] void fail(const std::string &why) const
   {
-    throw InputError(reader_ + ": cannot unpack the state: " + why +
-                     "; continue with the soil that the state was stored with");
+    throw InputError(reader_ + ": cannot unpack the state: " + why + "; " + remedy_);
   }
 
 private:
@@ -113,6 +149,6 @@ private:
     bytes_ = bytes_.subspan(n);
   }
   std::span<const std::byte> bytes_;
-  std::string reader_;
+  std::string reader_, remedy_;
 };
 } // namespace isostat

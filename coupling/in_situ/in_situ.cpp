@@ -2,10 +2,10 @@
 #include "coupling/in_situ/in_situ.hpp"
 
 #include "base/error.hpp"
+#include "base/files/hash.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
 
 namespace isostat
@@ -18,46 +18,30 @@ constexpr std::uint64_t recipe_version = 1;
 constexpr int most_waits = 50;
 constexpr double loose_tolerance = 1e-2; ///< on the way
 
-class Hash
-{
-public:
-  void add(std::span<const double> numbers)
-  {
-    for (double x : numbers)
-      {
-        std::uint64_t word = 0;
-        std::memcpy(&word, &x, sizeof word);
-        value = (value ^ word) * 1099511628211ull;
-        value ^= value >> 29;
-      }
-  }
-  void add(const Mat3 &m) { add(std::span(m.data(), 9)); }
-  void add(const Vec3 &v) { add(std::span(v.data(), 3)); }
-  std::uint64_t value = 14695981039346656037ull;
-};
-
 std::uint64_t hash_of(const Snapshot &s)
 {
   Hash hash;
-  hash.add(std::array{s.law.young, s.law.stiffness_ratio, s.law.friction, s.law.rolling_stiffness, s.law.rolling_limit,
-                      s.law.twisting_stiffness, double(s.law.features.friction), double(s.law.features.rolling),
-                      double(s.law.features.twisting), s.grains.density, s.time, double(s.step)});
+  const auto add = [&](std::span<const double> numbers) { hash.words(numbers); };
+  add(std::array{s.law.young, s.law.stiffness_ratio, s.law.friction, s.law.rolling_stiffness, s.law.rolling_limit,
+                 s.law.twisting_stiffness, double(s.law.features.friction), double(s.law.features.rolling),
+                 double(s.law.features.twisting), s.grains.density, s.time, double(s.step)});
   const std::size_t n = 4 * s.grains.n_grains();
   for (const auto *records : {&s.grains.position, &s.grains.velocity, &s.grains.spin})
-    hash.add(std::span(records->data(), n));
+    add(std::span(records->data(), n));
   if (s.cell)
     {
-      hash.add(s.cell->edges), hash.add(s.cell->deformation), hash.add(s.cell->rotation);
-      hash.add(std::array{s.cell->reference_volume, s.cell->volume_strain});
+      for (const Mat3 *m : {&s.cell->edges, &s.cell->deformation, &s.cell->rotation})
+        add({m->data(), 9});
+      add(std::array{s.cell->reference_volume, s.cell->volume_strain});
     }
   for (const Contact &c : s.contacts)
     {
-      hash.add(std::array{double(c.first), double(c.second), c.overlap});
+      add(std::array{double(c.first), double(c.second), c.overlap});
       for (const Vec3 *v :
            {&c.history.normal, &c.history.shear_force, &c.history.bending_moment, &c.history.twisting_moment})
-        hash.add(*v);
+        add({v->data(), 3});
     }
-  return hash.value;
+  return hash.value();
 }
 
 double pressure(const Mat3 &stress) { return -stress.trace() / 3; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/in_situ/in_situ_cache.hpp"
 
+#include "base/files/hash.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
@@ -10,13 +12,7 @@ namespace isostat
 {
 namespace
 {
-std::string name_of(const std::string &recipe)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (unsigned char c : recipe)
-    hash = (hash ^ c) * 1099511628211ull;
-  return fmt::format("i{:016x}", hash);
-}
+std::string name_of(const std::string &recipe) { return fmt::format("i{:016x}", Hash().text(recipe).value()); }
 
 Specimen described(const InSituState &state)
 {

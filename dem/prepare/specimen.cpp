@@ -2,6 +2,7 @@
 #include "dem/prepare/specimen.hpp"
 
 #include "base/error.hpp"
+#include "base/files/hash.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
@@ -25,15 +26,6 @@ constexpr int cell_recipe_version = 4;
 constexpr int density_attempts = 3;
 
 std::mutex hdf5_access; // HDF5 serves one thread at a time
-
-/// FNV-1a, 64 bit: a stable name for a text.
-std::uint64_t hash_of(const std::string &text)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (unsigned char c : text)
-    hash = (hash ^ c) * 1099511628211ull;
-  return hash;
-}
 
 void describe(const Scene &scene, Specimen &specimen)
 {
@@ -185,7 +177,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       return import(scene);
     }
   const std::string recipe = specimen_recipe(scene);
-  const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", hash_of(recipe));
+  const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
   if (std::optional<Specimen> cached = from_cache(path, recipe))
     {
       observer.event("specimen taken from " + path.string());

@@ -5,9 +5,9 @@
 //     cell | driver's numbers | cost
 #include "dem/rve/rve.hpp"
 
-#include "base/error.hpp"
+#include "base/files/bytes.hpp"
+#include "base/files/hash.hpp"
 
-#include <cstring>
 #include <fmt/format.h>
 #include <type_traits>
 
@@ -16,89 +16,42 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t magic = 0x4556525453495349, version = 1;
-constexpr std::size_t header_bytes = 3 * sizeof(std::uint64_t);
 
-/// FNV-1a over eight bytes at a time.
-std::uint64_t checksum(std::span<const std::byte> bytes)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (std::size_t at = 0; at < bytes.size(); at += 8)
-    {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes.data() + at, std::min<std::size_t>(8, bytes.size() - at));
-      hash = (hash ^ word) * 1099511628211ull;
-      hash ^= hash >> 29;
-    }
-  return hash;
-}
+std::uint64_t checksum(std::span<const std::byte> bytes) { return Hash().words(bytes).value(); }
 
-class Writer
+/// Visits a field of a state: writes it, or reads it back.
+template <typename Bytes>
+struct Archive
 {
-public:
-  template <typename T>
-  void operator()(const T &value)
-  {
-    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
-    const auto *from = reinterpret_cast<const std::byte *>(&value);
-    bytes.insert(bytes.end(), from, from + sizeof(T));
-  }
-  void operator()(const Mat3 &m)
-  {
-    for (double x : m.reshaped())
-      (*this)(x);
-  }
-  template <typename T, typename A>
-  void operator()(const std::vector<T, A> &values)
-  {
-    (*this)(static_cast<std::uint64_t>(values.size()));
-    const auto *from = reinterpret_cast<const std::byte *>(values.data());
-    bytes.insert(bytes.end(), from, from + sizeof(T) * values.size());
-  }
-  std::vector<std::byte> bytes;
-};
+  Bytes &bytes;
 
-class Reader
-{
-public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <typename T>
   void operator()(T &value)
   {
-    std::memcpy(static_cast<void *>(&value), take(sizeof(T)), sizeof(T));
+    bytes.value(value);
   }
-  void operator()(Mat3 &m)
+  template <typename M>
+  requires std::is_same_v<std::remove_const_t<M>, Mat3>
+  void operator()(M &m)
   {
-    for (double &x : m.reshaped())
-      (*this)(x);
+    for (auto &x : m.reshaped())
+      bytes.value(x);
   }
   template <typename T, typename A>
   void operator()(std::vector<T, A> &values)
   {
-    std::uint64_t n = 0;
-    (*this)(n);
-    if (n > bytes_.size() / sizeof(T))
-      throw InputError("a packed element is damaged: it holds fewer numbers than it says. Pack it again.");
-    values.resize(n);
-    std::memcpy(static_cast<void *>(values.data()), take(sizeof(T) * n), sizeof(T) * n);
+    bytes.row(values);
   }
-  bool at_end() const { return bytes_.empty(); }
-
-private:
-  const std::byte *take(std::size_t n)
+  template <typename T, typename A>
+  void operator()(const std::vector<T, A> &values)
   {
-    if (n > bytes_.size())
-      throw InputError(
-          fmt::format("a packed element is cut short: {} more bytes were expected. Pack it again.", n - bytes_.size()));
-    const std::byte *from = bytes_.data();
-    bytes_ = bytes_.subspan(n);
-    return from;
+    bytes.row(values);
   }
-  std::span<const std::byte> bytes_;
 };
 
 /// Sizes, masses and law: what never changes.
-template <typename Archive, typename Law, typename Grains>
-void fixed_part(Archive &archive, Law &law, Grains &grains)
+template <typename Visitor, typename Law, typename Grains>
+void fixed_part(Visitor &archive, Law &law, Grains &grains)
 {
   archive(law.young), archive(law.stiffness_ratio), archive(law.friction), archive(law.rolling_stiffness);
   archive(law.rolling_limit), archive(law.twisting_stiffness);
@@ -107,8 +60,8 @@ void fixed_part(Archive &archive, Law &law, Grains &grains)
   archive(grains.position), archive(grains.velocity), archive(grains.spin);
 }
 
-template <typename Archive, typename State>
-void moving_part(Archive &archive, State &state)
+template <typename Visitor, typename State>
+void moving_part(Visitor &archive, State &state)
 {
   auto &g = state.grains;
   archive(g.grains), archive(g.pairs), archive(g.history), archive(g.virial);
@@ -120,31 +73,31 @@ void moving_part(Archive &archive, State &state)
 
 std::vector<std::byte> Rve::pack() const
 {
-  Writer body;
+  ByteWriter bytes;
+  Archive<ByteWriter> body{bytes};
   RveState state = save();
   fixed_part(body, assembly_.law(), assembly_.packing());
   moving_part(body, state);
   state.drive.for_each([&](const std::string &, double &value) { body(value); });
   body(cost_);
-  Writer packed;
-  packed(magic), packed(version), packed(checksum(body.bytes));
-  packed.bytes.insert(packed.bytes.end(), body.bytes.begin(), body.bytes.end());
-  return std::move(packed.bytes);
+  const std::vector<std::byte> content = bytes.take();
+  ByteWriter packed;
+  packed.value(magic), packed.value(version), packed.value(checksum(content));
+  packed.append(content);
+  return packed.take();
 }
 
-Rve Rve::unpack(std::span<const std::byte> bytes, const RveSettings &settings)
+Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
 {
-  Reader header(bytes);
-  std::uint64_t found_magic = 0, found_version = 0, found_checksum = 0;
-  header(found_magic), header(found_version), header(found_checksum);
-  if (found_magic != magic)
-    throw InputError("these bytes are no packed representative volume element");
-  if (found_version != version)
-    throw InputError(fmt::format("a packed element of version {}, this program reads {}. Pack it with this program.",
-                                 found_version, version));
-  if (checksum(bytes.subspan(header_bytes)) != found_checksum)
-    throw InputError("a packed element is cut short or damaged: its checksum is wrong. Pack it again.");
-  Reader body(bytes.subspan(header_bytes));
+  ByteReader bytes(packed, "a packed element", "pack it again");
+  if (bytes.count() != magic)
+    bytes.fail("these bytes are no representative volume element");
+  if (const std::uint64_t found = bytes.count(); found != version)
+    bytes.fail(fmt::format("they are of version {}, this program reads {}", found, version));
+  const std::uint64_t stored_checksum = bytes.count();
+  if (checksum(bytes.rest()) != stored_checksum)
+    bytes.fail("they are cut short or damaged: the checksum is wrong");
+  Archive<ByteReader> body{bytes};
   Snapshot start;
   RveState state;
   RveCost cost;

@@ -4,6 +4,7 @@
 //
 //   mpirun -n RANKS rve_material_mpi THREADS FOLDER
 #include "base/error.hpp"
+#include "base/files/hash.hpp"
 #include "tests/coupling/rve_column.hpp"
 
 #include <cstdio>
@@ -35,19 +36,10 @@ void expect(bool holds, const char *what)
   good &= all != 0;
 }
 
-std::uint64_t hash_of(const void *data, std::size_t n)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (std::size_t i = 0; i < n; ++i)
-    hash = (hash ^ static_cast<const unsigned char *>(data)[i]) * 1099511628211ull;
-  return hash;
-}
-
-/// Whether all ranks have the same.
 template <typename T>
 std::uint64_t common_hash(const std::vector<T> &values)
 {
-  const std::uint64_t mine = hash_of(values.data(), values.size() * sizeof(T));
+  const std::uint64_t mine = Hash().words(std::as_bytes(std::span(values))).value();
   std::uint64_t first = mine;
   MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
   expect(first == mine, "ranks have different results");
