@@ -13,11 +13,11 @@
 #include "apps/biaxial/run.hpp"
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/progress.hpp"
 
 #include <deal.II/base/mpi.h>
 

@@ -3,10 +3,10 @@
 
 #include "apps/biaxial/files.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/deposit/instant.hpp"
 #include "base/error.hpp"
+#include "base/record/progress.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -17,9 +17,6 @@ namespace isostat
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
 {
@@ -70,7 +67,7 @@ private:
 
   const BiaxialRequest &request_;
   const BiaxialScene &scene_;
-  const Clock::time_point begin_ = Clock::now();
+  const Stopwatch since_start_;
   BlockMesh space_;
   BlockMaterial material_;
   Statics<2> statics_;
@@ -181,7 +178,7 @@ void BiaxialRun::step()
     files_->map(summary_.axial_strain, statics_);
   say(fmt::format("step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
                   "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
-                  summary_.steps, scene_.test.steps, duration_text(seconds_since(begin_)), summary_.axial_strain,
+                  summary_.steps, scene_.test.steps, duration_text(since_start_.seconds()), summary_.axial_strain,
                   summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
                   effort.substeps, effort.rejected, residual_));
 }
@@ -217,7 +214,7 @@ BiaxialSummary BiaxialRun::go()
       back_to_committed();
       files_->map(summary_.axial_strain, statics_);
     }
-  summary_.wall_seconds = seconds_since(begin_);
+  summary_.wall_seconds = since_start_.seconds();
   if (material_.grains)
     {
       const RveMaterialCost &cost = material_.grains->cost();

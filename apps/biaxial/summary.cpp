@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/biaxial/run.hpp"
-#include "apps/common/progress_text.hpp"
+#include "base/record/progress.hpp"
 
 namespace isostat
 {

@@ -2,25 +2,30 @@
 #include "apps/common/run_output.hpp"
 
 #include "apps/common/interrupt.hpp"
-#include "apps/common/progress_text.hpp"
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 
-#include <cstdio>
 #include <fmt/format.h>
 
 namespace isostat
 {
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 namespace
 {
-constexpr double progress_seconds = 10;
 const std::string specimen_prefix = "specimen_";
 
-double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+/// The state of a test for the progress line.
+std::string in_words(const Assembly &assembly, const Observation &seen, double redundancy)
+{
+  const std::string path = seen.gamma != 0 ? fmt::format("gamma {:9.5f} %  p' {:8.2f} kPa  tau {:8.2f} kPa",
+                                                         100 * seen.gamma, seen.p / 1e3, seen.tau / 1e3)
+                                           : fmt::format("eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa",
+                                                         100 * seen.axial, seen.p / 1e3, seen.q / 1e3);
+  const double e = void_ratio(assembly.volume(), assembly.solid_volume());
+  return path + fmt::format("  e {:.4f}", e) + (redundancy > 0 ? fmt::format("  I_R {:.3f}", redundancy) : "");
+}
 
 double &tally_field(EnergyBalance &t, int k)
 {
@@ -36,52 +41,10 @@ std::size_t counter(const Checkpoint *checkpoint, const char *name)
 }
 } // namespace
 
-void Progress::say(const std::string &line) const
-{
-  if (!quiet_)
-    std::fprintf(stderr, "%s\n", line.c_str());
-}
-
-void Progress::tick(const Assembly &assembly, const Observation &seen, double redundancy, double fraction)
-{
-  if (calls_ == 0)
-    first_step_ = last_step_ = assembly.step();
-  if (calls_++ % 256 != 0 || quiet_)
-    return;
-  const Clock::time_point now = Clock::now();
-  const double since = seconds(now - last_);
-  if (since < progress_seconds)
-    return;
-  if (assembly.step() < last_step_) // another assembly: preparation began anew
-    first_step_ = last_step_ = assembly.step();
-  if (first_fraction_ < 0 || fraction < first_fraction_)
-    {
-      first_fraction_ = fraction;
-      start_ = now;
-    }
-  std::string line =
-      fmt::format("step {:>9}  {:>6.0f} steps/s", assembly.step(), (assembly.step() - last_step_) / since);
-  if (fraction >= 0)
-    line += fmt::format("  {:5.1f} %", 100 * fraction);
-  if (fraction > first_fraction_ && first_fraction_ >= 0)
-    line +=
-        fmt::format("  ETA {}", duration_text(seconds(now - start_) * (1 - fraction) / (fraction - first_fraction_)));
-  const double e = void_ratio(assembly.volume(), assembly.solid_volume());
-  line += seen.gamma != 0 ? fmt::format("  gamma {:9.5f} %  p' {:8.2f} kPa  tau {:8.2f} kPa", 100 * seen.gamma,
-                                        seen.p / 1e3, seen.tau / 1e3)
-                          : fmt::format("  eps_y {:9.5f} %  p' {:8.2f} kPa  q {:8.2f} kPa", 100 * seen.axial,
-                                        seen.p / 1e3, seen.q / 1e3);
-  line += fmt::format("  e {:.4f}", e);
-  if (redundancy > 0)
-    line += fmt::format("  I_R {:.3f}", redundancy);
-  say(line);
-  last_ = now;
-  last_step_ = assembly.step();
-}
-
 bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &, const Observation &seen)
 {
-  progress_.tick(assembly, seen, 0, -1);
+  if (progress_.due(assembly.step(), -1))
+    progress_.say(progress_.line(in_words(assembly, seen, 0)));
   return !stop_requested();
 }
 
@@ -135,13 +98,14 @@ void RunOutput::event(const std::string &line) { progress_.say(line); }
 bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, const Observation &seen)
 {
   const auto stage = static_cast<std::size_t>(state.stage);
-  progress_.tick(assembly, seen, redundancy_, stage_fraction(scene_.stages[stage], state));
+  if (progress_.due(assembly.step(), stage_fraction(scene_.stages[stage], state)))
+    progress_.say(progress_.line(in_words(assembly, seen, redundancy_)));
   if (stop_requested())
     {
       save_checkpoint(assembly, state);
       return false;
     }
-  if (assembly.step() % 256 == 0 && seconds(Clock::now() - last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+  if (assembly.step() % 256 == 0 && since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
     save_checkpoint(assembly, state);
   return true;
 }
@@ -164,7 +128,7 @@ void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
   for (const auto &[name, value] : specimen_)
     numbers[specimen_prefix + name] = value;
   write_checkpoint(folder_ / "checkpoint", checkpoint);
-  last_checkpoint_ = Clock::now();
+  since_checkpoint_.restart();
 }
 
 void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state)

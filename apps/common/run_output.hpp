@@ -2,30 +2,14 @@
 #pragma once
 #include "apps/common/history.hpp"
 #include "base/files/pvd.hpp"
+#include "base/record/progress.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/vtp.hpp"
 
-#include <chrono>
 #include <filesystem>
 
 namespace isostat
 {
-/// Progress on stderr: one line every few seconds with rate, ETA and the state.
-class Progress
-{
-public:
-  explicit Progress(bool quiet) : quiet_(quiet) {}
-  void say(const std::string &line) const;
-  /// Looks at the clock every 256 calls.   @param fraction  of the work done, 0..1, or negative if unknown
-  void tick(const Assembly &assembly, const Observation &seen, double redundancy, double fraction);
-
-private:
-  bool quiet_;
-  std::uint64_t calls_ = 0, first_step_ = 0, last_step_ = 0;
-  double first_fraction_ = -1;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), last_ = start_;
-};
-
 /// Observer of preparation: progress and interrupts only.
 class PreparationOutput : public RunObserver
 {
@@ -66,7 +50,7 @@ private:
   std::uint64_t n_snapshots_ = 0;
   double redundancy_ = 0;
   Progress progress_;
-  std::chrono::steady_clock::time_point last_checkpoint_ = std::chrono::steady_clock::now();
+  Stopwatch since_checkpoint_;
 };
 
 /// Puts a checkpoint's numbers back into assembly and driver state.

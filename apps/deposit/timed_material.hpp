@@ -2,8 +2,6 @@
 #pragma once
 #include "fem/material/material.hpp"
 
-#include <chrono>
-
 namespace isostat
 {
 /// A material that knows how long it was at work.
@@ -19,15 +17,13 @@ public:
   void set_initial_stress(std::span<const Stress> effective) override { material_->set_initial_stress(effective); }
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override
   {
-    const auto begin = Clock::now();
+    const TimedScope timed(seconds);
     material_->trial(increments, stresses);
-    seconds += since(begin);
   }
   void commit() override
   {
-    const auto begin = Clock::now();
+    const TimedScope timed(seconds);
     material_->commit();
-    seconds += since(begin);
   }
   void rollback() override { material_->rollback(); }
   void stiffness(std::span<Stiffness> tangents) const override { material_->stiffness(tangents); }
@@ -36,8 +32,6 @@ public:
   void unpack(std::span<const std::byte> bytes) override { material_->unpack(bytes); }
 
 private:
-  using Clock = std::chrono::steady_clock;
-  static double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
   std::unique_ptr<Material> material_;
 };
 } // namespace isostat

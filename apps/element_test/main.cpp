@@ -86,7 +86,7 @@ void run_test(const SceneOptions &options)
   if (!options.resume)
     write_provenance(folder, scene, options.command_line);
   RunOutput output(folder, scene, run.specimen, options.quiet, run.resumed.get());
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   RunOutcome outcome = RunOutcome::finished;
   try
     {
@@ -100,7 +100,7 @@ void run_test(const SceneOptions &options)
       throw RunFailure(fmt::format("{}\n  last good checkpoint: {}", failure.what(),
                                    kept ? (folder / "checkpoint" / "last.h5").string() : "none was written yet"));
     }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
     throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
   output.finish();

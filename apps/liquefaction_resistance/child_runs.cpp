@@ -3,6 +3,7 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 
 #include <chrono>
 #include <csignal>
@@ -19,13 +20,11 @@ namespace isostat
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
 struct Running
 {
   std::size_t index;
   pid_t id;
-  Clock::time_point begin;
+  Stopwatch watch;
 };
 
 /// What the new process does: never returns.
@@ -82,7 +81,7 @@ bool run_children(const std::vector<ChildRun> &runs, int jobs, const ChildEvents
   while (!running.empty() || (next < runs.size() && !stop_requested()))
     {
       for (; next < runs.size() && running.size() < static_cast<std::size_t>(jobs) && !stop_requested(); ++next)
-        running.push_back({next, start(runs[next]), Clock::now()});
+        running.push_back({next, start(runs[next]), Stopwatch()});
       if (stop_requested() && !told)
         {
           for (const Running &child : running)
@@ -93,7 +92,7 @@ bool run_children(const std::vector<ChildRun> &runs, int jobs, const ChildEvents
       std::vector<std::size_t> at_work;
       for (const Running &child : running)
         if (int code = 0; has_ended(child.id, code))
-          events.finished(child.index, code, std::chrono::duration<double>(Clock::now() - child.begin).count());
+          events.finished(child.index, code, child.watch.seconds());
         else
           {
             left.push_back(child);

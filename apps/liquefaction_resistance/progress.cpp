@@ -8,8 +8,7 @@ namespace isostat
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds interval(30);
+constexpr double interval = 30; // s
 
 bool has_ended(const RunResult &result) { return result.status != RunStatus::missing; }
 
@@ -73,7 +72,7 @@ std::string CampaignProgress::state() const
       fmt::format("{:3.0f} %  {} of {} runs", 100.0 * static_cast<double>(n) / static_cast<double>(all), n, all);
   const double left = seconds_left();
   if (left >= 0 && n < all)
-    text += left < 90 ? fmt::format(", ETA {:.0f} s", left) : fmt::format(", ETA {:.0f} min", left / 60);
+    text += ", ETA " + duration_text(left);
   return text;
 }
 
@@ -84,10 +83,10 @@ void CampaignProgress::finished(const Campaign::Run &run, int code, double secon
   const bool specimen = run.scene.stages.empty();
   const std::string what = !specimen ? outcome(run.result) : code == 0 ? "ready" : outcome(run.result);
   std::fprintf(stderr, "%s\n", fmt::format("{}  {}: {}, {:.0f} s", state(), run.name, what, seconds).c_str());
-  last_ = Clock::now();
+  since_line_.restart();
 }
 
-bool CampaignProgress::is_due() const { return !quiet_ && Clock::now() - last_ >= interval; }
+bool CampaignProgress::is_due() const { return !quiet_ && since_line_.seconds() >= interval; }
 
 void CampaignProgress::tick(const std::vector<std::string> &lines)
 {
@@ -96,6 +95,6 @@ void CampaignProgress::tick(const std::vector<std::string> &lines)
   std::fprintf(stderr, "%s\n", state().c_str());
   for (const std::string &line : lines)
     std::fprintf(stderr, "       %s\n", line.c_str());
-  last_ = Clock::now();
+  since_line_.restart();
 }
 } // namespace isostat

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/liquefaction_resistance/campaign.hpp"
-
-#include <chrono>
+#include "base/record/progress.hpp"
 
 namespace isostat
 {
@@ -26,6 +25,6 @@ private:
   const Campaign &campaign_;
   int jobs_;
   bool quiet_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Stopwatch since_line_;
 };
 } // namespace isostat

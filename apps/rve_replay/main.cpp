@@ -11,13 +11,13 @@
 //   rve_replay results/quick_grains_10m/paths/d0 --rate-floor 0.02 --tolerance 0.002 --output slow
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/progress_text.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/rve_replay/replay.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/progress.hpp"
 
-#include <chrono>
+#include <fmt/format.h>
 
 namespace
 {
@@ -30,29 +30,6 @@ struct Options
   ReplayChanges changes;
   std::size_t every = 10;
   bool overwrite = false, quiet = false, no_figures = false;
-};
-
-/// A line on stderr every five seconds.
-class Progress
-{
-public:
-  Progress(bool quiet, std::size_t total) : quiet_(quiet), total_(total) {}
-  void tick(std::size_t done)
-  {
-    if (quiet_ || Clock::now() - last_ < std::chrono::seconds(5))
-      return;
-    last_ = Clock::now();
-    const double rate = static_cast<double>(done) / std::chrono::duration<double>(last_ - start_).count();
-    fmt::print(stderr, "  {:.1f} %  increment {}  {:.0f} 1/s  ETA {}\n",
-               100 * static_cast<double>(done) / static_cast<double>(total_), done, rate,
-               duration_text(static_cast<double>(total_ - done) / rate));
-  }
-
-private:
-  using Clock = std::chrono::steady_clock;
-  bool quiet_;
-  std::size_t total_;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
 std::string scene_text(const Options &options, const RveSettings &settings)
@@ -72,9 +49,11 @@ void run(const Options &options)
   check_result_folder(folder, use);
   open_result_folder(folder, use);
   write_provenance(folder, scene_text(options, settings), options.command_line, {});
-  Progress progress(options.quiet, record.increments.size());
+  Progress progress(options.quiet, 5);
+  const auto total = static_cast<double>(record.increments.size());
   const ReplayResult result = replay(record, options.changes, folder, options.every, [&](std::size_t done) {
-    progress.tick(done);
+    if (progress.due(done, static_cast<double>(done) / total))
+      progress.say(progress.line(""));
     if (stop_requested())
       throw Interrupted(fmt::format("interrupted at increment {}", done));
   });

@@ -2,11 +2,11 @@
 #include "apps/rve_replay/replay.hpp"
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "coupling/element/rve_element.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 #include "dem/measure/summary.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -96,7 +96,7 @@ RveSettings ReplayChanges::applied_to(RveSettings settings) const
 ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, const std::filesystem::path &folder,
                     std::size_t every, const std::function<void(std::size_t)> &tell)
 {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   RveElement element(Rve::unpack(record.packing, changes.applied_to(record.settings)), record.undrained,
                      record.halvings);
   Files files(folder);
@@ -135,7 +135,7 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
   files.flush();
   result.shear_error = shear.relative();
   result.pressure_error = mean.relative();
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = watch.seconds();
   return result;
 }
 

@@ -3,7 +3,6 @@
 #include "apps/deposit/materials.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/deposit/timed_material.hpp"
-#include "apps/soil_column/progress.hpp"
 #include "apps/soil_column/run.hpp"
 #include "fem/solve/statics.hpp"
 
@@ -15,8 +14,6 @@ namespace isostat
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
 StaticsSettings settings_of(const ColumnLoad &load, bool pore_water)
 {
   StaticsSettings settings;
@@ -81,9 +78,9 @@ private:
   std::unique_ptr<ColumnCheckpoint> resumed_;
   double immediate_settlement_ = 0; ///< without any flow, m
   ColumnInstant instant_;
-  std::unique_ptr<ColumnProgress> progress_;
+  Progress progress_{request_.quiet, 5};
   RunTimes taken_;
-  Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_;
+  Stopwatch since_start_, since_checkpoint_;
 };
 
 template <int dim>
@@ -108,7 +105,7 @@ void ConsolidationRun<dim>::save()
   StaticsState state = run_.save();
   files_.save({state.step, state.vectors, state.numbers, state.material}, follower_.peaks,
               {{"immediate_settlement", immediate_settlement_}});
-  last_checkpoint_ = Clock::now();
+  since_checkpoint_.restart();
 }
 
 /// A row, a profile and a ParaView file of every step.
@@ -135,10 +132,8 @@ void ConsolidationRun<dim>::start()
 {
   open_folder(request_);
   on_first_rank([&] { files_.open(resumed_.get()); });
-  progress_ = std::make_unique<ColumnProgress>(request_.quiet, run_.n_steps(),
-                                               static_cast<double>(run_.n_steps()) / (times_.size() + 1.0));
-  progress_->say(fmt::format("{} steps from {:.5g} s to {:.5g} s{}", times_.size(), times_.front(), times_.back(),
-                             resumed_ ? fmt::format(", from {:.5g} s on", run_.time()) : ""));
+  progress_.say(fmt::format("{} steps from {:.5g} s to {:.5g} s{}", times_.size(), times_.front(), times_.back(),
+                            resumed_ ? fmt::format(", from {:.5g} s on", run_.time()) : ""));
   if (!resumed_ && !at_once_) // the step of a load at once has a row of its own
     record();
 }
@@ -146,13 +141,13 @@ void ConsolidationRun<dim>::start()
 template <int dim>
 void ConsolidationRun<dim>::step()
 {
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   const bool load_comes = at_once_ && run_.n_steps() == 0;
   if (load_comes)
     run_.step_undrained();
   else
     run_.step(times_[n_done()] - run_.time());
-  taken_.solver += seconds_since(begin);
+  taken_.solver += watch.seconds();
   ++taken_.steps;
   record();
   if (load_comes)
@@ -164,9 +159,10 @@ template <int dim>
 void ConsolidationRun<dim>::observe()
 {
   const std::uint64_t n = run_.n_steps();
-  progress_->tick(n, static_cast<double>(n) / (times_.size() + 1.0), files_.history().state);
+  if (progress_.due(n, static_cast<double>(n) / (times_.size() + 1.0)))
+    progress_.say(progress_.line(in_words(files_.history().state)));
   stop_if_requested<dim>(request_, n, files_, [&] { save(); });
-  if (!scene_.mesh.distributed && seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes)
+  if (!scene_.mesh.distributed && since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
     save();
 }
 
@@ -180,7 +176,7 @@ RunResult ConsolidationRun<dim>::result()
       (summary.last.settlement - immediate_settlement_) / (summary.final_settlement - immediate_settlement_);
   taken_.material = material_.seconds;
   taken_.solver -= taken_.material;
-  taken_.wall = seconds_since(begin_);
+  taken_.wall = since_start_.seconds();
   return {summary, taken_};
 }
 

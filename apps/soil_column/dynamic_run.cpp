@@ -4,7 +4,6 @@
 #include "apps/deposit/grain_paths.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/deposit/timed_material.hpp"
-#include "apps/soil_column/progress.hpp"
 #include "apps/soil_column/run.hpp"
 
 #include <cmath>
@@ -14,8 +13,6 @@ namespace isostat
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
 /// Whole steps between two outputs.
 std::uint64_t steps_between(double interval, double time_step)
 {
@@ -62,9 +59,9 @@ private:
   std::unique_ptr<GrainFiles> grain_files_;   ///< null without grains
   std::unique_ptr<GrainPaths> grain_paths_;   ///< likewise
   std::array<double, 2> velocities_ = {0, 0}; ///< of the soil of grains at the start of this run
-  std::unique_ptr<ColumnProgress> progress_;
+  Progress progress_{request_.quiet, 5};
   RunTimes times_;
-  Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_;
+  Stopwatch since_start_, since_checkpoint_;
 };
 
 template <int dim>
@@ -107,12 +104,9 @@ void DynamicRun<dim>::start()
         fmt::print(stderr, "{} packings, V_s {:.0f} to {:.0f} m/s\n", soil_.grains->owners().size(), velocities_[0],
                    velocities_[1]);
     }
-  const auto total = static_cast<double>(last_step_ + 1);
-  progress_ =
-      std::make_unique<ColumnProgress>(request_.quiet, run_.n_steps(), static_cast<double>(run_.n_steps()) / total);
-  progress_->say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
-                             1e3 * run_.stable_step(), last_step_ + 1,
-                             resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
+  progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
+                            1e3 * run_.stable_step(), last_step_ + 1,
+                            resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
   material_.seconds = 0;
 }
 
@@ -123,12 +117,12 @@ void DynamicRun<dim>::step()
   const bool row = due(scene_.output.history_interval), profile = due(scene_.output.profile_interval),
              paraview = due(scene_.output.paraview_interval);
   look_at_grains(row, profile);
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   if (row || profile || paraview)
     observe_step(run_, space_, instant_);
   else
     run_.step();
-  times_.solver += seconds_since(begin);
+  times_.solver += watch.seconds();
   ++times_.steps;
   follower_.follow(run_);
   if (grain_paths_)
@@ -172,7 +166,7 @@ void DynamicRun<dim>::save()
     {
       fail(failure, run_.n_steps(), run_.time(), space_, files_);
     }
-  last_checkpoint_ = Clock::now();
+  since_checkpoint_.restart();
 }
 
 /// Grains as they are before the step.
@@ -216,7 +210,7 @@ std::vector<double> DynamicRun<dim>::depths() const
 template <int dim>
 bool DynamicRun<dim>::checkpoint_due() const
 {
-  const bool late = seconds_since(last_checkpoint_) > 60 * scene_.output.checkpoint_minutes;
+  const bool late = since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes;
   if (scene_.mesh.distributed)
     return false;
   return soil_.grains ? as_first_rank(late) : run_.n_steps() % 256 == 0 && late;
@@ -227,7 +221,8 @@ template <int dim>
 void DynamicRun<dim>::observe()
 {
   const std::uint64_t n = run_.n_steps();
-  progress_->tick(n, static_cast<double>(n) / static_cast<double>(last_step_ + 1), files_.history().state);
+  if (progress_.due(n, static_cast<double>(n) / static_cast<double>(last_step_ + 1)))
+    progress_.say(progress_.line(in_words(files_.history().state)));
   stop_if_requested<dim>(request_, n, files_, [&] { save(); });
   if (checkpoint_due())
     save();
@@ -278,7 +273,7 @@ RunResult DynamicRun<dim>::result()
   summary.time_step = run_.time_step();
   times_.material = material_.seconds;
   times_.solver -= times_.material;
-  times_.wall = seconds_since(begin_);
+  times_.wall = since_start_.seconds();
   if (grain_files_)
     add_grains(summary);
   return {summary, times_};

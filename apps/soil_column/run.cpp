@@ -117,6 +117,12 @@ void fail(const RunFailure &failure, std::uint64_t step, double time, const Disc
   throw RunFailure(what);
 }
 
+std::string in_words(const ColumnState &state)
+{
+  return fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}", state.time,
+                     state.surface_acceleration, state.max_ru, state.min_p_ratio);
+}
+
 #define ISOSTAT_INSTANTIATE(dim) \
   template Discretisation<dim> column_mesh<dim>(const ColumnScene &, const Supports &); \
   template ColumnSummary summary_so_far<dim>(const Discretisation<dim> &, ColumnFiles<dim> &, PeakFollower<dim> &); \

@@ -3,8 +3,8 @@
 #include "apps/soil_column/files.hpp"
 #include "apps/soil_column/summary.hpp"
 #include "base/error.hpp"
+#include "base/record/progress.hpp"
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 
@@ -57,8 +57,6 @@ void stop_if_requested(const RunRequest &request, std::uint64_t step, ColumnFile
 template <int dim>
 [[noreturn]] void fail(const RunFailure &failure, std::uint64_t step, double time, const Discretisation<dim> &space,
                        ColumnFiles<dim> &files);
-inline double seconds_since(std::chrono::steady_clock::time_point begin)
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
+/// The column in a few numbers, for the progress line.
+std::string in_words(const ColumnState &state);
 } // namespace isostat

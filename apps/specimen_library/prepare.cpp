@@ -3,10 +3,10 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/record/progress.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
 #include <mutex>
@@ -17,7 +17,6 @@ namespace isostat
 namespace
 {
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 /// What the threads share. Everything behind the mutex.
 class Queue
@@ -50,7 +49,7 @@ public:
     line += seconds > 0 ? fmt::format(", {:.0f} s", seconds) : "";
     const auto left = static_cast<double>(tasks_.size() - n_done_);
     if (left > 0 && n_prepared_ > 0)
-      line += fmt::format("; ETA {:.1f} min", left * seconds_ / static_cast<double>(n_prepared_) / jobs_ / 60);
+      line += fmt::format("; ETA {}", duration_text(left * seconds_ / static_cast<double>(n_prepared_) / jobs_));
     print(task, line);
   }
 
@@ -95,7 +94,7 @@ void work(Queue &queue, const fs::path &cache)
 {
   while (Task *task = queue.take())
     {
-      const auto begin = Clock::now();
+      const Stopwatch watch;
       TaskObserver observer(queue, *task);
       try
         {
@@ -110,7 +109,7 @@ void work(Queue &queue, const fs::path &cache)
           task->failure = error.what();
           task->bad_input = dynamic_cast<const InputError *>(&error) != nullptr;
         }
-      queue.done(*task, observer.worked ? std::chrono::duration<double>(Clock::now() - begin).count() : 0);
+      queue.done(*task, observer.worked ? watch.seconds() : 0);
     }
 }
 } // namespace

@@ -30,7 +30,6 @@ namespace
 {
 using namespace isostat;
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 struct Options
 {
@@ -48,13 +47,11 @@ struct Dense
   double seconds = 0;
 };
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
 double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
 
 Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   Dense dense;
   dense.state = compact(cloud, scene.contact, 0, scene.specimen, observer);
   dense.void_ratio = void_ratio(dense.state.volume(), dense.state.grains.solid_volume());
@@ -63,7 +60,7 @@ Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
   inside.lower.array() += margin;
   inside.upper.array() -= margin;
   dense.void_ratio_inside = void_ratio_inside(dense.state.grains, inside);
-  dense.seconds = seconds_since(begin);
+  dense.seconds = watch.seconds();
   return dense;
 }
 
@@ -191,14 +188,14 @@ void find_limits(const Options &options)
        fmt::format("isotropic compression to {:g} Pa without friction", scene.specimen.pressure),
        {{"void_ratio", dense.void_ratio}, {"void_ratio_inside", dense.void_ratio_inside}});
 
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   const Deposit loose = pluviate(cloud, scene.contact, how, observer);
   keep(folder / "loosest.h5", scene, loose.state,
        fmt::format("deposition under gravity, fall {:g}, damping {:g}, contact modulus {:g} Pa; the box is open above",
                    how.fall, how.damping, loose.young),
        {{"void_ratio", loose.void_ratio}, {"void_ratio_inside", loose.void_ratio_inside}, {"height_m", loose.height}});
   write_limits(folder, limits(scene, dense, loose, how));
-  const std::string text = table(scene, dense, loose, seconds_since(begin));
+  const std::string text = table(scene, dense, loose, watch.seconds());
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}", text);
 }
