@@ -21,6 +21,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <fmt/format.h>
+
 namespace
 {
 using namespace isostat;

@@ -2,6 +2,8 @@
 #include "apps/biaxial/run.hpp"
 #include "base/record/progress.hpp"
 
+#include <fmt/format.h>
+
 namespace isostat
 {
 namespace

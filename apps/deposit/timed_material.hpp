@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/stopwatch.hpp"
 #include "fem/material/material.hpp"
 
 namespace isostat
