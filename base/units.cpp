@@ -286,7 +286,8 @@ std::string number_text(double value, int shift)
   if (exponent < 0)
     return fmt::format("{}0.{}{}", sign, std::string(static_cast<std::size_t>(-exponent - 1), '0'), digits);
   if (n_digits <= exponent + 1)
-    return sign + digits + std::string(static_cast<std::size_t>(exponent) + 1 - static_cast<std::size_t>(n_digits), '0');
+    return sign + digits +
+           std::string(static_cast<std::size_t>(exponent) + 1 - static_cast<std::size_t>(n_digits), '0');
   const auto whole = static_cast<std::size_t>(exponent + 1);
   return fmt::format("{}{}.{}", sign, digits.substr(0, whole), digits.substr(whole));
 }
