@@ -3,6 +3,7 @@
 // from.
 #include "dem/measure/stress.hpp"
 #include "tests/support/cells.hpp"
+#include "tests/support/near.hpp"
 
 #include <random>
 
@@ -58,8 +59,9 @@ TEST(PeriodicPacking, CarriesThePressureItWasMadeFor)
   std::printf("%zu contacts, Z = %.2f, stress/200 kPa + 1: %.1e, cell %.2f mm wide\n", a.snapshot().contacts.size(),
               2.0 * a.snapshot().contacts.size() / 500, (stress + Mat3::Identity()).diagonal().norm(),
               1e3 * widths.minCoeff());
-  EXPECT_LE((stress + Mat3::Identity()).diagonal().norm(), 0.005);
-  EXPECT_LE(a.unbalanced_force_ratio(), 1e-4);
+  EXPECT_BELOW_BECAUSE((stress + Mat3::Identity()).diagonal().norm(), 0.005,
+                       "the servo of the preparation stops within 0.3 % in each direction");
+  EXPECT_BELOW_BECAUSE(a.unbalanced_force_ratio(), 1e-4, "the preparation ends at an unbalanced force of 1e-4");
 }
 
 TEST(PeriodicPacking, MomentumOfTheFluctuationsIsKeptToRoundOff)
@@ -82,8 +84,10 @@ TEST(PeriodicPacking, MomentumOfTheFluctuationsIsKeptToRoundOff)
       worst = std::max(worst, momentum(a.packing()).norm() / size_of_momentum(a.packing()));
     }
   std::printf("momentum at most %.1e of the sum of magnitudes in 5,000 steps\n", worst);
-  EXPECT_LE(worst, 1e-13);
+  EXPECT_BELOW_BECAUSE(worst, 1e-13, "round-off of 5,000 steps, 1e-16 each, that adds up at random");
 }
+
+constexpr Tolerance placed{1e-9, "round-off of coordinates, 1e-16 of some millimetres, over overlaps of 1e-8 m"};
 
 TEST(PeriodicPacking, PlaceAndImagesOfGrainsDoNotMatter)
 {
@@ -108,10 +112,10 @@ TEST(PeriodicPacking, PlaceAndImagesOfGrainsDoNotMatter)
   std::printf("forces differ by %.1e, moments by %.1e of the mean, stress by %.1e p'; after 100 steps by %.1e p'\n",
               at_once.force, at_once.moment, stress_at_once, later);
   EXPECT_GT(at_once.contacts, 500u);
-  EXPECT_LE(at_once.force, 1e-9);
-  EXPECT_LE(at_once.moment, 1e-9);
-  EXPECT_LE(stress_at_once, 1e-9);
-  EXPECT_LE(later, 1e-7);
+  EXPECT_BELOW_BECAUSE(at_once.force, placed);
+  EXPECT_BELOW_BECAUSE(at_once.moment, placed);
+  EXPECT_BELOW_BECAUSE(stress_at_once, placed);
+  EXPECT_BELOW_BECAUSE(later, 1e-7, "that of the start, grown a hundredfold in 100 steps");
 }
 
 namespace
@@ -149,6 +153,8 @@ TEST(RigidRotation, ChangesNoBitOfThePacking)
   EXPECT_GT((turned.cell()->rotation - Mat3::Identity()).norm(), 0.5);
 }
 
+constexpr Tolerance still{1e-6, "the packing is not wholly at rest: an unbalanced force settles within 1e5 steps"};
+
 TEST(RigidRotation, ByNinetyDegreesTurnsForcesAndStressAlong)
 {
   Assembly a = at_rest_without_motion();
@@ -167,11 +173,12 @@ TEST(RigidRotation, ByNinetyDegreesTurnsForcesAndStressAlong)
       "forces keep their size to %.1e, moments to %.1e, their direction in the packing to %.1e and %.1e; stress "
       "co-rotates to %.1e, rotation is right to %.1e\n",
       sizes.force, sizes.moment, vectors.force, vectors.moment, co_rotates, (a.cell()->rotation - q).norm());
-  EXPECT_LE(std::max(sizes.force, sizes.moment), 1e-6);
-  EXPECT_LE(std::max(vectors.force, vectors.moment), 1e-6);
-  EXPECT_LE(co_rotates, 1e-6);
-  EXPECT_LE((a.cell()->rotation - q).norm(), 1e-12);
-  EXPECT_LE((contact_stress(after) - a.stress()).norm(), 1e-4 * stress.norm()); // the skew part is in the first only
+  EXPECT_BELOW_BECAUSE(std::max(sizes.force, sizes.moment), still);
+  EXPECT_BELOW_BECAUSE(std::max(vectors.force, vectors.moment), still);
+  EXPECT_BELOW_BECAUSE(co_rotates, still);
+  EXPECT_BELOW_BECAUSE((a.cell()->rotation - q).norm(), 1e-12, "round-off of 1e5 products of rotations");
+  EXPECT_BELOW_BECAUSE((contact_stress(after) - a.stress()).norm(), 1e-4 * stress.norm(),
+                       "the skew part, of unbalanced moments, is in the first only");
 }
 
 namespace
@@ -215,7 +222,12 @@ TEST(RigidRotation, ATurnedPackingShearedInTheTurnedDirectionGivesTheTurnedStres
           const double off = (b.stress() - q * a.stress() * q.transpose()).norm() / a.stress().norm();
           std::printf("%s%.1e", look ? " " : "off by ", off);
           worst = std::max(worst, off);
-          EXPECT_LE(off, look > 0 ? 1e-3 : damping > 0 ? 1e-4 : 1e-9);
+          EXPECT_BELOW_BECAUSE(
+              off,
+              look > 0      ? 1e-3
+              : damping > 0 ? 1e-4
+                            : 1e-9,
+              "round-off, then what contacts that open and close make of it; damping knows the axes and adds 1e-4");
         }
       std::printf(
           "\ndamping %g: turned stress path off by %.1e at most over a shear strain of 0.05 %%, tau/p' = %.2f\n",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stages of a test in a periodic cell: strains and stresses that are to be kept are kept, loads turn where they
 // should, a stopped run goes on to the same bits.
+#include "tests/support/near.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <gtest/gtest.h>
@@ -77,10 +78,11 @@ TEST(CellSpecimen, IsAtItsPressureAndInBalance)
   const Mat3 stress = -assembly.stress();
   for (int k = 0; k < 3; ++k)
     {
-      EXPECT_NEAR(stress(k, k) / 200e3, 1, 3e-3);
-      EXPECT_NEAR(stress(k, (k + 1) % 3) / 200e3, 0, 3e-3);
+      EXPECT_NEAR_BECAUSE(stress(k, k) / 200e3, 1, 3e-3, "the servo of the preparation stops within 0.3 %");
+      EXPECT_NEAR_BECAUSE(stress(k, (k + 1) % 3) / 200e3, 0, 3e-3, "the servo of the preparation stops within 0.3 %");
     }
-  EXPECT_LT(assembly.unbalanced_force_ratio(), 2e-4);
+  EXPECT_BELOW_BECAUSE(assembly.unbalanced_force_ratio(), 2e-4,
+                       "the preparation ends at 1e-4; the step of 1e-9 s lets it move on");
 }
 
 TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
@@ -94,7 +96,7 @@ TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
   const Mat3 stress = -assembly.stress();
   const double k0 = 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1);
   std::printf("K0 = %.3f\n", k0);
-  EXPECT_NEAR(stress(1, 1) / 200e3, 1, 3e-3);
+  EXPECT_NEAR_BECAUSE(stress(1, 1) / 200e3, 1, 3e-3, "the servo of the preparation stops within 0.3 %");
   EXPECT_GT(k0, 0.3);
   EXPECT_LT(k0, 0.8);
 }
@@ -106,17 +108,22 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
   stage.balance = 2e-3;
   const Result result = run(stage, medium());
   const Mat3 before = medium().cell->edges, after = result.end.cell->edges;
-  EXPECT_NEAR(after(0, 0) / before(0, 0), 1, 1e-6); // to the second order of the shear strain that frees shear stress
-  EXPECT_NEAR(after(2, 2) / before(2, 2), 1, 1e-6);
-  EXPECT_LT(after(1, 1), before(1, 1) * (1 - 1e-5));
-  EXPECT_NEAR(result.watcher.rows.back().stress(1, 1) / 300e3, 1, 0.01);
+  EXPECT_NEAR_BECAUSE(after(0, 0) / before(0, 0), 1, 1e-6,
+                      "the second order of the shear strain that frees shear stress");
+  EXPECT_NEAR_BECAUSE(after(2, 2) / before(2, 2), 1, 1e-6,
+                      "the second order of the shear strain that frees shear stress");
+  EXPECT_GT(1 - after(1, 1) / before(1, 1), 1e-5);
+  EXPECT_NEAR_BECAUSE(result.watcher.rows.back().stress(1, 1) / 300e3, 1, 0.01,
+                      "the stage ends within its balance, and inertia adds to the stress");
 }
 
 TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 {
   const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), test::periodic_specimen(500, 4));
-  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
-  EXPECT_NEAR(result.watcher.rows.back().seen.axial, 5e-3, 1e-6);
+  EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
+                       "round-off of some 1e4 steps; the volume is set from its logarithm");
+  EXPECT_NEAR_BECAUSE(result.watcher.rows.back().seen.axial, 5e-3, 1e-6,
+                      "the last step overshoots: 1e-6 are several steps");
   EXPECT_GT(result.watcher.rows.back().seen.q, 20e3);
   EXPECT_EQ(result.end.cell->rotation, Mat3::Identity());
 }
@@ -129,7 +136,7 @@ TEST(CellDrained, LateralStressesStay)
     worst = std::max({worst, std::abs(row.stress(0, 0) / 200e3 - 1), std::abs(row.stress(2, 2) / 200e3 - 1)});
   std::printf("drained: largest deviation of a lateral stress %.2e, q at the end %.1f kPa\n", worst,
               result.watcher.rows.back().seen.q / 1e3);
-  EXPECT_LT(worst, 0.02);
+  EXPECT_BELOW_BECAUSE(worst, 0.02, "of 200 kPa: the servo follows a load that grows by some kPa in its response time");
   EXPECT_GT(result.watcher.rows.back().seen.q, 60e3);
 }
 
@@ -139,7 +146,7 @@ TEST(CellConstantP, MeanStressStays)
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.seen.p / 200e3 - 1));
-  EXPECT_LT(worst, 0.02);
+  EXPECT_BELOW_BECAUSE(worst, 0.02, "of 200 kPa: the servo follows a load that grows by some kPa in its response time");
   EXPECT_GT(result.watcher.rows.back().seen.q, 50e3);
 }
 
@@ -147,12 +154,14 @@ TEST(CellSimpleShear, OnlyGammaMoves)
 {
   const Snapshot &dense = test::periodic_specimen(500, 4);
   const Result result = run(stage_of(StageKind::undrained_simple_shear, 5e-3), dense);
-  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
+  EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
+                       "round-off of some 1e4 steps; the volume is set from its logarithm");
   const PeriodicCell &cell = *result.end.cell;
   Mat3 sheared = Mat3::Identity();
   sheared(0, 1) = result.state.gamma;
-  EXPECT_LT((cell.rotation * cell.edges - sheared * dense.cell->edges).norm(), 1e-9 * cell.edges.norm());
-  EXPECT_NEAR(result.state.gamma, 5e-3, 1e-6);
+  EXPECT_BELOW_BECAUSE((cell.rotation * cell.edges - sheared * dense.cell->edges).norm(), 1e-9 * cell.edges.norm(),
+                       "round-off of some 1e4 multiplications by the growth of a step");
+  EXPECT_NEAR_BECAUSE(result.state.gamma, 5e-3, 1e-6, "the last step overshoots: 1e-6 are several steps");
   EXPECT_GT(result.watcher.rows.back().seen.tau, 10e3);
   for (const auto &row : result.watcher.rows)
     EXPECT_EQ(row.seen.axial, 0);
@@ -169,11 +178,13 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
   EXPECT_EQ(result.state.reversals, 6);
   EXPECT_GE(result.state.worst_overshoot, 0);
   EXPECT_LT(result.state.worst_overshoot, 500);
-  EXPECT_LT(result.watcher.max_change_of_volume(), 1e-12);
+  EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
+                       "round-off of some 1e4 steps; the volume is set from its logarithm");
   double maximum = 0;
   for (const auto &row : result.watcher.rows)
     maximum = std::max(maximum, std::abs(row.seen.tau));
-  EXPECT_NEAR(maximum, 0.12 * 200e3, 600);
+  EXPECT_NEAR_BECAUSE(maximum, 0.12 * 200e3, 600,
+                      "the overshoot of a reversal, at most 500 Pa, and rows that miss the crest");
 }
 
 TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)

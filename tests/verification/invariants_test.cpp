@@ -6,6 +6,7 @@
 #include "dem/measure/fabric.hpp"
 #include "dem/measure/redundancy.hpp"
 #include "dem/measure/stress.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -123,8 +124,9 @@ TEST(Momentum, OfAnIsolatedClusterIsKeptToRoundOff)
                   "magnitudes\n",
                   drift, collisions, linear / linear_size, angular / angular_size);
       EXPECT_GT(collisions, 100u);
-      EXPECT_LE(linear, 1e-13 * linear_size);
-      EXPECT_LE(angular, 1e-13 * angular_size);
+      EXPECT_BELOW_BECAUSE(linear, 1e-13 * linear_size, "round-off of 5,000 steps, 1e-16 each, that adds up at random");
+      EXPECT_BELOW_BECAUSE(angular, 1e-13 * angular_size,
+                           "round-off of 5,000 steps, 1e-16 each, that adds up at random");
     }
 }
 
@@ -173,8 +175,8 @@ TEST_P(PackingAtRest, RedundancyIsHalfTheCoordinationNumber)
 TEST_P(PackingAtRest, FabricHasTraceOne)
 {
   const Mat3 fabric = contact_fabric(at_rest(GetParam()));
-  EXPECT_NEAR(fabric.trace(), 1, 1e-14);
-  EXPECT_LE((fabric - fabric.transpose()).norm(), 1e-15);
+  EXPECT_NEAR_BECAUSE(fabric.trace(), 1, 1e-14, "round-off of a mean of thousands of unit vectors");
+  EXPECT_BELOW_BECAUSE((fabric - fabric.transpose()).norm(), 1e-15, "round-off of symmetric sums");
 }
 
 TEST_P(PackingAtRest, WallStressIsLoveWeberStress)
@@ -186,10 +188,11 @@ TEST_P(PackingAtRest, WallStressIsLoveWeberStress)
   const double misfit = (contact.diagonal() - wall).cwiseAbs().maxCoeff() / p;
   std::printf("%s: p' = %.3f kPa, largest difference of wall and Love-Weber stress %.1e p'\n", GetParam(), p / 1e3,
               misfit);
-  EXPECT_NEAR(p, 200e3, 0.1e3);
-  EXPECT_LE(misfit, 1e-4);
+  EXPECT_NEAR_BECAUSE(p, 200e3, 0.1e3, "the servo stopped within 0.05 % of its pressure");
+  EXPECT_BELOW_BECAUSE(misfit, 1e-4, "forces unbalanced by 1e-4 where the specimen was stored");
   // moments about each grain cancel, too: the tensor is symmetric
-  EXPECT_LE((contact - contact.transpose()).norm(), 1e-4 * p);
+  EXPECT_BELOW_BECAUSE((contact - contact.transpose()).norm(), 1e-4 * p,
+                       "moments unbalanced by 1e-4 where the specimen was stored");
 }
 
 TEST_P(PackingAtRest, TraceOfFabricAndBoundOfRedundancyHoldWhileItYields)
@@ -206,7 +209,7 @@ TEST_P(PackingAtRest, TraceOfFabricAndBoundOfRedundancyHoldWhileItYields)
   const Snapshot s = assembly.snapshot();
   const ContactNetwork network = contact_network(s);
   EXPECT_GT(network.classes.s, 100u);
-  EXPECT_NEAR(contact_fabric(s).trace(), 1, 1e-14);
+  EXPECT_NEAR_BECAUSE(contact_fabric(s).trace(), 1, 1e-14, "round-off of a mean of thousands of unit vectors");
   EXPECT_GE(network.redundancy_index(), 1.0 / 6);
   EXPECT_LE(network.redundancy_index(), 0.5 * network.coordination_number());
 }

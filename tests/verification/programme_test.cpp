@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/relative_density.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
@@ -65,9 +66,9 @@ TEST(Specimen, IsAtItsPressureAndInBalance)
   const Snapshot &s = test::specimen(1000, 10);
   const Vec3 stress = -wall_stress(s);
   for (int k = 0; k < 3; ++k)
-    EXPECT_NEAR(stress[k] / 200e3, 1, 3e-3);
+    EXPECT_NEAR_BECAUSE(stress[k] / 200e3, 1, 3e-3, "the servo of the preparation stops within 0.3 %");
   const Mat3 contacts = contact_stress(s);
-  EXPECT_NEAR(contacts(1, 1) / -stress[1], 1, 1e-4);
+  EXPECT_NEAR_BECAUSE(contacts(1, 1) / -stress[1], 1, 1e-4, "unbalanced force at the end of the preparation");
 }
 
 TEST(Drained, LateralStressesStay)
@@ -78,9 +79,9 @@ TEST(Drained, LateralStressesStay)
     worst = std::max({worst, std::abs(row.lateral_x / 200e3 - 1), std::abs(row.lateral_z / 200e3 - 1)});
   std::printf("drained: largest deviation of a lateral stress %.2e, q at the end %.1f kPa\n", worst,
               result.watcher.rows.back().q / 1e3);
-  EXPECT_LT(worst, 0.02);
+  EXPECT_BELOW_BECAUSE(worst, 0.02, "of 200 kPa: the servo follows a load that grows by some kPa in its response time");
   EXPECT_GT(result.watcher.rows.back().q, 60e3);
-  EXPECT_NEAR(result.watcher.rows.back().axial, 5e-3, 1e-6);
+  EXPECT_NEAR_BECAUSE(result.watcher.rows.back().axial, 5e-3, 1e-6, "the last step overshoots: 1e-6 are several steps");
 }
 
 TEST(ConstantP, MeanStressStays)
@@ -91,7 +92,7 @@ TEST(ConstantP, MeanStressStays)
     worst = std::max(worst, std::abs(row.p / 200e3 - 1));
   std::printf("constant p': largest deviation %.2e, q at the end %.1f kPa\n", worst,
               result.watcher.rows.back().q / 1e3);
-  EXPECT_LT(worst, 0.02);
+  EXPECT_BELOW_BECAUSE(worst, 0.02, "of 200 kPa: the servo follows a load that grows by some kPa in its response time");
   EXPECT_GT(result.watcher.rows.back().q, 50e3);
 }
 
@@ -108,7 +109,7 @@ TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
               result.state.worst_overshoot, worst);
   EXPECT_EQ(result.state.reversals, 6);
   EXPECT_LT(result.state.worst_overshoot, 500);
-  EXPECT_LT(worst, 1e-12);
+  EXPECT_BELOW_BECAUSE(worst, 1e-12, "round-off of a product of three edges in each of some 1e4 steps");
 }
 
 TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
@@ -149,8 +150,9 @@ TEST(RelativeDensity, IsFoundWithinTheTolerance)
   test::Unobserved nobody;
   const double tolerance = 0.01 * 0.273;
   const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {}, nobody);
-  EXPECT_NEAR(loose.void_ratio, 0.78, tolerance);
-  EXPECT_NEAR(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12);
+  EXPECT_NEAR_BECAUSE(loose.void_ratio, 0.78, tolerance, "that is what was asked for");
+  EXPECT_NEAR_BECAUSE(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12,
+                      "round-off of two ways to the same ratio");
   std::printf("e = %.4f at %.2f deg after %d compressions\n", loose.void_ratio, std::atan(loose.friction) * 180 / M_PI,
               loose.compressions);
 }
