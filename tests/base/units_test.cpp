@@ -2,6 +2,7 @@
 #include "base/units.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 
 #include <bit>
 #include <cmath>
@@ -69,11 +70,13 @@ TEST(Units, OfTheColumn)
 TEST(Units, FrictionIsKeptAsTangentAndCheckedInDegrees)
 {
   const Quantity degrees = parse_quantity("18 deg", Dimension::angle);
-  EXPECT_NEAR(degrees.value, 0.32491969623290632616, 1e-16);
+  EXPECT_NEAR_BECAUSE(degrees.value, 0.32491969623290632616, 1e-16,
+                      "half a unit of the last place of a tangent near 1/3");
   EXPECT_EQ(degrees.scale, 18);
   EXPECT_EQ(parse_quantity("185 deg", Dimension::angle).scale, 185); // its tangent alone would pass for 5 deg
   EXPECT_EQ(parse_quantity("0.25 tan", Dimension::angle).value, 0.25);
-  EXPECT_NEAR(parse_quantity("0.25 rad", Dimension::angle).scale, 14.323944878270580, 1e-14);
+  EXPECT_NEAR_BECAUSE(parse_quantity("0.25 rad", Dimension::angle).scale, 14.323944878270580, 1e-14,
+                      "round-off of a multiplication by 180/pi");
 }
 
 TEST(Units, Complaints)

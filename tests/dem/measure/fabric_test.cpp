@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/measure/fabric.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -75,9 +76,9 @@ Mat3 some_rotation() { return Eigen::AngleAxisd(1.1, Vec3(2, -1, 0.5).normalized
 TEST(Fabric, CubicLatticeIsIsotropic)
 {
   const Mat3 fabric = contact_fabric(contacts_along({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}));
-  EXPECT_LT((fabric - Mat3::Identity() / 3).norm(), 1e-15);
-  EXPECT_NEAR(fabric_y_minus_x(fabric), 0, 1e-15);
-  EXPECT_NEAR(fabric_y_minus_z(fabric), 0, 1e-15);
+  EXPECT_BELOW_BECAUSE((fabric - Mat3::Identity() / 3).norm(), 1e-15, "round-off of a mean of three dyads");
+  EXPECT_NEAR_BECAUSE(fabric_y_minus_x(fabric), 0, 1e-15, "round-off of a mean of three dyads");
+  EXPECT_NEAR_BECAUSE(fabric_y_minus_z(fabric), 0, 1e-15, "round-off of a mean of three dyads");
 }
 
 TEST(Fabric, OneDirection)
@@ -93,14 +94,16 @@ TEST(Fabric, OneDirection)
   EXPECT_DOUBLE_EQ(a.contact.intensity(), 7.5);
 }
 
+constexpr test::Tolerance unit{1e-15, "round-off of a mean of four dyads of unit vectors"};
+
 TEST(Fabric, TraceIsOneAndRotates)
 {
   Snapshot s = contacts_along({Vec3(1, 2, 3), Vec3(-2, 1, 0), Vec3(0, 1, 5), Vec3(1, 1, -1)});
   const Mat3 before = contact_fabric(s);
-  EXPECT_NEAR(before.trace(), 1, 1e-15);
+  EXPECT_NEAR_BECAUSE(before.trace(), 1, unit);
   EXPECT_EQ(before, Mat3(before.transpose()));
   turn(s, some_rotation());
-  EXPECT_LT((contact_fabric(s) - some_rotation() * before * some_rotation().transpose()).norm(), 1e-15);
+  EXPECT_BELOW_BECAUSE((contact_fabric(s) - some_rotation() * before * some_rotation().transpose()).norm(), unit);
 }
 
 TEST(Anisotropies, RecoverTheExpansionTheForcesCameFrom)
@@ -110,13 +113,13 @@ TEST(Anisotropies, RecoverTheExpansionTheForcesCameFrom)
   a_n << -0.3, 0.1, 0.05, 0.1, 0.5, 0, 0.05, 0, -0.2;
   const Mat3 a_t = about_y(0.25);
   const Anisotropies a = anisotropies(expanded_forces(a_c, a_n, a_t, f0));
-  const double tolerance = 1e-3; // of the 20,000 directions
-  EXPECT_LT((a.contact.tensor - about_y(a_c)).norm(), tolerance);
-  EXPECT_LT((a.normal_force.tensor - a_n).norm(), tolerance);
-  EXPECT_LT((a.tangential_force.tensor - a_t).norm(), tolerance);
-  EXPECT_NEAR(a.mean_normal_force, f0, tolerance * f0);
-  EXPECT_NEAR(a.contact.along_y(), a_c, tolerance);
-  EXPECT_NEAR(a.contact.intensity(), a_c, tolerance);
+  constexpr test::Tolerance directions{1e-3, "20,000 directions stand for all"};
+  EXPECT_BELOW_BECAUSE((a.contact.tensor - about_y(a_c)).norm(), directions);
+  EXPECT_BELOW_BECAUSE((a.normal_force.tensor - a_n).norm(), directions);
+  EXPECT_BELOW_BECAUSE((a.tangential_force.tensor - a_t).norm(), directions);
+  EXPECT_NEAR_BECAUSE(a.mean_normal_force, f0, f0 * directions);
+  EXPECT_NEAR_BECAUSE(a.contact.along_y(), a_c, directions);
+  EXPECT_NEAR_BECAUSE(a.contact.intensity(), a_c, directions);
   EXPECT_EQ(a.outside_expansion, 0u);
 }
 
@@ -129,8 +132,11 @@ TEST(Anisotropies, SumToTheStressRatio)
   for (const Contact &c : s.contacts)
     sum += (c.normal_force * c.history.normal + c.history.shear_force) * c.history.normal.transpose();
   const double ratio = (sum(1, 1) - 0.5 * (sum(0, 0) + sum(2, 2))) / (sum.trace() / 3);
-  EXPECT_NEAR(ratio, 0.4 * (a_c + a_n + 1.5 * a_t), 0.02 * ratio);
+  EXPECT_NEAR_BECAUSE(ratio, 0.4 * (a_c + a_n + 1.5 * a_t), 0.02 * ratio,
+                      "products of anisotropies, up to 0.05, are left out of the sum");
 }
+
+constexpr test::Tolerance turned{1e-12, "round-off of 20,000 rotated vectors"};
 
 TEST(Anisotropies, RotateAndChangeSign)
 {
@@ -141,9 +147,9 @@ TEST(Anisotropies, RotateAndChangeSign)
   const Anisotropies after = anisotropies(s);
   for (auto part : {&Anisotropies::contact, &Anisotropies::normal_force, &Anisotropies::tangential_force})
     {
-      EXPECT_LT(((after.*part).tensor - q * (before.*part).tensor * q.transpose()).norm(), 1e-12);
-      EXPECT_NEAR((after.*part).tensor.trace(), 0, 1e-14);
-      EXPECT_NEAR((after.*part).intensity(), (before.*part).intensity(), 1e-12);
+      EXPECT_BELOW_BECAUSE(((after.*part).tensor - q * (before.*part).tensor * q.transpose()).norm(), turned);
+      EXPECT_NEAR_BECAUSE((after.*part).tensor.trace(), 0, 1e-14, "round-off of a mean of 20,000 deviators");
+      EXPECT_NEAR_BECAUSE((after.*part).intensity(), (before.*part).intensity(), turned);
     }
   EXPECT_LT(anisotropies(expanded_forces(-0.3, about_y(-0.4), about_y(0), 1)).normal_force.along_y(), -0.39);
 }
@@ -175,9 +181,9 @@ TEST(ForceChains, StrongColumnsInAWeakNet)
   EXPECT_EQ(chains.strong_fraction, 0.25);
   EXPECT_EQ(chains.strong(1, 1), 1);
   EXPECT_EQ(chains.weak(1, 1), 0);
-  EXPECT_NEAR(chains.weak.trace(), 1, 1e-15);
+  EXPECT_NEAR_BECAUSE(chains.weak.trace(), 1, unit);
   const Mat3 both = 0.25 * chains.strong + 0.75 * chains.weak;
-  EXPECT_LT((both - contact_fabric(s)).norm(), 1e-15);
+  EXPECT_BELOW_BECAUSE((both - contact_fabric(s)).norm(), unit);
   EXPECT_EQ(force_chains(contacts_along({Vec3::UnitX()})).strong.norm(), 0); // all equal: none is above the mean
 }
 } // namespace isostat

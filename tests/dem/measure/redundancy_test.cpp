@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/measure/redundancy.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,8 +72,8 @@ TEST(Redundancy, IsTheFormulaOfThePaperOnRecordedClasses)
 {
   // classes of a recorded packing of 1,000 grains in compression, with the index computed from Eq. (2) alongside
   const ContactNetwork network{{747, 878, 15, 76}, {1000, 167, 0, 167}};
-  EXPECT_NEAR(network.redundancy_index(), 1.641856743, 1e-9);
-  EXPECT_NEAR(network.coordination_number(), 4.120048019, 1e-9);
+  EXPECT_NEAR_BECAUSE(network.redundancy_index(), 1.641856743, 1e-9, "the digits given");
+  EXPECT_NEAR_BECAUSE(network.coordination_number(), 4.120048019, 1e-9, "the digits given");
 }
 
 TEST(Redundancy, NeverBelowOneSixth)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/motion/leapfrog.hpp"
 #include "tests/support/instruction_sets.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +110,8 @@ TEST_P(Leapfrog, FreeFlightIsStraight)
   for (std::size_t i = 0; i < 5; ++i)
     {
       const Vec3 way = 0x1p-10 * start.linear_velocity(i);
-      EXPECT_LE((packing.centre(i) - start.centre(i) - way).norm(), 1024 * 1e-16 * start.centre(i).norm());
+      EXPECT_BELOW_BECAUSE((packing.centre(i) - start.centre(i) - way).norm(), 1024 * 1e-16 * start.centre(i).norm(),
+                           "each of 1,024 steps rounds the position once");
     }
 }
 
@@ -136,9 +138,11 @@ TEST_P(Leapfrog, ConstantForceFollowsTheParabola)
     {
       const Vec3 v = start.linear_velocity(i) + n * dt * acceleration, w = start.angular_velocity(i) + n * dt * spin_up;
       const Vec3 x = start.centre(i) + n * dt * start.linear_velocity(i) + 0.5 * n * (n + 1) * dt * dt * acceleration;
-      EXPECT_LE((packing.linear_velocity(i) - v).norm(), 1e-13 * v.norm());
-      EXPECT_LE((packing.angular_velocity(i) - w).norm(), 1e-13 * w.norm());
-      EXPECT_LE((packing.centre(i) - x).norm(), 1e-13 * x.norm());
+      EXPECT_BELOW_BECAUSE((packing.linear_velocity(i) - v).norm(), 1e-13 * v.norm(),
+                           "round-off of a sum over the steps");
+      EXPECT_BELOW_BECAUSE((packing.angular_velocity(i) - w).norm(), 1e-13 * w.norm(),
+                           "round-off of a sum over the steps");
+      EXPECT_BELOW_BECAUSE((packing.centre(i) - x).norm(), 1e-13 * x.norm(), "round-off of a sum over the steps");
     }
 }
 
@@ -161,9 +165,12 @@ TEST_P(Leapfrog, DampingFollowsTheFormula)
                   damped_velocity(before.velocity[at], force[8 * i + k], before.velocity[4 * i + 3], dt, damping);
               const double w =
                   damped_velocity(before.spin[at], force[8 * i + 4 + k], before.spin[4 * i + 3], dt, damping);
-              EXPECT_NEAR(packing.velocity[at], v, 1e-15 * 0.5);
-              EXPECT_NEAR(packing.spin[at], w, 1e-15 * 1500);
-              EXPECT_NEAR(packing.position[at], before.position[at] + dt * packing.velocity[at], 1e-15 * 1e-2);
+              EXPECT_NEAR_BECAUSE(packing.velocity[at], v, 1e-15 * 0.5,
+                                  "round-off of five operations; velocities are up to 0.5 m/s");
+              EXPECT_NEAR_BECAUSE(packing.spin[at], w, 1e-15 * 1500,
+                                  "round-off of five operations; spins are up to 1500/s");
+              EXPECT_NEAR_BECAUSE(packing.position[at], before.position[at] + dt * packing.velocity[at], 1e-15 * 1e-2,
+                                  "round-off of an addition; positions are up to 1 cm");
             }
       }
 }
@@ -180,7 +187,8 @@ TEST_P(Leapfrog, DampingTakesWhatTheBalanceMisses)
       const Action force = action;
       const double loss = integrate(packing, action.data(), dt, 0.2, no_limit, true).damping_loss;
       const double energy = kinetic_energy(packing);
-      EXPECT_NEAR(loss, work(before, packing, force, dt) - (energy - kinetic_energy(before)), 1e-13 * energy);
+      EXPECT_NEAR_BECAUSE(loss, work(before, packing, force, dt) - (energy - kinetic_energy(before)), 1e-13 * energy,
+                          "round-off of sums over 40 grains");
       taken += loss;
     }
   EXPECT_GT(taken, 0);
@@ -227,7 +235,8 @@ TEST_P(Leapfrog, ReportsTheGreatestSpeedAsABound)
   for (std::size_t i = 0; i < 40; ++i)
     maximum = std::max(maximum, packing.linear_velocity(i).norm());
   EXPECT_GE(report.max_speed, maximum);
-  EXPECT_LE(report.max_speed, std::sqrt(3.0) * maximum * (1 + 1e-15));
+  EXPECT_BELOW_BECAUSE(report.max_speed, std::sqrt(3.0) * maximum * (1 + 1e-15),
+                       "round-off of the bound: the largest component times sqrt(3)");
   EXPECT_FALSE(report.exploded);
 }
 
@@ -281,7 +290,7 @@ TEST_P(Leapfrog, HomogeneousStrainComesOnTopOfTheMotion)
         {
           const Vec3 x = before.centre(i) + (dt * packing.linear_velocity(i) + growth * before.centre(i));
           for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(packing.centre(i)[k], x[k], 0x1p-52 * std::abs(x[k])); // one unit of the last place
+            EXPECT_NEAR_BECAUSE(packing.centre(i)[k], x[k], 0x1p-52 * std::abs(x[k]), "one unit of the last place");
           EXPECT_EQ(packing.radius(i), before.radius(i));
         }
       for (std::size_t at = 4 * 40; at < packing.position.size(); ++at)
@@ -316,7 +325,8 @@ TEST_P(Leapfrog, GrainsAtRestFollowTheStrainExactly)
       deformation = once * deformation;
     }
   for (std::size_t i = 0; i < 20; ++i)
-    EXPECT_LE((packing.centre(i) - deformation * before.centre(i)).norm(), 1e-13 * before.centre(i).norm());
+    EXPECT_BELOW_BECAUSE((packing.centre(i) - deformation * before.centre(i)).norm(), 1e-13 * before.centre(i).norm(),
+                         "round-off of 100 steps");
 }
 
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Leapfrog, testing::ValuesIn(test::instruction_sets()),

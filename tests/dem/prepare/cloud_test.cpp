@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/random.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -91,8 +92,8 @@ TEST(Random, IsUniformOnTheUnitInterval)
         sum_of_squares += u * u;
       }
   const double mean = sum / 40000;
-  EXPECT_NEAR(mean, 0.5, 0.006);
-  EXPECT_NEAR(sum_of_squares / 40000 - mean * mean, 1.0 / 12, 0.0016);
+  EXPECT_NEAR_BECAUSE(mean, 0.5, 0.006, "four standard errors of the mean");
+  EXPECT_NEAR_BECAUSE(sum_of_squares / 40000 - mean * mean, 1.0 / 12, 0.0016, "four standard errors of the variance");
 }
 
 TEST(Cloud, SpheresNeitherOverlapNorLeaveTheBox)
@@ -121,8 +122,10 @@ TEST(Cloud, HasTheSolidFractionAndTheScaledGrading)
   const GradingSpec spec; // the paper's specimen: 10,000 grains in a 10 mm cube
   const Cloud cloud = make_cloud(spec);
   const Packing &packing = cloud.packing;
-  EXPECT_NEAR(packing.solid_volume() / (0.33 * cloud.box.volume()), 1, 1e-12);
-  EXPECT_NEAR(packing.d50() / cloud.upscaling, grading_report(spec).d50, 0.01 * 0.14e-3);
+  EXPECT_NEAR_BECAUSE(packing.solid_volume() / (0.33 * cloud.box.volume()), 1, 1e-12,
+                      "round-off of a sum of 10,000 volumes");
+  EXPECT_NEAR_BECAUSE(packing.d50() / cloud.upscaling, grading_report(spec).d50, 0.01 * 0.14e-3,
+                      "a percentile of 10,000 grains falls between two of them");
   EXPECT_TRUE(all_inside(packing, cloud.box));
   EXPECT_EQ(packing.density, 2650);
   EXPECT_EQ(packing.linear_velocity(7), Vec3::Zero());
@@ -151,7 +154,7 @@ TEST(Cloud, NeighboursInMemoryAreNeighboursInSpace)
   double sum = 0;
   for (std::size_t i = 1; i < packing.n_grains(); ++i)
     sum += (packing.centre(i) - packing.centre(i - 1)).norm();
-  EXPECT_LT(sum / 499, 0.25 * 10e-3);
+  EXPECT_BELOW_BECAUSE(sum / 499, 0.25 * 10e-3, "twice the mean spacing of grains, against 0.66 edges for any two");
 }
 
 TEST(Cloud, GrainsFillTheBoxEvenly)

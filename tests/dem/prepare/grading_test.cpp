@@ -2,6 +2,7 @@
 #include "dem/prepare/grading.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,13 +52,13 @@ std::string complaint(const GradingSpec &spec)
 
 bool contains(const std::string &text, const std::string &part) { return text.find(part) != std::string::npos; }
 
-// Nominal values of the sand (DESIGN 5): d50 = 0.14 mm, Cu = 1.5. The sheet is read to a few percent.
+// Nominal values of the sand from its data sheet: d50 = 0.14 mm, Cu = 1.5. The sheet is read to a few percent.
 TEST(Grading, KarlsruheFineSandHasItsNominalNumbers)
 {
   const GradingReport report = grading_report({});
   EXPECT_EQ(report.name, "karlsruhe-fine-sand");
-  EXPECT_NEAR(report.d50, 0.14e-3, 0.03 * 0.14e-3);
-  EXPECT_NEAR(report.uniformity, 1.5, 0.04 * 1.5);
+  EXPECT_NEAR_BECAUSE(report.d50, 0.14e-3, 0.03 * 0.14e-3, "the sheet is read to a few percent");
+  EXPECT_NEAR_BECAUSE(report.uniformity, 1.5, 0.04 * 1.5, "the sheet is read to a few percent");
   EXPECT_EQ(report.min_diameter, 0.0631e-3);
   EXPECT_EQ(report.max_diameter, 0.3135e-3);
 }
@@ -71,20 +72,23 @@ TEST(Grading, MassBelowTheFirstPointIsLeftOutAndReported)
   EXPECT_DOUBLE_EQ(report.coarsest_percent, 100);
   ASSERT_EQ(report.curve.percent_finer.size(), 7u);
   EXPECT_EQ(report.curve.percent_finer.front(), 0);
-  EXPECT_NEAR(report.curve.percent_finer[3], 100 * (28.24 - 1.53) / (100 - 1.53), 1e-12);
+  EXPECT_NEAR_BECAUSE(report.curve.percent_finer[3], 100 * (28.24 - 1.53) / (100 - 1.53), 1e-12,
+                      "round-off of five operations on percentages");
 }
 
 TEST(Grading, InterpolatesLinearlyInTheLogarithmOfDiameter)
 {
   const GradingCurve curve = grading_curve(table_spec({{1e-4, 0}, {1e-3, 50}, {2e-3, 100}}));
-  EXPECT_NEAR(d_at(curve, 25), std::sqrt(1e-4 * 1e-3), 1e-18);
-  EXPECT_NEAR(d_at(curve, 75), std::sqrt(1e-3 * 2e-3), 1e-18);
+  EXPECT_NEAR_BECAUSE(d_at(curve, 25), std::sqrt(1e-4 * 1e-3), 1e-18, "round-off of a logarithm and a power");
+  EXPECT_NEAR_BECAUSE(d_at(curve, 75), std::sqrt(1e-3 * 2e-3), 1e-18, "round-off of a logarithm and a power");
   EXPECT_EQ(d_at(curve, 0), 1e-4);
   EXPECT_EQ(d_at(curve, 50), 1e-3);
   EXPECT_EQ(d_at(curve, 100), 2e-3);
   for (double percent : {0.0, 3.0, 50.0, 61.0, 99.0, 100.0})
-    EXPECT_NEAR(percent_finer(curve, d_at(curve, percent)), percent, 1e-10);
-  EXPECT_NEAR(uniformity_coefficient(curve), d_at(curve, 60) / d_at(curve, 10), 1e-14);
+    EXPECT_NEAR_BECAUSE(percent_finer(curve, d_at(curve, percent)), percent, 1e-10,
+                        "round-off of a power and its logarithm, over the slope of 50 % in a decade");
+  EXPECT_NEAR_BECAUSE(uniformity_coefficient(curve), d_at(curve, 60) / d_at(curve, 10), 1e-14,
+                      "round-off of one quotient");
   EXPECT_EQ(percent_finer(curve, 1e-5), 0);
   EXPECT_EQ(percent_finer(curve, 1e-2), 100);
   EXPECT_THROW(d_at(curve, -1), InputError);
@@ -102,7 +106,9 @@ TEST(Grading, CutKeepsTheShapeBetweenTheLimits)
   EXPECT_EQ(report.coarsest_percent, 90);
   EXPECT_EQ(report.curve.diameter.size(), 3u);
   for (double percent : {0.0, 20.0, 25.0, 50.0, 100.0})
-    EXPECT_NEAR(d_at(report.curve, percent), d_at(whole, 10 + 0.8 * percent), 1e-16) << percent;
+    EXPECT_NEAR_BECAUSE(d_at(report.curve, percent), d_at(whole, 10 + 0.8 * percent), 1e-16,
+                        "round-off of two ways to interpolate diameters of some 1e-4 m")
+        << percent;
 }
 
 TEST(Grading, CutAtAPointOfTheCurveStartsThere)
@@ -128,7 +134,9 @@ TEST(Grading, SampleFollowsTheCurveByMass)
   EXPECT_GE(sample.back(), curve.diameter.front());
   EXPECT_LE(sample.front(), curve.diameter.back());
   for (std::size_t k = 0; k < curve.diameter.size(); ++k)
-    EXPECT_NEAR(sampled_percent_finer(sample, curve.diameter[k]), curve.percent_finer[k], 0.1) << curve.diameter[k];
+    EXPECT_NEAR_BECAUSE(sampled_percent_finer(sample, curve.diameter[k]), curve.percent_finer[k], 0.1,
+                        "half a sphere: the heaviest of 10,000 weighs 0.14 % of the mass")
+        << curve.diameter[k];
 }
 
 // One segment: N(> d)/N = (d^-3 - d1^-3)/(d0^-3 - d1^-3), so sphere i of n has d^-3 linear in (i + 1/2)/n.
@@ -138,7 +146,7 @@ TEST(Grading, SampleOfOneSegmentIsTheClosedForm)
   for (std::size_t i = 0; i < 7; ++i)
     {
       const double inverse_cube = 0.125e9 + (static_cast<double>(i) + 0.5) / 7 * 0.875e9;
-      EXPECT_NEAR(sample[i], std::cbrt(1 / inverse_cube), 1e-17);
+      EXPECT_NEAR_BECAUSE(sample[i], std::cbrt(1 / inverse_cube), 1e-17, "round-off of a cube root of 1e-9");
     }
 }
 
@@ -148,7 +156,9 @@ TEST(Grading, GapGradedCurveHasNoGrainsInTheGap)
   EXPECT_EQ(curve.diameter.back(), 6e-4);
   const std::vector<double> sample = sample_diameters(curve, 5000);
   EXPECT_TRUE(std::none_of(sample.begin(), sample.end(), [](double d) { return d > 2e-4 && d < 5e-4; }));
-  EXPECT_NEAR(sampled_percent_finer(sample, 3e-4), 40, 0.5);
+  EXPECT_NEAR_BECAUSE(
+      sampled_percent_finer(sample, 3e-4), 40, 0.5,
+      "of 5,000 spheres the gap falls between two, of which the heaviest weigh some tenths of a percent");
 }
 
 TEST(Grading, UpscalingReachesTheSolidVolume)
@@ -158,7 +168,7 @@ TEST(Grading, UpscalingReachesTheSolidVolume)
   double volume = 0;
   for (double d : sample)
     volume += std::numbers::pi / 6 * std::pow(factor * d, 3);
-  EXPECT_NEAR(volume / target, 1, 1e-12);
+  EXPECT_NEAR_BECAUSE(volume / target, 1, 1e-12, "round-off of a sum of 10,000 volumes");
 }
 
 TEST(Grading, UnknownNameListsTheKnownOnes)

@@ -2,6 +2,7 @@
 #include "dem/prepare/pluviate.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,8 @@ TEST(VoidRatioInside, IsThatOfACubicLattice)
 {
   const Snapshot s = cubic_lattice(4, 0.1e-3);
   const RigidBox four_cells{Vec3::Constant(0.2e-3), Vec3::Constant(0.6e-3)}; // whole cells of the lattice
-  EXPECT_NEAR(void_ratio_inside(s.grains, four_cells), 6 / std::numbers::pi - 1, 0.01);
+  EXPECT_NEAR_BECAUSE(void_ratio_inside(s.grains, four_cells), 6 / std::numbers::pi - 1, 0.01,
+                      "lines a tenth of a diameter apart sample the spheres");
 }
 
 TEST(VoidRatioInside, IsZeroWithoutRoomOrGrains)
@@ -73,7 +75,9 @@ TEST(SurfaceHeight, OfALatticeIsItsTopLayerSeenFromAbove)
   const Snapshot s = cubic_lattice(3, r);
   // hemispheres over their squares: 5r - floor under the gaps (0) is seen nowhere but in the corners of the squares
   const double covered = std::numbers::pi / 4, mean_rise = 2.0 / 3 * r;
-  EXPECT_NEAR(surface_height(s.grains, s.box), covered * (5 * r + mean_rise), 0.05 * 5 * r);
+  EXPECT_NEAR_BECAUSE(
+      surface_height(s.grains, s.box), covered * (5 * r + mean_rise), 0.05 * 5 * r,
+      "lines a tenth of a diameter apart sample the hemispheres, and what is seen in the corners is left out");
 }
 
 TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
@@ -96,9 +100,11 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
     }
   } once;
   EXPECT_THROW(pluviate(cloud, law, how, once), Interrupted);
-  EXPECT_NEAR(once.speed / speed, 1, 1e-3);
-  EXPECT_NEAR(once.fallen / std::sqrt(2 * (height - radius) / g), 1, 1e-3);
-  EXPECT_NEAR(once.maximum / wanted, 1, 0.06); // the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)
+  EXPECT_NEAR_BECAUSE(once.speed / speed, 1, 1e-3, "the last step before contact: a step is 1e-3 of the fall at most");
+  EXPECT_NEAR_BECAUSE(once.fallen / std::sqrt(2 * (height - radius) / g), 1, 1e-3,
+                      "the last step before contact: a step is 1e-3 of the fall at most");
+  EXPECT_NEAR_BECAUSE(once.maximum / wanted, 1, 0.06,
+                      "the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)");
 }
 
 /// 500 grains of the paper's sand: seconds.
@@ -123,15 +129,16 @@ TEST(Pluviate, GrainsRestUnderTheirWeight)
         floor += c.normal_force;
       EXPECT_NE(c.wall, 3) << "a grain touches the lid";
     }
-  EXPECT_NEAR(floor / weight, 1, 0.01);
+  EXPECT_NEAR_BECAUSE(floor / weight, 1, 0.01, "kinetic energy is left where pluviation ends");
   EXPECT_GT(s.contacts.size(), s.grains.n_grains());
 }
 
 TEST(Pluviate, SoftContactsStayRigid)
 {
   EXPECT_LT(deposit().young, test::paper_law().young);
-  EXPECT_LT(deposit().max_overlap, 1e-3);
-  EXPECT_LT(deposit().resting_overlap, 1e-4);
+  EXPECT_BELOW_BECAUSE(deposit().max_overlap, 1e-3, "what the softened modulus is chosen for");
+  EXPECT_BELOW_BECAUSE(deposit().resting_overlap, 1e-4,
+                       "the weight of the layer, far below the impact that the modulus is chosen for");
 }
 
 TEST(Pluviate, IsLooserThanCompressionWithoutFriction)

@@ -3,6 +3,7 @@
 // a wall. Every row holds positions, half-step velocities and the forces that belong to them.
 #include "base/files/csv_table.hpp"
 #include "dem/contact/kernel.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -202,11 +203,12 @@ TEST(ContactLaw, NewContactStartsWithoutRotation)
   const double alpha = (r1 + r2) / (p.x2 - p.x1).norm();
   const Vec3 vr = alpha * (p.v2 - p.v1) - (r2 * p.w2 + r1 * p.w1).cross(n);
   const Vec3 dw = p.w2 - p.w1;
-  EXPECT_LT((history.shear_force + k.shear * 1e-12 * (vr - vr.dot(n) * n)).norm(), 1e-14 * k.shear * 1e-12 * vr.norm());
-  EXPECT_LT((history.bending_moment + k.rolling * 1e-12 * (dw - dw.dot(n) * n)).norm(),
-            1e-14 * k.rolling * 1e-12 * dw.norm());
-  EXPECT_LT((history.twisting_moment + k.twisting * 1e-12 * dw.dot(n) * n).norm(),
-            1e-14 * k.twisting * 1e-12 * dw.norm());
+  EXPECT_BELOW_BECAUSE((history.shear_force + k.shear * 1e-12 * (vr - vr.dot(n) * n)).norm(),
+                       1e-14 * k.shear * 1e-12 * vr.norm(), "round-off of some twenty operations");
+  EXPECT_BELOW_BECAUSE((history.bending_moment + k.rolling * 1e-12 * (dw - dw.dot(n) * n)).norm(),
+                       1e-14 * k.rolling * 1e-12 * dw.norm(), "round-off of some twenty operations");
+  EXPECT_BELOW_BECAUSE((history.twisting_moment + k.twisting * 1e-12 * dw.dot(n) * n).norm(),
+                       1e-14 * k.twisting * 1e-12 * dw.norm(), "round-off of some twenty operations");
   EXPECT_EQ(history.normal, Vec3((p.x2 - p.x1) / (p.x2 - p.x1).norm()));
 }
 
@@ -259,8 +261,10 @@ TEST(ContactLaw, YieldedStateLiesOnTheSurface)
   p.w2 *= 1e5;
   ContactHistory history;
   const ContactForce f = contact_force(law, p, dt, history);
-  EXPECT_NEAR(history.shear_force.norm(), law.friction * f.normal_force, 1e-15 * f.normal_force);
-  EXPECT_NEAR(history.bending_moment.norm(), 0.5 * r2 * f.normal_force, 1e-15 * r2 * f.normal_force);
+  EXPECT_NEAR_BECAUSE(history.shear_force.norm(), law.friction * f.normal_force, 1e-15 * f.normal_force,
+                      "round-off of a vector that is scaled to its limit");
+  EXPECT_NEAR_BECAUSE(history.bending_moment.norm(), 0.5 * r2 * f.normal_force, 1e-15 * r2 * f.normal_force,
+                      "round-off of a vector that is scaled to its limit");
   EXPECT_TRUE(is_sliding(history.shear_force.norm(), f.normal_force, law));
   EXPECT_TRUE(is_rolling(history.bending_moment.norm(), f.normal_force, 0.5 * r2, law));
 }
