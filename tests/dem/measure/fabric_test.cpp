@@ -136,7 +136,7 @@ TEST(Anisotropies, SumToTheStressRatio)
                       "products of anisotropies, up to 0.05, are left out of the sum");
 }
 
-constexpr test::Tolerance turned{1e-12, "round-off of 20,000 rotated vectors"};
+constexpr test::Tolerance rotated{1e-12, "round-off of 20,000 rotated vectors"};
 
 TEST(Anisotropies, RotateAndChangeSign)
 {
@@ -147,9 +147,9 @@ TEST(Anisotropies, RotateAndChangeSign)
   const Anisotropies after = anisotropies(s);
   for (auto part : {&Anisotropies::contact, &Anisotropies::normal_force, &Anisotropies::tangential_force})
     {
-      EXPECT_BELOW_BECAUSE(((after.*part).tensor - q * (before.*part).tensor * q.transpose()).norm(), turned);
+      EXPECT_BELOW_BECAUSE(((after.*part).tensor - q * (before.*part).tensor * q.transpose()).norm(), rotated);
       EXPECT_NEAR_BECAUSE((after.*part).tensor.trace(), 0, 1e-14, "round-off of a mean of 20,000 deviators");
-      EXPECT_NEAR_BECAUSE((after.*part).intensity(), (before.*part).intensity(), turned);
+      EXPECT_NEAR_BECAUSE((after.*part).intensity(), (before.*part).intensity(), rotated);
     }
   EXPECT_LT(anisotropies(expanded_forces(-0.3, about_y(-0.4), about_y(0), 1)).normal_force.along_y(), -0.39);
 }

@@ -2,6 +2,7 @@
 #include "fem/material/elastic.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -21,6 +22,8 @@ Stress after(Elastic &m, const Gradient &h)
   return s[0];
 }
 
+constexpr test::Tolerance pascals{1e-9, "round-off of stresses of 1e5 Pa, 1e-11 each"};
+
 TEST(Elastic, UniaxialStrainAndShear)
 {
   Elastic m({g, nu}, 1);
@@ -28,17 +31,17 @@ TEST(Elastic, UniaxialStrainAndShear)
   Gradient h{};
   h[8] = -1e-3;
   Stress s = after(m, h);
-  EXPECT_NEAR(s[2], -100e3 - 1e-3 * (lambda + 2 * g), 1e-9);
-  EXPECT_NEAR(s[0], -50e3 - 1e-3 * lambda, 1e-9);
-  EXPECT_NEAR(s[1], s[0], 1e-9);
+  EXPECT_NEAR_BECAUSE(s[2], -100e3 - 1e-3 * (lambda + 2 * g), pascals);
+  EXPECT_NEAR_BECAUSE(s[0], -50e3 - 1e-3 * lambda, pascals);
+  EXPECT_NEAR_BECAUSE(s[1], s[0], pascals);
   h = {};
   h[2] = 1e-3;
   h[7] = 3e-3;
   const double before = s[2];
   s = after(m, h);
   EXPECT_EQ(s[2], before);
-  EXPECT_NEAR(s[4], 1e-3 * g, 1e-9);
-  EXPECT_NEAR(s[3], 3e-3 * g, 1e-9);
+  EXPECT_NEAR_BECAUSE(s[4], 1e-3 * g, pascals);
+  EXPECT_NEAR_BECAUSE(s[3], 3e-3 * g, pascals);
   h = {0, 1e-3, 0, -1e-3, 0, 0, 0, 0, 0}; // a rotation
   EXPECT_EQ(after(m, h), s);
 }
@@ -46,7 +49,7 @@ TEST(Elastic, UniaxialStrainAndShear)
 TEST(Elastic, StiffnessIsWhatTrialDoes)
 {
   const ElasticParameters p = ElasticParameters::from_bulk_modulus(g, 90e6);
-  EXPECT_NEAR(p.bulk_modulus(), 90e6, 1e-6);
+  EXPECT_NEAR_BECAUSE(p.bulk_modulus(), 90e6, 1e-6, "round-off of moduli of 1e8 Pa, 1e-8 each");
   std::vector<Stiffness> c(1);
   std::vector<WaveModuli> w(1);
   for (int j = 0; j < 6; ++j)
@@ -58,9 +61,9 @@ TEST(Elastic, StiffnessIsWhatTrialDoes)
       h[std::array{0, 4, 8, 5, 2, 1}[j]] = 1e-4;
       const Stress s = after(m, h);
       for (int k = 0; k < 6; ++k)
-        EXPECT_NEAR(c[0](k, j), s[k] / 1e-4, 1e-6);
+        EXPECT_NEAR_BECAUSE(c[0](k, j), s[k] / 1e-4, 1e-6, "round-off of a stress of 1e4 Pa, over a strain of 1e-4");
     }
-  EXPECT_NEAR(w[0].p, c[0](2, 2), 1e-6);
+  EXPECT_NEAR_BECAUSE(w[0].p, c[0](2, 2), 1e-6, "round-off of moduli of 1e8 Pa, 1e-8 each");
   EXPECT_EQ(w[0].s, c[0](4, 4));
 }
 

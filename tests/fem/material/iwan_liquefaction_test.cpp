@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fem/material/iwan_sample.hpp"
+#include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,8 @@ TEST(Iwan, LiquefiedSandBecomesSolidAgainWhenCompressed)
     s.strain({-1e-6, 0, 0, 0, -1e-6, 0, 0, 0, -1e-6});
   // closed form of d p = K d eps, K ~ sqrt(p)
   const double bulk = loose.shear_modulus * 4 / 3;
-  EXPECT_NEAR(strain - gap, 2 * p0 / bulk * (1 - std::sqrt(0.02)), 2e-5);
+  EXPECT_NEAR_BECAUSE(strain - gap, 2 * p0 / bulk * (1 - std::sqrt(0.02)), 2e-5,
+                      "some strain steps of 3e-6, at both ends and where loosening ends");
   EXPECT_EQ(s.iwan.loosening(0), 0);
   EXPECT_GE(s.iwan.mean_pressure(0), p0);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/soil.hpp"
+#include "tests/support/near.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,8 +42,9 @@ TEST(SoilProfile, EffectiveStressByHand)
   double largest = 0;
   for (const auto &[z, stress] : points)
     {
-      EXPECT_NEAR(soil.vertical_effective_stress(z), stress, 1e-9) << z;
-      EXPECT_NEAR(soil.vertical_effective_stress(z, 20e3), stress + 20e3, 1e-9) << z;
+      EXPECT_NEAR_BECAUSE(soil.vertical_effective_stress(z), stress, 1e-9, "round-off of sums of 1e5 Pa") << z;
+      EXPECT_NEAR_BECAUSE(soil.vertical_effective_stress(z, 20e3), stress + 20e3, 1e-9, "round-off of sums of 1e5 Pa")
+          << z;
       largest = std::max(largest, std::abs(soil.vertical_effective_stress(z) - stress));
     }
   printf("effective stress of three layers: error %.1e Pa\n", largest);
@@ -56,7 +58,9 @@ TEST(SoilProfile, EffectiveStressIsContinuousAndItsSlopeIsTheSubmergedWeight)
     {
       const double slope = (soil.vertical_effective_stress(z) - soil.vertical_effective_stress(z + step)) / step;
       const double low = soil.layers[soil.layer_at(z)].density, high = soil.layers[soil.layer_at(z + step)].density;
-      EXPECT_LE(slope, (std::max(low, high) - 1000) * 10 + 1e-5) << z;
+      EXPECT_BELOW_BECAUSE(slope, (std::max(low, high) - 1000) * 10 + 1e-5,
+                           "round-off of a difference of 1e5 Pa over a step of 1 mm")
+          << z;
       EXPECT_GE(slope, (std::min(low, high) - 1000) * 10 - 1e-5) << z;
     }
 }

@@ -2,6 +2,7 @@
 #include "fem/motion/motion_input.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <array>
@@ -65,7 +66,7 @@ TEST(Motion, LinearAccelerationIsIntegratedExactly)
   const double d = largest_difference([&](double t) { return m.displacement(t); },
                                       [&](double t) { return c * t * t / 2 + s * t * t * t / 6; }, 3);
   printf("linear acceleration: error of a %.1e m/s2, v %.1e m/s, d %.1e m\n", a, v, d);
-  EXPECT_LT(std::max({a, v, d}), 1e-14);
+  EXPECT_BELOW_BECAUSE(std::max({a, v, d}), 1e-14, "round-off: the integrals of a straight line are exact");
   EXPECT_EQ(m.peak(), 0.7);
   EXPECT_DOUBLE_EQ(m.duration(), 3);
 }
@@ -125,24 +126,28 @@ TEST(Harmonic, ConvergesToTheClosedFormWithTheSquareOfTheInterval)
     {
       const double order = std::log2(coarse[k] / fine[k]);
       printf("harmonic, %c: error %.2e at 0.02 s, %.2e at 0.01 s, order %.3f\n", "avd"[k], coarse[k], fine[k], order);
-      EXPECT_NEAR(order, 2, 0.1);
+      EXPECT_NEAR_BECAUSE(order, 2, 0.1, "terms of the fourth order");
     }
   EXPECT_LT(fine[0], 2 * std::pow(2 * pi * 1.25 * 0.01, 2) / 8 * 1.01); // A (w dt)^2/8, error of the straight line
 }
+
+constexpr test::Tolerance crest{1e-12, "round-off of a sine of some hundred radians at its crest"};
 
 TEST(Harmonic, RampIsSmoothAndEndsTheDrift)
 {
   const double f = 2, dt = 0.005;
   const Motion m = harmonic_motion(3, f, 20, 4, dt), sudden = harmonic_motion(3, f, 20, 0, dt);
   EXPECT_EQ(m.accelerations().size(), 4001u);
-  EXPECT_NEAR(m.peak(), 3, 1e-12);
+  EXPECT_NEAR_BECAUSE(m.peak(), 3, crest);
   for (const double t : {1.0625, 17.5625})
     {
       const double w = (1 - std::cos(pi * std::min(t, 20 - t) / 4)) / 2;
-      EXPECT_NEAR(m.acceleration(t), 3 * w * std::sin(2 * pi * f * t), 2e-3);
+      EXPECT_NEAR_BECAUSE(
+          m.acceleration(t), 3 * w * std::sin(2 * pi * f * t), 2e-3,
+          "a straight line between samples: 3 (w dt)^2/8 of where it is curved, at samples none but that of the ramp");
     }
-  EXPECT_NEAR(m.acceleration(10.125), 3, 1e-12);
-  EXPECT_NEAR(m.velocity(20), 0, 1e-12); // odd about 10 s
+  EXPECT_NEAR_BECAUSE(m.acceleration(10.125), 3, crest);
+  EXPECT_NEAR_BECAUSE(m.velocity(20), 0, 1e-12, "the motion is odd about 10 s: round-off of a sum of 4,000 samples");
   printf("harmonic: displacement at the end %.3f m with a ramp, %.3f m without\n", m.displacement(20),
          sudden.displacement(20));
   EXPECT_LT(std::abs(m.displacement(20)), 0.01 * sudden.displacement(20));
@@ -153,7 +158,7 @@ TEST(Harmonic, DurationThatIsNoMultipleOfTheInterval)
   const Motion m = harmonic_motion(1, 1, 1.26, 0, 0.05);
   EXPECT_EQ(m.accelerations().size(), 27u);
   EXPECT_EQ(m.accelerations().back(), 0);
-  EXPECT_NEAR(m.accelerations()[25], 1, 1e-12);
+  EXPECT_NEAR_BECAUSE(m.accelerations()[25], 1, crest);
 }
 
 std::array<double, 3> ricker_errors(double dt)
@@ -177,12 +182,12 @@ TEST(Ricker, ConvergesToTheClosedFormWithTheSquareOfTheInterval)
     {
       const double order = std::log2(coarse[k] / fine[k]);
       printf("Ricker, %c: error %.2e at 0.01 s, %.2e at 0.005 s, order %.3f\n", "avd"[k], coarse[k], fine[k], order);
-      EXPECT_NEAR(order, 2, 0.1);
+      EXPECT_NEAR_BECAUSE(order, 2, 0.1, "terms of the fourth order");
     }
   const Motion m = ricker_motion(2, 2, 1, 0.005);
-  EXPECT_NEAR(m.peak(), 2, 1e-12);
-  EXPECT_NEAR(m.velocity(5), 0, 1e-14);
-  EXPECT_NEAR(m.displacement(5), 0, 1e-14);
+  EXPECT_NEAR_BECAUSE(m.peak(), 2, crest);
+  EXPECT_NEAR_BECAUSE(m.velocity(5), 0, 1e-14, "what is left of the pulse and round-off");
+  EXPECT_NEAR_BECAUSE(m.displacement(5), 0, 1e-14, "what is left of the pulse and round-off");
 }
 
 TEST(AnalyticMotions, BadArguments)
@@ -207,7 +212,7 @@ TEST(Baseline, BothEndWithoutVelocity)
       const Motion c = corrected(m, b);
       printf("baseline %d: velocity at the end %.3f -> %.1e m/s, displacement %.2f -> %.2f m\n", int(b), m.velocity(40),
              c.velocity(40), m.displacement(40), c.displacement(40));
-      EXPECT_LT(std::abs(c.velocity(40)), 1e-12);
+      EXPECT_BELOW_BECAUSE(std::abs(c.velocity(40)), 1e-12, "round-off of a sum of 4,000 samples");
       EXPECT_EQ(c.displacement(50), c.displacement(40) + c.velocity(40) * 10);
     }
   EXPECT_TRUE(corrected(Motion(), Baseline::quadratic).at_rest());
@@ -228,9 +233,11 @@ TEST(Baseline, QuadraticTakesAParabolaOffWhole)
   };
   printf("baseline: drifted against clean %.1e m, twice against once %.1e m, parabola alone leaves %.1e m/s2\n",
          difference(clean, drifted), difference(twice, drifted), only.peak());
-  EXPECT_LT(difference(clean, drifted), 1e-10);
-  EXPECT_LT(difference(twice, drifted), 1e-10);
-  EXPECT_LT(only.peak(), 1e-12);
+  EXPECT_BELOW_BECAUSE(difference(clean, drifted), 1e-10,
+                       "round-off of sums of 4,000 samples, integrated twice over 40 s");
+  EXPECT_BELOW_BECAUSE(difference(twice, drifted), 1e-10,
+                       "round-off of sums of 4,000 samples, integrated twice over 40 s");
+  EXPECT_BELOW_BECAUSE(only.peak(), 1e-12, "round-off of a linear system of three unknowns");
   // A clean record stays what it was, but for its own slow part.
   const double change = largest_difference([&](double t) { return clean.acceleration(t); }, record, 40);
   printf("baseline: clean record of peak %.2f m/s2 changed by %.1e m/s2\n", clean.peak(), change);
@@ -265,8 +272,8 @@ TEST(Baseline, QuadraticHasTheSmallestVelocities)
 TEST(Baseline, TwoSamplesAreEnough)
 {
   const Motion c = corrected(Motion({1, 3}, 0.5), Baseline::quadratic);
-  EXPECT_NEAR(c.velocity(0.5), 0, 1e-15);
-  EXPECT_NEAR(c.accelerations()[0], -1, 1e-12);
+  EXPECT_NEAR_BECAUSE(c.velocity(0.5), 0, 1e-15, "round-off of a sum of two");
+  EXPECT_NEAR_BECAUSE(c.accelerations()[0], -1, 1e-12, "round-off of a linear system of three unknowns");
 }
 
 TEST(Scaling, FactorAndPeak)

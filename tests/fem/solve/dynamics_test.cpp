@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
+#include "tests/support/near.hpp"
 
 #include <cstdio>
 
@@ -120,8 +121,9 @@ TEST(Dynamics, EnergyBalanceOfAnUndampedRun)
   std::printf(
       "  10,000 steps: residual %.1e, work of the stresses against the strain energy %.1e of the largest energy\n",
       worst / largest, worst_stored / largest);
-  EXPECT_LT(worst, 1e-6 * largest);
-  EXPECT_LT(worst_stored, 1e-6 * largest);
+  EXPECT_BELOW_BECAUSE(worst, 1e-6 * largest, "round-off of 10,000 steps: energies are sums of the work of each");
+  EXPECT_BELOW_BECAUSE(worst_stored, 1e-6 * largest,
+                       "round-off of 10,000 steps: energies are sums of the work of each");
   EXPECT_GT(run.energy().kinetic + run.energy().internal, 0.1 * largest); // still moving: nothing was damped away
 }
 
@@ -130,7 +132,8 @@ TEST(Dynamics, StepAboveTheStableOneIsRefused)
   const Discretisation<1> space = block<1>();
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
   const double stable = Dynamics<1>(space, material, {}).stable_step();
-  EXPECT_NEAR(stable, 2 / std::sqrt(24) * 2 / (200 * std::sqrt(3)), 1e-9); // degree 2: omega h/c = sqrt(24)
+  EXPECT_NEAR_BECAUSE(stable, 2 / std::sqrt(24) * 2 / (200 * std::sqrt(3)), 1e-9,
+                      "tolerance of the power iteration"); // degree 2: omega h/c = sqrt(24)
   try
     {
       Dynamics<1>(space, material, {.time_step = 1.01 * stable});
@@ -175,7 +178,7 @@ TEST(Dynamics, StableStepIsABoundAndClose)
     }
   const double ratio = run.stable_step() / (2 / std::sqrt(omega2));
   std::printf("  stable step by elements over the true one: %.3f\n", ratio);
-  EXPECT_LE(ratio, 1 + 1e-9);
+  EXPECT_BELOW_BECAUSE(ratio, 1 + 1e-9, "the true one comes from a power iteration, which is below its limit");
   EXPECT_GT(ratio, 0.6);
 }
 
@@ -211,8 +214,12 @@ TEST(Dynamics, ColumnEqualsTiedBlocks)
                  three = surface_after<3>(drainage, 2);
       for (int k = 0; k < 4; ++k)
         {
-          EXPECT_NEAR(two[k], one[k], 1e-10 * std::abs(one[k])) << k;
-          EXPECT_NEAR(three[k], one[k], 1e-10 * std::abs(one[k])) << k;
+          EXPECT_NEAR_BECAUSE(two[k], one[k], 1e-10 * std::abs(one[k]),
+                              "round-off of sums in another order, over the steps")
+              << k;
+          EXPECT_NEAR_BECAUSE(three[k], one[k], 1e-10 * std::abs(one[k]),
+                              "round-off of sums in another order, over the steps")
+              << k;
         }
       std::printf("  tied blocks against the column: %.1e (2D), %.1e (3D)\n", two[0] / one[0] - 1,
                   three[0] / one[0] - 1);

@@ -5,6 +5,7 @@
 #include "fem/solve/statics.hpp"
 #include "fem/space/axes.hpp"
 #include "tests/fem/solve/secant_material.hpp"
+#include "tests/support/near.hpp"
 
 #include <cstdio>
 
@@ -77,8 +78,8 @@ void patch_test(unsigned degree)
     error = std::max(error, std::abs(statics.displacement().local_element(i) - linear_field<dim>(i % 3, places[i])));
   std::printf("patch, %dD, degree %u: displacement %.1e m, stress %.1e of the largest; %u iterations\n", dim, degree,
               error, stress_error / 5e4, statics.effort().iterations);
-  EXPECT_LT(error, 1e-15);
-  EXPECT_LT(stress_error, 1e-12 * 5e4);
+  EXPECT_BELOW_BECAUSE(error, 1e-15, "round-off of displacements of 1e-3 m");
+  EXPECT_BELOW_BECAUSE(stress_error, 1e-12 * 5e4, "round-off of strains, over the size of a cell");
   EXPECT_EQ(statics.effort().iterations, 1u);
 }
 } // namespace
@@ -92,6 +93,8 @@ TEST(Statics, PatchTests)
       patch_test<3>(degree);
     }
 }
+
+constexpr test::Tolerance linear{1e-12, "a direct solution of few unknowns: round-off"};
 
 /// Plane strain between a rigid plate that moves down and a side under a pressure; what the supports give is what the
 /// stresses add up to.
@@ -113,11 +116,12 @@ TEST(Statics, BiaxialTestWithReactions)
   const double top = statics.reaction({Face::surface, 2}), bottom = statics.reaction({Face::base, 2});
   std::printf("plate %.6f N, base %.6f N, side %.6f N; stress times width %.6f N\n", top, bottom,
               statics.reaction({Face::x_low, 0}), stress * 1.5);
-  EXPECT_NEAR(top / (stress * 1.5), 1, 1e-12);
-  EXPECT_NEAR(bottom / (-stress * 1.5), 1, 1e-12);
-  EXPECT_NEAR(statics.reaction({Face::x_low, 0}), 2e4 * 1.7, 1e-7);
+  EXPECT_NEAR_BECAUSE(top / (stress * 1.5), 1, linear);
+  EXPECT_NEAR_BECAUSE(bottom / (-stress * 1.5), 1, linear);
+  EXPECT_NEAR_BECAUSE(statics.reaction({Face::x_low, 0}), 2e4 * 1.7, 1e-7,
+                      "round-off of forces of 3e4 N after four steps");
   for (const Stress &at : statics.stresses())
-    EXPECT_NEAR(at[2] / stress, 1, 1e-12);
+    EXPECT_NEAR_BECAUSE(at[2] / stress, 1, linear);
 }
 
 /// A rigid plate on uneven ground: its force is what was put on, its nodes stay in line.
@@ -131,8 +135,10 @@ TEST(Statics, ForceOnARigidPlate)
   Elastic soil({5e7, 0.3}, space.n_points());
   Statics<3> statics(space, soil, settings);
   statics.step(0);
-  EXPECT_NEAR(statics.reaction({Face::base, 2}) / (1e4 * 1.5 * 2.0), 1, 1e-10);
-  EXPECT_NEAR(statics.reaction({Face::surface, 2}), 0, 1e-4);
+  EXPECT_NEAR_BECAUSE(statics.reaction({Face::base, 2}) / (1e4 * 1.5 * 2.0), 1, 1e-10,
+                      "a direct solution: round-off times the condition of the system");
+  EXPECT_NEAR_BECAUSE(statics.reaction({Face::surface, 2}), 0, 1e-4,
+                      "a direct solution of forces of 3e4 N: round-off times the condition of the system");
   EXPECT_EQ(space.find_dof({0, 0, 1.7}, 2), space.find_dof({1.5, 2, 1.7}, 2));
 }
 
@@ -161,7 +167,8 @@ TEST(Statics, NewtonConvergesQuadraticallyTowardsAHyperbola)
   const double exact = 0.95e5 / 5e7 / (1 - 0.95);
   std::printf("hyperbola: error %.1e, %u iterations\n", surface_shift(space, statics) / exact - 1,
               statics.effort().iterations);
-  EXPECT_NEAR(surface_shift(space, statics) / exact, 1, 1e-9);
+  EXPECT_NEAR_BECAUSE(surface_shift(space, statics) / exact, 1, 1e-9,
+                      "Newton's tolerance of 1e-12, over a tangent that is 1/400 of the first");
   EXPECT_LE(statics.effort().iterations, 9u);
   EXPECT_EQ(statics.effort().substeps, 1u);
 }
@@ -176,7 +183,7 @@ TEST(Statics, LineSearchInALockingSoil)
   const double g = surface_shift(space, statics), tau = 5e7 * (g + g * g * g / 1e-8);
   std::printf("locking: error %.1e, %u iterations, %u trials\n", tau / 1e6 - 1, statics.effort().iterations,
               statics.effort().trials);
-  EXPECT_NEAR(tau / 1e6, 1, 1e-7);
+  EXPECT_NEAR_BECAUSE(tau / 1e6, 1, 1e-7, "Newton's tolerance, 1e-8 of the forces, and room");
   EXPECT_GT(statics.effort().trials, statics.effort().iterations);
   EXPECT_LE(statics.effort().iterations, 12u);
   EXPECT_EQ(statics.effort().substeps, 1u);
@@ -197,8 +204,10 @@ TEST(Statics, KeptTangentGivesTheSameAnswer)
     return surface_shift(space, statics);
   };
   const double newton = run(1);
-  EXPECT_NEAR(run(4) / newton, 1, 1e-8);
-  EXPECT_NEAR(run(100) / newton, 1, 1e-8);
+  EXPECT_NEAR_BECAUSE(run(4) / newton, 1, 1e-8,
+                      "Newton's tolerance of 1e-10, over a tangent that is a quarter of the first");
+  EXPECT_NEAR_BECAUSE(run(100) / newton, 1, 1e-8,
+                      "Newton's tolerance of 1e-10, over a tangent that is a quarter of the first");
 }
 
 /// Given displacements in a soil that is not linear, without any load at first.
@@ -213,7 +222,9 @@ TEST(Statics, GivenDisplacementOfANonlinearSoil)
   Statics<1> statics(space, soil, settings);
   statics.step(1);
   const double exact = 5e7 * 0.02 / (1 + 0.02 * 5e7 / 1e5);
-  EXPECT_NEAR(statics.reaction({Face::surface, 0}) / exact, 1, 1e-9);
-  EXPECT_NEAR(statics.reaction({Face::base, 0}) / exact, -1, 1e-9);
+  EXPECT_NEAR_BECAUSE(statics.reaction({Face::surface, 0}) / exact, 1, 1e-9,
+                      "Newton's tolerance of 1e-8, squared by its last step");
+  EXPECT_NEAR_BECAUSE(statics.reaction({Face::base, 0}) / exact, -1, 1e-9,
+                      "Newton's tolerance of 1e-8, squared by its last step");
 }
 } // namespace isostat
