@@ -69,7 +69,8 @@ class ColumnTest(AppTest):
 
     def run_on_ranks(self, n, *arguments):
         command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
+                              check=False)
 
     def assert_same_files(self, one, other):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""

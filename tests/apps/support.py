@@ -59,7 +59,8 @@ class ToleranceTest(unittest.TestCase):
         actual, expected = np.asarray(actual), np.asarray(expected)
         self.assertIn(expected.shape, (actual.shape, ()))
         off = np.abs(actual - expected) - tolerance
-        self.assertTrue((off <= 0).all(), f"{actual} and {expected} differ by more than {tolerance}, because of: {reason}")
+        self.assertTrue((off <= 0).all(),
+                        f"{actual} and {expected} differ by more than {tolerance}, because of: {reason}")
 
     def assert_close(self, actual, expected, relative, reason):
         """|actual - expected| <= relative times the largest |expected|."""

@@ -6,6 +6,7 @@
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/motion/critical_step.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +82,8 @@ TEST(HardCases, LiquidShearReversalAndResolidification)
   EXPECT_GT(m.p_wall, 5e3);
   EXPECT_GT(m.redundancy, 1);
   const EnergyBalance e = shear.assembly.energy();
-  EXPECT_LT(std::abs(e.residual()), 1e-3 * e.boundary_work);
+  EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 1e-3 * e.boundary_work,
+                       "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
 }
 
 TEST(HardCases, DenseConstantVolumeShearReachesMegapascals)
@@ -92,9 +94,10 @@ TEST(HardCases, DenseConstantVolumeShearReachesMegapascals)
   std::printf("dense, 1 %% strain: p' %.2f MPa, q/p' %.3f\n", m.p_wall / 1e6, m.q_wall / m.p_wall);
   EXPECT_GT(m.p_wall, 1e6);
   EXPECT_GT(m.q_wall / m.p_wall, 0.8);
-  EXPECT_NEAR(m.p_wall / m.p_contact, 1, 0.02);
+  EXPECT_NEAR_BECAUSE(m.p_wall / m.p_contact, 1, 0.02, "inertia: what the walls feel runs ahead of the contacts");
   const EnergyBalance e = shear.assembly.energy();
-  EXPECT_LT(std::abs(e.residual()), 1e-3 * e.boundary_work);
+  EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 1e-3 * e.boundary_work,
+                       "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
 }
 
 TEST(HardCases, RattlersOnlyCarryNoStress)
@@ -141,7 +144,8 @@ TEST(HardCases, TenTimesStifferGrains)
       critical_step_bound(test::specimen(500, 10).law, s.grains, &s.box, Assembly(test::specimen(500, 10)).contacts());
   Shear shear(s); // the same overlaps now mean ten times the stress
   shear.to(1e-4, 1);
-  EXPECT_NEAR(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1);
+  EXPECT_NEAR_BECAUSE(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1,
+                      "the same network, whose critical step falls with the root of the stiffness; the safety differs");
   EXPECT_GT(shear.look().p_wall, 1e6);
 }
 

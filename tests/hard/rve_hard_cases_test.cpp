@@ -3,6 +3,7 @@
 // increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
 #include "base/error.hpp"
 #include "dem/rve/rve.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <gmock/gmock.h>
@@ -52,14 +53,15 @@ Path shear(Rve &rve, double gamma, int increments)
       const RveResponse r = rve.undrained(simple_shear(gamma / increments));
       EXPECT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
       EXPECT_TRUE(r.stress.allFinite() && std::isfinite(r.indicator) && std::isfinite(r.mean_stress_change));
-      EXPECT_LT((r.stress - r.stress.transpose()).norm(), 1e-9 * (1 + r.stress.norm()));
+      EXPECT_BELOW_BECAUSE((r.stress - r.stress.transpose()).norm(), 1e-9 * (1 + r.stress.norm()),
+                           "the stress is symmetrised: round-off of its rotation");
       if (r.outcome == RveOutcome::rejected)
         break;
       path.min_p = std::min(path.min_p, mean_stress(rve));
       path.max_p = std::max(path.max_p, mean_stress(rve));
       path.max_tau = std::max(path.max_tau, std::abs(r.stress(0, 1)));
     }
-  EXPECT_NEAR(rve.assembly().volume() / volume, 1, 1e-12);
+  EXPECT_NEAR_BECAUSE(rve.assembly().volume() / volume, 1, 1e-12, "round-off: the volume is set from its logarithm");
   EXPECT_LT(rve.kinetic_stress().norm(), 0.01 * std::max(path.max_p, 0.05 * p0)) << "far from quasi-static";
   return path;
 }
@@ -75,10 +77,11 @@ void liquefy(Rve &rve, double more)
   while (mean_stress(rve) >= 1e-3 * p0)
     {
       expand(1e-5);
-      ASSERT_LT(rve.void_ratio(), void_ratio + 1e-3);
+      ASSERT_BELOW_BECAUSE(rve.void_ratio(), void_ratio + 1e-3,
+                           "p is gone long before the packing has expanded by so much");
     }
   expand(more);
-  EXPECT_LT(mean_stress(rve), 1e-3 * p0);
+  EXPECT_BELOW_BECAUSE(mean_stress(rve), 1e-3 * p0, "what liquefied is called here");
 }
 
 /// The same bits in everything the next step depends on.
@@ -178,7 +181,8 @@ TEST(RveHardCases, GrainsOneToFiveInSize)
   Rve rve(specimen, quick());
   const Packing &packing = rve.assembly().packing();
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
-  EXPECT_NEAR(mean_stress(rve) / p0, 1, 0.01);
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, 0.01,
+                      "the preparation ends within 0.3 % of its pressure in each direction");
   const Path path = shear(rve, 5e-3, 20);
   std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
               packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
@@ -194,8 +198,10 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
     return Rve(test::prepare_in_cell(recipe), quick());
   };
   Rve stiff = element(1e11), normal = element(1e10);
-  EXPECT_NEAR(mean_stress(stiff) / p0, 1, 0.01);
-  EXPECT_NEAR(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05);
+  EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, 0.01,
+                      "the preparation ends within 0.3 % of its pressure in each direction");
+  EXPECT_NEAR_BECAUSE(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05,
+                      "a step follows the root of the stiffness; the stiffer packing has fewer contacts");
   const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
   std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
   EXPECT_GT(ratio, 7) << "fewer contacts, but not by much";
@@ -209,7 +215,8 @@ TEST(RveHardCases, WithoutFrictionItLosesItsStress)
   test::CellRecipe recipe{.grading = test::small_grading(grains), .degrees = 2};
   recipe.law.features.friction = false;
   Rve rve(test::prepare_in_cell(recipe), quick());
-  EXPECT_NEAR(mean_stress(rve) / p0, 1, 0.01);
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, 0.01,
+                      "the preparation ends within 0.3 % of its pressure in each direction");
   const Mat6 c = rve.stiffness();
   EXPECT_GT(c(0, 0), 0);
   EXPECT_EQ(c, rve.stiffness(Sliding::released)) << "no contact can yield";
@@ -258,7 +265,8 @@ TEST(RveHardCases, RattlersOnlyAreCompressedToAStressThatIsAskedFor)
   compression.controlled.diagonal().setConstant(true);
   const RveResponse r = rve.advance(compression);
   ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
-  EXPECT_NEAR(mean_stress(rve) / 50e3, 1, 0.01);
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / 50e3, 1, 0.01,
+                      "tolerance of a stress increment, 1e-3 of the largest, and room for single contacts");
   EXPECT_TRUE(std::isfinite(r.indicator));
 }
 

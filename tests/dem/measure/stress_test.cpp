@@ -95,8 +95,6 @@ TEST(ContactStress, EqualsWallStressForRowsInBalance)
       }
 }
 
-constexpr test::Tolerance few{1e-14, "round-off of some ten operations"};
-
 TEST(ContactStress, EqualsWallStressForAnObliquePairInBalance)
 {
   // each sphere leans on three walls and on the other sphere: three axes at once, branch in no special direction
