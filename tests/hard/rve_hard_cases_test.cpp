@@ -170,6 +170,8 @@ TEST(RveHardCases, DenseConstantVolumeShearPassesTenMegapascals)
   EXPECT_GT(rve.stress()(0, 1), 0.4 * mean_stress(rve));
 }
 
+constexpr test::Tolerance prepared{0.01, "the preparation ends within 0.3 % of its pressure in each direction"};
+
 TEST(RveHardCases, GrainsOneToFiveInSize)
 {
   test::CellRecipe recipe;
@@ -181,8 +183,7 @@ TEST(RveHardCases, GrainsOneToFiveInSize)
   Rve rve(specimen, quick());
   const Packing &packing = rve.assembly().packing();
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
-  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, 0.01,
-                      "the preparation ends within 0.3 % of its pressure in each direction");
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, prepared);
   const Path path = shear(rve, 5e-3, 20);
   std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
               packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
@@ -198,8 +199,7 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
     return Rve(test::prepare_in_cell(recipe), quick());
   };
   Rve stiff = element(1e11), normal = element(1e10);
-  EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, 0.01,
-                      "the preparation ends within 0.3 % of its pressure in each direction");
+  EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, prepared);
   EXPECT_NEAR_BECAUSE(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05,
                       "a step follows the root of the stiffness; the stiffer packing has fewer contacts");
   const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
@@ -215,8 +215,7 @@ TEST(RveHardCases, WithoutFrictionItLosesItsStress)
   test::CellRecipe recipe{.grading = test::small_grading(grains), .degrees = 2};
   recipe.law.features.friction = false;
   Rve rve(test::prepare_in_cell(recipe), quick());
-  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, 0.01,
-                      "the preparation ends within 0.3 % of its pressure in each direction");
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, prepared);
   const Mat6 c = rve.stiffness();
   EXPECT_GT(c(0, 0), 0);
   EXPECT_EQ(c, rve.stiffness(Sliding::released)) << "no contact can yield";
