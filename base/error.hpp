@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/scene/scene_error_test.cpp (messages), tests/apps/command_line_test.py (exit codes)
 #pragma once
 #include <stdexcept>
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/domain/periodic_cell_test.cpp, as every user of these aliases
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/regression/regression_test.py
 #pragma once
 #include "base/record/recorder.hpp"
 #include "dem/drive/programme.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/command_line_test.py
 #pragma once
 #include "dem/scene/scene.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/kill_resume_test.py
 #pragma once
 #include "apps/common/history.hpp"
 #include "base/files/pvd.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/command_line_test.py
 #pragma once
 #include "apps/common/command_line.hpp"
 #include "apps/common/result_folder.hpp"

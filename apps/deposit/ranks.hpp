@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/soil_column_resume_test.py
 #pragma once
 #include <functional>
 

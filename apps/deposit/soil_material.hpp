@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/soil_column_test.py, tests/apps/grain_column_test.py
 #pragma once
 #include "apps/deposit/materials.hpp"
 #include "coupling/batch/rve_material.hpp"

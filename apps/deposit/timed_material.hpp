@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/apps/grain_column_test.py
 #pragma once
 #include "base/stopwatch.hpp"
 #include "fem/material/material.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/io/vtp_test.cpp
 #pragma once
 #include <filesystem>
 #include <string>

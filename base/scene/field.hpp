@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the value of a key lives in the program.
+// tested: tests/base/scene/fragment_test.cpp
 #pragma once
 #include <array>
 #include <cstddef>

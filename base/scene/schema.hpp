@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/base/scene/fragment_test.cpp, tests/dem/scene/scene_test.cpp
 #pragma once
 #include "base/scene/field.hpp"
 #include "base/units.hpp"

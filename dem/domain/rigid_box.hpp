@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/drive/strain_path_test.cpp
 #pragma once
 #include "base/types.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/io/checkpoint_test.cpp
 #pragma once
 #include "dem/domain/rigid_box.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/verification/programme_test.cpp
 #pragma once
 #include "dem/drive/programme.hpp"
 #include "dem/prepare/cloud.hpp"

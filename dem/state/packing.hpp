@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/dem/state/contact_list_test.cpp, tests/dem/motion/leapfrog_test.cpp
 #pragma once
 #include "base/types.hpp"
 #include "dem/domain/rigid_box.hpp"

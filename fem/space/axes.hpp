@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/fem/space/discretisation_test.cpp
 #pragma once
 #include "fem/space/discretisation.hpp"
 

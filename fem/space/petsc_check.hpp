@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/fem/solve/statics_test.cpp
 #pragma once
 #include "base/error.hpp"
 

@@ -6,9 +6,6 @@
 #include "tests/support/near.hpp"
 #include "tests/support/periodic.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstring>
 
 namespace isostat
@@ -77,8 +74,7 @@ void liquefy(Rve &rve, double more)
   while (mean_stress(rve) >= 1e-3 * p0)
     {
       expand(1e-5);
-      ASSERT_BELOW_BECAUSE(rve.void_ratio(), void_ratio + 1e-3,
-                           "p is gone long before the packing has expanded by so much");
+      ASSERT_BELOW_BECAUSE(rve.void_ratio(), void_ratio + 1e-3, "p vanishes long before");
     }
   expand(more);
   EXPECT_BELOW_BECAUSE(mean_stress(rve), 1e-3 * p0, "what liquefied is called here");
@@ -201,7 +197,7 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
   Rve stiff = element(1e11), normal = element(1e10);
   EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, prepared);
   EXPECT_NEAR_BECAUSE(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05,
-                      "a step follows the root of the stiffness; the stiffer packing has fewer contacts");
+                      "the root of the stiffness; the stiffer packing has fewer contacts");
   const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
   std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
   EXPECT_GT(ratio, 7) << "fewer contacts, but not by much";
@@ -264,8 +260,7 @@ TEST(RveHardCases, RattlersOnlyAreCompressedToAStressThatIsAskedFor)
   compression.controlled.diagonal().setConstant(true);
   const RveResponse r = rve.advance(compression);
   ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
-  EXPECT_NEAR_BECAUSE(mean_stress(rve) / 50e3, 1, 0.01,
-                      "tolerance of a stress increment, 1e-3 of the largest, and room for single contacts");
+  EXPECT_NEAR_BECAUSE(mean_stress(rve) / 50e3, 1, 0.01, "the increment ends within 1e-3 and comes to rest");
   EXPECT_TRUE(std::isfinite(r.indicator));
 }
 
