@@ -18,6 +18,7 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <numeric>
+#include <span>
 
 namespace
 {
@@ -56,65 +57,90 @@ Snapshot specimen(const Options &options)
 /// Reversed in every round, so that both see the same kind of soil.
 double shear_of(int round) { return round % 2 ? -1e-5 : 1e-5; }
 
+/// What one round took; `loop_steps` are those of the elements that shear at once.
+struct Round
+{
+  double loop, alone, kept, wall, tried, loop_steps;
+};
+
+/// The same specimens four times: sheared at once, in increments, as a material in a time loop and in Newton's.
+struct Contenders
+{
+  Contenders(const Snapshot &start, const Options &o)
+      : options(o), specimens(o.elements, start), kept(specimens, settings(o), MPI_COMM_WORLD),
+        tried(specimens, settings(o), MPI_COMM_WORLD)
+  {
+    for (const Snapshot &s : specimens)
+      {
+        alone.emplace_back(s, RveSettings{});
+        at_once.emplace_back(s, RveSettings{});
+      }
+  }
+
+  static RveMaterialSettings settings(const Options &o)
+  {
+    RveMaterialSettings settings;
+    settings.min_steps = 1; // as the elements alone
+    settings.threads = o.threads;
+    return settings;
+  }
+
+  Round round(double shear)
+  {
+    Mat3 h = Mat3::Zero();
+    h(0, 1) = shear;
+    const std::vector<Gradient> increments(options.elements, Gradient{0, 0, shear});
+    std::vector<Stress> stresses(options.elements);
+    Round r{};
+    r.loop = seconds_of([&] {
+      for (Rve &rve : at_once)
+        r.loop_steps += static_cast<double>(rve.undrained(Mat3(options.increments * h)).steps);
+    });
+    r.alone = seconds_of([&] {
+      for (int k = 0; k < options.increments; ++k)
+        for (Rve &rve : alone)
+          rve.undrained(h);
+    });
+    const auto begin = std::chrono::steady_clock::now();
+    r.kept = seconds_of([&] { trials(kept, 1, increments, stresses); });
+    r.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    r.tried = seconds_of([&] { trials(tried, 3, increments, stresses); });
+    return r;
+  }
+
+  void trials(RveMaterial &material, int iterations, std::span<const Gradient> increments, std::span<Stress> stresses)
+  {
+    for (int k = 0; k < options.increments; ++k)
+      {
+        for (int iteration = 0; iteration < iterations; ++iteration)
+          material.trial(increments, stresses);
+        material.commit();
+      }
+  }
+
+  Options options;
+  std::vector<Snapshot> specimens;
+  RveMaterial kept, tried;
+  std::vector<Rve> alone, at_once;
+};
+
 void compare(const Snapshot &start, const Options &options)
 {
-  RveMaterialSettings settings;
-  settings.min_steps = 1; // as the elements alone
-  settings.threads = options.threads;
-  const std::vector<Snapshot> specimens(options.elements, start);
-  RveMaterial kept(specimens, settings, MPI_COMM_WORLD), tried(specimens, settings, MPI_COMM_WORLD);
-  std::vector<Rve> alone, at_once;
-  for (const Snapshot &s : specimens)
-    {
-      alone.emplace_back(s, RveSettings{});
-      at_once.emplace_back(s, RveSettings{});
-    }
-  std::vector<Gradient> increments(options.elements, Gradient{});
-  std::vector<Stress> stresses(options.elements);
+  Contenders contenders(start, options);
   std::vector<double> in_loop, in_alone, in_kept, in_tried, ratio, to_loop, inside, steps;
   for (int round = 0; round < options.rounds + 1; ++round)
     {
-      const double shear = shear_of(round);
-      Mat3 h = Mat3::Zero();
-      h(0, 1) = shear;
-      for (Gradient &g : increments)
-        g[2] = shear;
-      const RveMaterialCost before = kept.cost();
-      double loop_steps = 0;
-      const double l = seconds_of([&] {
-        for (Rve &rve : at_once)
-          loop_steps += static_cast<double>(rve.undrained(Mat3(options.increments * h)).steps);
-      });
-      const double a = seconds_of([&] {
-        for (int k = 0; k < options.increments; ++k)
-          for (Rve &rve : alone)
-            rve.undrained(h);
-      });
-      const auto begin = std::chrono::steady_clock::now();
-      const double b = seconds_of([&] {
-        for (int k = 0; k < options.increments; ++k)
-          {
-            kept.trial(increments, stresses);
-            kept.commit();
-          }
-      });
-      const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      const double c = seconds_of([&] {
-        for (int k = 0; k < options.increments; ++k)
-          {
-            for (int iteration = 0; iteration < 3; ++iteration)
-              tried.trial(increments, stresses);
-            tried.commit();
-          }
-      });
+      const RveMaterialCost before = contenders.kept.cost();
+      const Round r = contenders.round(shear_of(round));
       if (round == 0) // the lists are made, the rate control finds its rate
         continue;
-      const RveMaterialCost now = kept.cost();
+      const RveMaterialCost now = contenders.kept.cost();
       const double kept_steps = static_cast<double>(now.steps - before.steps);
-      in_loop.push_back(l / loop_steps * kept_steps); // the same number of steps
-      to_loop.push_back(b / in_loop.back());
-      in_alone.push_back(a), in_kept.push_back(b), in_tried.push_back(c / 3), ratio.push_back(b / a);
-      inside.push_back((now.rve_seconds - before.rve_seconds) / wall);
+      in_loop.push_back(r.loop / r.loop_steps * kept_steps); // the same number of steps
+      to_loop.push_back(r.kept / in_loop.back());
+      in_alone.push_back(r.alone), in_kept.push_back(r.kept), in_tried.push_back(r.tried / 3);
+      ratio.push_back(r.kept / r.alone);
+      inside.push_back((now.rve_seconds - before.rve_seconds) / r.wall);
       steps.push_back(kept_steps / static_cast<double>(options.increments * options.elements));
     }
   const double per = 1e3 / (options.increments * static_cast<double>(options.elements));

@@ -46,7 +46,7 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double m
   const Mat3 to_fraction = edges.inverse();
   WrappedCells cells;
   for (int image = 0; image < 27; ++image)
-    cells.offset[image] = edges * Vec3(image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1);
+    cells.offset[image] = edges * Eigen::Vector3i(image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1).cast<double>();
   cells.n = cells_along(to_fraction, minimum, n_grains);
   cells.begin.assign(cells.n[0] * cells.n[1] * cells.n[2] + 1, 0);
   std::vector<int> cell_of(n_grains);
@@ -55,7 +55,7 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double m
     {
       const Vec3 fraction = to_fraction * packing.centre(i);
       const Vec3 whole = fraction.array().floor();
-      cells.turns.push_back(whole.cast<int>());
+      cells.turns.emplace_back(whole.cast<int>());
       place[i] = packing.centre(i) - edges * whole;
       Index3 c;
       for (int k = 0; k < 3; ++k)
