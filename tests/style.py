@@ -16,9 +16,10 @@ import sys
 MAX_FILE = 400  # lines
 MAX_FUNCTION = 60  # lines: one screen
 LIBRARIES = ("base", "dem", "fem", "coupling", "apps/common", "apps/deposit")
+MIRRORS = {("tests", top) for top in ("base", "dem", "fem", "coupling")}
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
 
-# A comparison with a tolerance that does not say why; the helpers of tests/support/near.hpp and tests/apps/support.py do.
+# A comparison with a tolerance that does not say why, as the helpers of tests/support/near.hpp and support.py do.
 SMALL = r"\d(?:\.\d+)?e-\d"
 BARE = {
     ".cpp": re.compile(rf"\b(?:EXPECT|ASSERT)_(?:NEAR|FLOAT_EQ)\(|\bDoubleNear\(|\b(?:EXPECT|ASSERT)_L[TE]\(.*{SMALL}"),
@@ -58,7 +59,8 @@ def python_functions(text):
 
 
 def statements(lines):
-    """(line, text) with a call that runs over several lines put into one."""
+    """(line, text) with a call over several lines put into one, and without what stands in quotation marks."""
+    lines = [re.sub(r'"[^"]*"', '""', line) for line in lines]
     at = 0
     while at < len(lines):
         first, text = at, lines[at]
@@ -80,6 +82,18 @@ def check_tested(root, header, text):
             f"{header}: no {mirror.relative_to(root)}.cpp, and no comment names the test that covers it"]
 
 
+def check_mirrors(root, test):
+    """Nothing, or why this test stands where no file of a library is that it could be the test of: stress_test.cpp and
+    stress_paths_test.cpp may be those of stress.hpp, or of stress.cpp."""
+    mirrored = root / pathlib.Path(*test.parts[1:]).parent
+    stem = test.name.removesuffix("_test.cpp")
+    sources = {f.stem for f in mirrored.glob("*.?pp")} if mirrored.is_dir() else set()
+    if any(stem == s or stem.startswith(s + "_") or stem.endswith("_" + s) for s in sources):
+        return []
+    return [f"{test}: {mirrored.relative_to(root)} has no file of this name; "
+            "what spans several belongs to tests/verification"]
+
+
 def check_file(root, path):
     name = path.relative_to(root)
     text = path.read_text(encoding="utf-8")
@@ -88,9 +102,12 @@ def check_file(root, path):
     if len(lines) > MAX_FILE:
         problems.append(f"{name}: {len(lines)} lines, more than {MAX_FILE}")
     functions = python_functions(text) if path.suffix == ".py" else cpp_functions(lines)
-    problems += [f"{name}:{at}: a function of {n} lines, more than {MAX_FUNCTION}" for at, n in functions if n > MAX_FUNCTION]
+    problems += [f"{name}:{at}: a function of {n} lines, more than {MAX_FUNCTION}"
+                 for at, n in functions if n > MAX_FUNCTION]
     if path.suffix == ".hpp" and name.as_posix().startswith(tuple(f"{library}/" for library in LIBRARIES)):
         problems += check_tested(root, name, text)
+    if name.name.endswith("_test.cpp") and name.parts[:2] in MIRRORS:
+        problems += check_mirrors(root, name)
     if name.parts[0] == "tests" and name.as_posix() not in HELPERS:
         bare = BARE[".py" if path.suffix == ".py" else ".cpp"]
         problems += [f"{name}:{at}: a tolerance without its reason: {line.strip()[:80]}"
@@ -105,7 +122,8 @@ def print_table(lengths):
         folders.setdefault(name.parent.as_posix(), []).append((n, name.name))
     print(f"{'folder':<40} files  median  largest")
     for folder, files in sorted(folders.items()):
-        print(f"{folder:<40} {len(files):5} {statistics.median(n for n, _ in files):7.0f}  {max(files)[0]:4} {max(files)[1]}")
+        middle = statistics.median(n for n, _ in files)
+        print(f"{folder:<40} {len(files):5} {middle:7.0f}  {max(files)[0]:4} {max(files)[1]}")
 
 
 def main():
