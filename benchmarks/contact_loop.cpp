@@ -7,7 +7,8 @@
 //
 // The packing is copies of the stored one of 1,000 grains in a row (tests/reference/n1000/medium, dense, 200 kPa), as
 // it stands: only touching pairs are listed, all lanes work. Time stands still (dt = 0), so every pass does the same.
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/loop.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/neighbours/cell_grid.hpp"
 #include "dem/prepare/space_filling.hpp"
@@ -52,10 +53,9 @@ Packing moving_packing(std::size_t copies)
 void run(benchmark::State &state, const Variant &variant, std::int64_t target, std::size_t copies)
 {
   hwy::SetSupportedTargetsForTest(target);
-  LawParams law = test::paper_law();
-  law.features = variant.on;
+  const LinearRolling law = test::paper_law().with(variant.on);
   const Packing packing = moving_packing(copies);
-  ContactList list(law.active());
+  ContactList list(law.history());
   list.replace_pairs(find_pairs(packing, 0), static_cast<std::uint32_t>(packing.n_grains()));
   AlignedVector<double> action(8 * list.n_slots(), 0.0);
   DissipationPerPair losses;

@@ -49,7 +49,7 @@ Snapshot specimen(const Options &options)
 {
   test::CellRecipe recipe;
   recipe.grading = test::small_grading(options.grains);
-  recipe.law.young = options.young;
+  recipe.law->young = options.young;
   recipe.pressure = 100e3;
   return test::prepare_in_cell(recipe);
 }

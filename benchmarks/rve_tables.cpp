@@ -8,6 +8,7 @@
 //   rve_tables twisting --grains 1000 --realisations 3
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
@@ -105,9 +106,9 @@ constexpr std::array<double, 3> strains{1e-3, 1e-2, 0.05};
 
 Row shear_with(Snapshot specimen, double twisting)
 {
-  LawParams law = specimen.law;
+  LinearRolling law = specimen.law.as<LinearRolling>();
   law.twisting_stiffness = twisting;
-  law.features.twisting = twisting > 0;
+  law.twisting = twisting > 0;
   test::Unobserved nobody;
   SpecimenSpec spec;
   spec.domain = "periodic-cell";

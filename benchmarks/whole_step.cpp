@@ -9,6 +9,7 @@
 #include "apps/common/command_line.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/io/text_tables.hpp"
@@ -34,7 +35,7 @@ struct Options
 
 Snapshot load(const Options &options)
 {
-  LawParams law;
+  LinearRolling law;
   law.friction = std::tan(options.friction_degrees * M_PI / 180);
   const fs::path path = options.packing;
   if (path.extension() == ".h5")

@@ -27,8 +27,10 @@ TOP = {
 
 # Library -> its parts, each with the parts it may include besides itself. A part is a folder or a file (without ending)
 # below the library; a file belongs to the longest name that fits.
-GRAINS = {"domain", "state", "contact"}
-STEP = GRAINS | {"neighbours", "motion", "measure", "assembly"}
+LAW = {"contact/history", "contact/law"}  # what a contact remembers; the interface of laws
+BY_NAME = LAW | {"contact/law_parameters"}
+GRAINS = LAW | {"domain", "state"}
+STEP = GRAINS | {"contact", "neighbours", "motion", "measure", "assembly"}
 INNER = {
     "base": {
         "error": set(),
@@ -41,18 +43,22 @@ INNER = {
     },
     "dem": {
         "domain": set(),
-        "contact/linear_rolling": set(),
-        "state": {"domain", "contact/linear_rolling"},
-        "contact": {"domain", "state", "contact/linear_rolling"},
-        "neighbours": {"domain", "state"},
-        "motion": GRAINS | {"contact/linear_rolling"},
-        "measure": GRAINS | {"contact/linear_rolling"},
-        "assembly": GRAINS | {"contact/linear_rolling", "neighbours", "motion", "measure"},
-        "scene": {"contact/linear_rolling"},
-        "io": GRAINS | {"measure"},
-        "drive": STEP | {"contact/linear_rolling", "scene", "io"},
-        "prepare": STEP | {"contact/linear_rolling", "scene", "io", "drive"},
-        "rve": STEP | {"contact/linear_rolling", "scene", "io", "drive"},
+        "contact/history": set(),
+        "contact/law": {"contact/history"},
+        "contact/law_parameters": LAW,
+        "state": LAW | {"domain"},
+        "contact": GRAINS,
+        "contact/linear_rolling": BY_NAME | GRAINS | {"contact"},
+        "contact/laws": LAW | {"contact/linear_rolling"},
+        "neighbours": GRAINS,
+        "motion": GRAINS,
+        "measure": GRAINS,
+        "assembly": GRAINS | {"contact", "neighbours", "motion", "measure"},
+        "scene": BY_NAME,
+        "io": BY_NAME | GRAINS | {"measure"},
+        "drive": STEP | {"scene", "io"},
+        "prepare": STEP | {"scene", "io", "drive"},
+        "rve": STEP | BY_NAME | {"scene", "io", "drive"},
     },
     "fem": {
         "material": set(),

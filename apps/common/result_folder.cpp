@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/loop.hpp"
 
 #include <cstdlib>
 #include <ctime>

@@ -27,13 +27,13 @@ std::string in_words(const Assembly &assembly, const Observation &seen, double r
   return path + fmt::format("  e {:.4f}", e) + (redundancy > 0 ? fmt::format("  I_R {:.3f}", redundancy) : "");
 }
 
-double &tally_field(EnergyBalance &t, int k)
+/// visit(name in a checkpoint, J) for the sums of the energy balance.
+template <typename Balance, typename Visit>
+void for_each_tally(Balance &balance, const Visit &visit)
 {
-  double *fields[] = {&t.boundary_work, &t.kinetic,  &t.elastic, &t.sliding,
-                      &t.rolling,       &t.released, &t.damping, &t.created};
-  return *fields[k];
+  int k = 0;
+  EnergyBalance::for_each(balance, [&](const char *, auto &energy) { visit(fmt::format("tally_{}", k++), energy); });
 }
-constexpr int n_tally = 8;
 
 std::size_t counter(const Checkpoint *checkpoint, const char *name)
 {
@@ -116,9 +116,7 @@ void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
   Checkpoint checkpoint{assembly.checkpoint(), {}, scene_text_};
   auto &numbers = checkpoint.numbers;
   state.for_each([&](const std::string &name, double value) { numbers["drive_" + name] = value; });
-  EnergyBalance tally = assembly.tally;
-  for (int k = 0; k < n_tally; ++k)
-    numbers[fmt::format("tally_{}", k)] = tally_field(tally, k);
+  for_each_tally(assembly.tally, [&](const std::string &name, double energy) { numbers[name] = energy; });
   const auto memory = assembly.boundary_memory();
   for (std::size_t k = 0; k < memory.size(); ++k)
     numbers[fmt::format("boundary_{:02d}", k)] = memory[k];
@@ -135,8 +133,7 @@ void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state
 {
   const auto &numbers = checkpoint.numbers;
   state.for_each([&](const std::string &name, double &value) { value = numbers.at("drive_" + name); });
-  for (int k = 0; k < n_tally; ++k)
-    tally_field(assembly.tally, k) = numbers.at(fmt::format("tally_{}", k));
+  for_each_tally(assembly.tally, [&](const std::string &name, double &energy) { energy = numbers.at(name); });
   auto memory = assembly.boundary_memory();
   for (std::size_t k = 0; k < memory.size(); ++k)
     memory[k] = numbers.at(fmt::format("boundary_{:02d}", k));

@@ -73,14 +73,7 @@ void add_fabric(Row &row, const Snapshot &snapshot)
 
 void add_energies(Row &row, const Snapshot &snapshot)
 {
-  const StoredEnergy e = stored_energy(snapshot);
-  row.add("E_translation", "J", e.translation);
-  row.add("E_rotation", "J", e.rotation);
-  row.add("E_normal", "J", e.normal);
-  row.add("E_shear", "J", e.shear);
-  row.add("E_rolling", "J", e.rolling);
-  row.add("E_twisting", "J", e.twisting);
-  row.add("E_wall", "J", e.wall);
+  stored_energy(snapshot).for_each([&](const std::string &name, double energy) { row.add("E_" + name, "J", energy); });
 }
 
 double mean_normal_force(const Snapshot &snapshot)

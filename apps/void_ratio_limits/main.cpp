@@ -97,8 +97,8 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"seed", "-", static_cast<double>(scene.grading.seed)},
           {"d50", "m", state.grains.d50()},
           {"pressure", "Pa", scene.specimen.pressure},
-          {"young", "Pa", scene.contact.young},
-          {"friction", "deg", scene.contact.active().friction ? degrees(scene.contact.friction) : 0},
+          {"young", "Pa", scene.contact->young},
+          {"friction", "deg", (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0},
           {"coordination_dense", "-", micromechanics(dense.state).coordination},
           {"fall", "-", how.fall},
           {"fall_speed", "m/s", loose.fall_speed},
@@ -138,9 +138,9 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
   row("e_max", loose.void_ratio, loose.void_ratio_inside, 0.841, 1.054);
   text += fmt::format("inside: two d50 ({:.3f} mm) away from walls and surface\n", 2e3 * loose.state.grains.d50());
   text += fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n",
-                      dense.state.grains.n_grains(), scene.specimen.pressure / 1e3, scene.contact.young, dense.seconds);
+                      dense.state.grains.n_grains(), scene.specimen.pressure / 1e3, scene.contact->young, dense.seconds);
   text += fmt::format("e_max: {:.2f} deg, fastest impact about {:.2f} m/s, deposit {:.2f} mm high; {:.0f} s\n",
-                      scene.contact.active().friction ? degrees(scene.contact.friction) : 0.0, loose.fall_speed,
+                      (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0.0, loose.fall_speed,
                       1e3 * loose.height, loose_seconds);
   text += fmt::format("       contact modulus {:.3g} Pa while falling: overlap/d50 at most {:.1e}, at rest {:.1e}\n",
                       loose.young, loose.max_overlap, loose.resting_overlap);

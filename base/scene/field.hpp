@@ -39,6 +39,11 @@ public:
         })
   {}
 
+  /// Of a place that is no enumeration but has a number all the same.
+  EnumField(void *place, std::size_t (*get)(const void *), void (*set)(void *, std::size_t))
+      : place_(place), get_(get), set_(set)
+  {}
+
   std::size_t get() const { return get_(place_); }
   void set(std::size_t word) const { set_(place_, word); }
 

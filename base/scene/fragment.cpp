@@ -5,7 +5,7 @@
 
 namespace isostat
 {
-KeyTable::KeyTable(std::initializer_list<KeyRun> runs)
+KeyTable::KeyTable(std::span<const KeyRun> runs)
 {
   for (const KeyRun &run : runs)
     for (Key key : run.keys)

@@ -63,7 +63,8 @@ std::vector<Key> interleave(std::span<const std::vector<Key>> keys_of_kinds);
 class KeyTable
 {
 public:
-  KeyTable(std::initializer_list<KeyRun> runs);
+  KeyTable(std::initializer_list<KeyRun> runs) : KeyTable(std::span(runs)) {}
+  explicit KeyTable(std::span<const KeyRun> runs);
   KeyTable(const KeyTable &) = delete; // keys point at the paths
   KeyTable &operator=(const KeyTable &) = delete;
 

@@ -22,9 +22,11 @@ std::uint64_t hash_of(const Snapshot &s)
 {
   Hash hash;
   const auto add = [&](std::span<const double> numbers) { hash.words(numbers); };
-  add(std::array{s.law.young, s.law.stiffness_ratio, s.law.friction, s.law.rolling_stiffness, s.law.rolling_limit,
-                 s.law.twisting_stiffness, double(s.law.features.friction), double(s.law.features.rolling),
-                 double(s.law.features.twisting), s.grains.density, s.time, double(s.step)});
+  if (!is_default(s.law))
+    for (const char *c = s.law->name(); *c; ++c)
+      add(std::array{double(*c)});
+  add(parameter_values(s.law));
+  add(std::array{s.grains.density, s.time, double(s.step)});
   const std::size_t n = 4 * s.grains.n_grains();
   for (const auto *records : {&s.grains.position, &s.grains.velocity, &s.grains.spin})
     add(std::span(records->data(), n));
@@ -37,9 +39,9 @@ std::uint64_t hash_of(const Snapshot &s)
   for (const Contact &c : s.contacts)
     {
       add(std::array{double(c.first), double(c.second), c.overlap});
-      for (const Vec3 *v :
-           {&c.history.normal, &c.history.shear_force, &c.history.bending_moment, &c.history.twisting_moment})
-        add({v->data(), 3});
+      for (const HistoryVector &v : history_vectors)
+        add({(c.history.*v.place).data(), 3});
+      add(c.history.own);
     }
   return hash.value();
 }

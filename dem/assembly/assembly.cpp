@@ -41,7 +41,7 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
 
 Assembly::Assembly(const Snapshot &initial)
     : packing_(initial.grains), box_(initial.box), cell_(initial.cell), law_(initial.law),
-      contacts_(initial.law.active()), action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0),
+      contacts_(initial.law->history()), action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0),
       solid_volume_(initial.grains.solid_volume()), d50_(initial.grains.d50()),
       min_radius_(initial.grains.min_radius()), d_max_(2 * initial.grains.max_radius()), step_(initial.step),
       time_(initial.time)
@@ -67,11 +67,11 @@ Assembly::Assembly(const Snapshot &initial)
     }
 }
 
-void Assembly::set_law(const LawParams &law)
+void Assembly::set_law(const Law &law)
 {
   evaluate();
   law_ = law;
-  contacts_.set_features(law.active());
+  contacts_.set_layout(law->history());
 }
 
 void Assembly::compute_forces()
@@ -82,7 +82,7 @@ void Assembly::compute_forces()
     {
       if (verlet_.update(packing_, *cell_, max_step_, contacts_, n_threads()))
         contacts_.set_cell(cell_->edges);
-      virial_.start(contacts_.partition().n_chunks, law_.young * cell_->reference_volume);
+      virial_.start(contacts_.partition().n_chunks, law_->young * cell_->reference_volume);
     }
   else
     verlet_.update(packing_, box_, max_step_, contacts_, n_threads());
@@ -169,11 +169,10 @@ void Assembly::add_wall_forces(std::size_t chunk)
       for (std::uint32_t i : verlet_.near_wall(wall, chunk))
         {
           const double overlap = -wall_gap(packing_, box_, i, wall);
-          const double kn = overlap > 0 ? wall_stiffness(law_, packing_.radius(i)) : 0.0;
-          const double fn = kn * overlap;
-          action_[8 * i + wall / 2] += inward * fn;
-          sums.force[wall] += fn;
-          sums.stiffness[wall] += kn;
+          const WallResponse response = overlap > 0 ? law_->wall(packing_.radius(i), overlap) : WallResponse{};
+          action_[8 * i + wall / 2] += inward * response.force;
+          sums.force[wall] += response.force;
+          sums.stiffness[wall] += response.stiffness;
         }
     }
   wall_sums_[chunk] = sums;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/loop.hpp"
 #include "dem/contact/shares.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/measure/energy.hpp"
@@ -64,14 +64,14 @@ public:
   void deform(const Mat3 &displacement_gradient);
 
   /// Changes the law from the next force evaluation on; history of the parts that stay is kept.
-  void set_law(const LawParams &law);
+  void set_law(const Law &law);
 
   const Packing &packing() const { return packing_; }
   const RigidBox &box() const { return box_; }                           ///< without meaning in a cell
   const RigidBox *walls() const { return cell_ ? nullptr : &box_; }      ///< null in a cell
   const PeriodicCell *cell() const { return cell_ ? &*cell_ : nullptr; } ///< null in a box
   double volume() const { return cell_ ? cell_->volume() : box_.volume(); }
-  const LawParams &law() const { return law_; }
+  const Law &law() const { return law_; }
   const ContactList &contacts() const
   {
     evaluate();
@@ -158,7 +158,7 @@ private:
   Packing packing_;
   RigidBox box_;
   std::optional<PeriodicCell> cell_;
-  LawParams law_;
+  Law law_;
   mutable ContactList contacts_; ///< mutable, as the three below: evaluate() fills in what is pending
   VerletList verlet_;
   mutable AlignedVector<double> action_; ///< [F 0 T 0] per slot

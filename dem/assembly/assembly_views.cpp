@@ -10,9 +10,9 @@ namespace
 {
 /// visit(i, j, branch, force on j) for every touching pair.
 template <typename Visit>
-void for_closed_pairs(const LawParams &law, const Packing &packing, const ContactList &contacts, const Visit &visit)
+void for_closed_pairs(const ContactLaw &law, const Packing &packing, const ContactList &contacts, const Visit &visit)
 {
-  const bool shear = contacts.features().friction;
+  const bool shear = contacts.layout().n_components() > 0;
   for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
       const std::uint32_t i = contacts.first()[p], j = contacts.second()[p];
@@ -21,8 +21,8 @@ void for_closed_pairs(const LawParams &law, const Packing &packing, const Contac
       if (distance2 >= reach * reach)
         continue;
       const double distance = std::sqrt(distance2);
-      const double kn = contact_stiffness(law, packing.radius(i), packing.radius(j)).normal;
-      Vec3 force = branch * (kn * (reach - distance) / distance);
+      const double normal_force = law.normal_force(packing.radius(i), packing.radius(j), reach - distance);
+      Vec3 force = branch * (normal_force / distance);
       if (shear)
         force += contacts.history(p).shear_force;
       visit(i, j, branch, force);
@@ -31,7 +31,7 @@ void for_closed_pairs(const LawParams &law, const Packing &packing, const Contac
 
 /// visit(grain, wall, overlap, fn) for every grain that touches a wall.
 template <typename Visit>
-void for_closed_walls(const LawParams &law, const Packing &packing, const RigidBox *walls, const VerletList &list,
+void for_closed_walls(const ContactLaw &law, const Packing &packing, const RigidBox *walls, const VerletList &list,
                       const Visit &visit)
 {
   if (!walls)
@@ -40,7 +40,7 @@ void for_closed_walls(const LawParams &law, const Packing &packing, const RigidB
   for (int wall = 0; wall < 6; ++wall)
     for (std::uint32_t i : list.near_wall()[wall])
       if (const double overlap = -wall_gap(packing, box, i, wall); overlap > 0)
-        visit(i, wall, overlap, wall_stiffness(law, packing.radius(i)) * overlap);
+        visit(i, wall, overlap, law.wall(packing.radius(i), overlap).force);
 }
 } // namespace
 
@@ -79,7 +79,8 @@ Vec3 Assembly::affine_moduli() const
 {
   Vec3 sum = Vec3::Zero();
   for_closed_pairs(law_, packing_, contacts_, [&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
-    const ContactStiffness k = contact_stiffness(law_, packing_.radius(i), packing_.radius(j));
+    const double r1 = packing_.radius(i), r2 = packing_.radius(j);
+    const ContactStiffness k = law_->stiffness(r1, r2, r1 + r2 - branch.norm());
     const Vec3 n2 = branch.cwiseAbs2() / branch.squaredNorm();
     const Vec3 along = n2.cwiseProduct(k.normal * n2 + k.shear * (Vec3::Ones() - n2));
     sum += branch.squaredNorm() * along;
@@ -170,8 +171,8 @@ Snapshot Assembly::snapshot() const
       const double distance = branch.norm(), overlap = packing_.radius(i) + packing_.radius(j) - distance;
       if (!(overlap > 0))
         continue;
-      const double kn = contact_stiffness(law_, packing_.radius(i), packing_.radius(j)).normal;
-      Contact contact{i, j, overlap, kn * overlap, contacts_.history(p)};
+      const double normal_force = law_->normal_force(packing_.radius(i), packing_.radius(j), overlap);
+      Contact contact{i, j, overlap, normal_force, contacts_.history(p)};
       contact.history.normal = branch / distance;
       s.contacts.push_back(contact);
     }

@@ -59,6 +59,15 @@ struct PeriodicCell
   /// another; the threshold above one half keeps a cell under cyclic shear from flipping to and fro.
   std::optional<Mat3> upright_edges() const;
 
+  /// visit(name, field) for every field of a cell, const or not: what files and bytes hold of it.
+  template <typename Cell, typename Visit>
+  static void for_each(Cell &cell, const Visit &visit)
+  {
+    visit("edges", cell.edges), visit("deformation", cell.deformation), visit("rotation", cell.rotation);
+    visit("strain_step", cell.strain_step), visit("volume_strain", cell.volume_strain);
+    visit("reference_volume", cell.reference_volume), visit("flips", cell.flips);
+  }
+
   /// Tensor from own frame to laboratory.
   Mat3 to_laboratory(const Mat3 &own) const { return rotation * own * rotation.transpose(); }
 };

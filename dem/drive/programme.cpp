@@ -65,9 +65,8 @@ private:
     state_.rate = rate_control_.initial_rate();
     if (stage_.kind == StageKind::friction)
       {
-        LawParams law = assembly_.law();
-        law.friction = stage_.friction;
-        law.features.friction = stage_.friction > 0;
+        Law law = assembly_.law();
+        law->friction = stage_.friction;
         assembly_.set_law(law);
       }
   }

@@ -2,8 +2,10 @@
 #include "dem/io/snapshot_file.hpp"
 
 #include "base/error.hpp"
+#include "dem/contact/law_parameters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <fmt/format.h>
 
@@ -33,31 +35,27 @@ std::vector<double> vector_column(const std::vector<Row> &rows, Field field)
   return values;
 }
 
-void write_law(Group group, const LawParams &law)
+void write_law(Group group, Law law)
 {
-  group.set_attribute("young", law.young);
-  group.set_attribute("stiffness_ratio", law.stiffness_ratio);
-  group.set_attribute("friction", law.friction);
-  group.set_attribute("rolling_stiffness", law.rolling_stiffness);
-  group.set_attribute("rolling_limit", law.rolling_limit);
-  group.set_attribute("twisting_stiffness", law.twisting_stiffness);
-  group.set_attribute("feature_friction", std::uint64_t{law.features.friction});
-  group.set_attribute("feature_rolling", std::uint64_t{law.features.rolling});
-  group.set_attribute("feature_twisting", std::uint64_t{law.features.twisting});
+  if (!is_default(law))
+    group.set_attribute("name", std::string(law->name()));
+  for_each_parameter(*law.operator->(), [&]<typename Value>(const std::string &name, Value value) {
+    if constexpr (std::is_same_v<Value, bool>)
+      group.set_attribute(name, std::uint64_t{value});
+    else
+      group.set_attribute(name, value);
+  });
 }
 
-LawParams read_law(const Group &group)
+Law read_law(const Group &group)
 {
-  LawParams law;
-  law.young = group.attribute<double>("young");
-  law.stiffness_ratio = group.attribute<double>("stiffness_ratio");
-  law.friction = group.attribute<double>("friction");
-  law.rolling_stiffness = group.attribute<double>("rolling_stiffness");
-  law.rolling_limit = group.attribute<double>("rolling_limit");
-  law.twisting_stiffness = group.attribute<double>("twisting_stiffness");
-  law.features.friction = group.attribute<std::uint64_t>("feature_friction") != 0;
-  law.features.rolling = group.attribute<std::uint64_t>("feature_rolling") != 0;
-  law.features.twisting = group.attribute<std::uint64_t>("feature_twisting") != 0;
+  Law law = group.has_attribute("name") ? law_named(group.attribute<std::string>("name")) : Law();
+  for_each_parameter(*law.operator->(), [&]<typename Value>(const std::string &name, Value &value) {
+    if constexpr (std::is_same_v<Value, bool>)
+      value = group.attribute<std::uint64_t>(name) != 0;
+    else
+      value = group.attribute<double>(name);
+  });
   return law;
 }
 
@@ -94,18 +92,20 @@ Packing read_grains(const Group &group, double density)
 
 void write_contacts(Group group, const std::vector<Contact> &rows)
 {
-  using History = const Vec3 &;
   group.write("first", column<std::uint32_t>(rows, [](const Contact &c) { return c.first; }), "-");
   group.write("second", column<std::uint32_t>(rows, [](const Contact &c) { return c.second; }), "-");
   group.write("overlap", column<double>(rows, [](const Contact &c) { return c.overlap; }), "m");
   group.write("normal_force", column<double>(rows, [](const Contact &c) { return c.normal_force; }), "N");
-  group.write("normal", vector_column(rows, [](const Contact &c) -> History { return c.history.normal; }), "-", 3);
-  group.write("shear_force", vector_column(rows, [](const Contact &c) -> History { return c.history.shear_force; }),
-              "N", 3);
-  group.write("bending_moment",
-              vector_column(rows, [](const Contact &c) -> History { return c.history.bending_moment; }), "N m", 3);
-  group.write("twisting_moment",
-              vector_column(rows, [](const Contact &c) -> History { return c.history.twisting_moment; }), "N m", 3);
+  for (const HistoryVector &v : history_vectors)
+    group.write(v.name, vector_column(rows, [&](const Contact &c) -> const Vec3 & { return c.history.*v.place; }),
+                v.unit, 3);
+  if (const std::size_t n = rows.empty() ? 0 : rows[0].history.own.size(); n > 0)
+    {
+      std::vector<double> own;
+      for (const Contact &c : rows)
+        own.insert(own.end(), c.history.own.begin(), c.history.own.end());
+      group.write("own", own, "-", n);
+    }
 }
 
 std::vector<Contact> read_contacts(const Group &group, std::size_t n_grains)
@@ -114,9 +114,10 @@ std::vector<Contact> read_contacts(const Group &group, std::size_t n_grains)
   const std::size_t n = first.size();
   const auto second = group.read<std::uint32_t>("second", {n});
   const auto overlap = group.read<double>("overlap", {n}), normal_force = group.read<double>("normal_force", {n});
-  const auto normal = group.read<double>("normal", {n, 3}), shear_force = group.read<double>("shear_force", {n, 3});
-  const auto bending = group.read<double>("bending_moment", {n, 3});
-  const auto twisting = group.read<double>("twisting_moment", {n, 3});
+  std::array<std::vector<double>, history_vectors.size()> vectors;
+  for (std::size_t v = 0; v < vectors.size(); ++v)
+    vectors[v] = group.read<double>(history_vectors[v].name, {n, 3});
+  const std::vector<double> own = group.has("own") ? group.read<double>("own") : std::vector<double>();
   std::vector<Contact> rows(n);
   for (std::size_t i = 0; i < n; ++i)
     {
@@ -126,8 +127,9 @@ std::vector<Contact> read_contacts(const Group &group, std::size_t n_grains)
                         "grains). The file is damaged: write it again",
                         group.where(), i, first[i], second[i], n_grains));
       rows[i] = {first[i], second[i], overlap[i], normal_force[i], {}};
-      rows[i].history = {Vec3(&normal[3 * i]), Vec3(&shear_force[3 * i]), Vec3(&bending[3 * i]),
-                         Vec3(&twisting[3 * i])};
+      for (std::size_t v = 0; v < vectors.size(); ++v)
+        rows[i].history.*history_vectors[v].place = Vec3(&vectors[v][3 * i]);
+      rows[i].history.own.assign(own.begin() + i * (own.size() / n), own.begin() + (i + 1) * (own.size() / n));
     }
   return rows;
 }
@@ -158,39 +160,31 @@ std::vector<WallContact> read_wall_contacts(const Group &group, std::size_t n_gr
     }
   return rows;
 }
-} // namespace
-
-namespace
-{
 void write_cell(Group group, const PeriodicCell &cell)
 {
-  const auto matrix = [&](const char *name, const Mat3 &m, const char *unit) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = m;
-    group.write(name, std::span(rows.data(), 9), unit, 3);
-  };
-  matrix("edges", cell.edges, "m");
-  matrix("deformation", cell.deformation, "-");
-  matrix("rotation", cell.rotation, "-");
-  matrix("strain_step", cell.strain_step, "-");
-  group.set_attribute("volume_strain", cell.volume_strain);
-  group.set_attribute("reference_volume", cell.reference_volume);
-  group.set_attribute("flips", cell.flips);
+  PeriodicCell::for_each(cell, [&]<typename Value>(const char *name, const Value &value) {
+    if constexpr (std::is_same_v<Value, Mat3>)
+      {
+        const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = value;
+        group.write(name, std::span(rows.data(), 9), std::string_view(name) == "edges" ? "m" : "-", 3);
+      }
+    else
+      group.set_attribute(name, value);
+  });
 }
 
 PeriodicCell read_cell(const Group &group)
 {
-  const auto matrix = [&](const char *name) {
-    const std::vector<double> rows = group.read<double>(name, {3, 3});
-    return Mat3(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data()));
-  };
   PeriodicCell cell;
-  cell.edges = matrix("edges");
-  cell.deformation = matrix("deformation");
-  cell.rotation = matrix("rotation");
-  cell.strain_step = matrix("strain_step");
-  cell.volume_strain = group.attribute<double>("volume_strain");
-  cell.reference_volume = group.attribute<double>("reference_volume");
-  cell.flips = group.attribute<std::uint64_t>("flips");
+  PeriodicCell::for_each(cell, [&]<typename Value>(const char *name, Value &value) {
+    if constexpr (std::is_same_v<Value, Mat3>)
+      {
+        const std::vector<double> rows = group.read<double>(name, {3, 3});
+        value = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
+      }
+    else
+      value = group.attribute<Value>(name);
+  });
   return cell;
 }
 } // namespace

@@ -43,8 +43,12 @@ std::string contact_fault(const Snapshot &state)
     {
       const Contact &c = state.contacts[i];
       const ContactHistory &h = c.history;
-      if (!(std::isfinite(c.overlap) && std::isfinite(c.normal_force) && h.normal.allFinite() &&
-            h.shear_force.allFinite() && h.bending_moment.allFinite() && h.twisting_moment.allFinite()))
+      bool finite = std::isfinite(c.overlap) && std::isfinite(c.normal_force);
+      for (const HistoryVector &v : history_vectors)
+        finite &= (h.*v.place).allFinite();
+      for (const double number : h.own)
+        finite &= std::isfinite(number);
+      if (!finite)
         return fmt::format("contact {} (grains {} and {}) holds a value that is not finite", i, c.first, c.second);
     }
   for (std::size_t i = 0; i < state.wall_contacts.size(); ++i)
@@ -57,9 +61,9 @@ std::string contact_fault(const Snapshot &state)
 /// What makes a state unfit to start from; empty if nothing.
 std::string fault(const Snapshot &state)
 {
-  const LawParams &law = state.law;
-  for (double value : {law.young, law.stiffness_ratio, law.friction, law.rolling_stiffness, law.rolling_limit,
-                       law.twisting_stiffness, state.time})
+  std::vector<double> values = parameter_values(state.law);
+  values.push_back(state.time);
+  for (const double value : values)
     if (!std::isfinite(value))
       return fmt::format("a law parameter or the time is {}; expected finite numbers", value);
   if (!(std::isfinite(state.grains.density) && state.grains.density > 0))

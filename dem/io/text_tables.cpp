@@ -129,7 +129,7 @@ Contact grain_row(const CsvTable &table, std::size_t row, std::uint32_t first, s
     reject(table.path(), table.line(row), "(nx, ny, nz) is not a unit vector; expected length 1 within 1e-6");
   ContactHistory h{table.vector(row, nx), table.vector(row, fsx), table.vector(row, mbx), table.vector(row, mtx)};
   if (first > second) // seen from the other grain everything is opposite
-    h = {-h.normal, -h.shear_force, -h.bending_moment, -h.twisting_moment};
+    h = h.from_the_other_side();
   return {std::min(first, second), std::max(first, second), overlap_of(table, row), table(row, fn), h};
 }
 
@@ -218,7 +218,7 @@ void check_density(double density)
 }
 } // namespace
 
-Snapshot import_tables(const fs::path &path, const LawParams &law, double density)
+Snapshot import_tables(const fs::path &path, const Law &law, double density)
 {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
@@ -227,7 +227,7 @@ Snapshot import_tables(const fs::path &path, const LawParams &law, double densit
 }
 
 Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, const std::string &tag,
-                            const LawParams &law, double density)
+                            const Law &law, double density)
 {
   check_density(density);
   Snapshot snapshot;
@@ -239,7 +239,7 @@ Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, c
   return snapshot;
 }
 
-Snapshot import_spheres(const fs::path &path, const LawParams &law, double density)
+Snapshot import_spheres(const fs::path &path, const Law &law, double density)
 {
   check_density(density);
   const std::string text = read_text(path);

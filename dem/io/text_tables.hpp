@@ -9,7 +9,7 @@ namespace isostat
 {
 /// A packing from text: a folder is read by import_yade_tables with prefix "comp" and tag "step0", a file by
 /// import_spheres.
-Snapshot import_tables(const std::filesystem::path &path, const LawParams &law, double density);
+Snapshot import_tables(const std::filesystem::path &path, const Law &law, double density);
 
 /// A packing with contact history, from three tables of comma separated columns named in the first line, each plain or
 /// gzipped (.csv or .csv.gz):
@@ -29,10 +29,10 @@ Snapshot import_tables(const std::filesystem::path &path, const LawParams &law, 
 /// Every mistake is an InputError that begins with file:line.
 /// tested: tests/dem/io/text_tables_test.cpp
 Snapshot import_yade_tables(const std::filesystem::path &folder, const std::string &prefix, const std::string &tag,
-                            const LawParams &law, double density);
+                            const Law &law, double density);
 
 /// Resting spheres without contacts from lines `x y z r` (m; separated by blanks, tabs or commas), plain or gzipped.
 /// Lines that begin with # are comments; the first other line may be a header of words. The box is that of a comment
 /// `# box xlo xhi ylo yhi zlo zhi`, otherwise the bounding box of the spheres.
-Snapshot import_spheres(const std::filesystem::path &path, const LawParams &law, double density);
+Snapshot import_spheres(const std::filesystem::path &path, const Law &law, double density);
 } // namespace isostat

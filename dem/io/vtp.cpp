@@ -150,14 +150,13 @@ void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &s
   std::vector<std::uint8_t> sliding, rolling;
   for (const Contact &c : snapshot.contacts)
     {
-      const double shear = c.history.shear_force.norm(), bending = c.history.bending_moment.norm();
-      const double length = rolling_length(snapshot.law, grains.radius(c.first), grains.radius(c.second));
+      const YieldState yield = snapshot.law->yield(snapshot.closed(c));
       ends.insert(ends.end(), {c.first, c.second});
       offsets.push_back(static_cast<std::int64_t>(ends.size()));
       normal_force.push_back(c.normal_force);
-      shear_force.push_back(shear);
-      sliding.push_back(is_sliding(shear, c.normal_force, snapshot.law));
-      rolling.push_back(is_rolling(bending, c.normal_force, length, snapshot.law));
+      shear_force.push_back(c.history.shear_force.norm());
+      sliding.push_back(yield.sliding);
+      rolling.push_back(yield.rolling);
     }
   pugi::xml_document document;
   pugi::xml_node piece = add_piece(document, grains, 0, n);

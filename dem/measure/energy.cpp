@@ -3,14 +3,6 @@
 
 namespace isostat
 {
-namespace
-{
-double spring_energy(double force_squared, double stiffness)
-{
-  return stiffness > 0 ? 0.5 * force_squared / stiffness : 0.0;
-}
-} // namespace
-
 StoredEnergy stored_energy(const Snapshot &snapshot)
 {
   const Packing &grains = snapshot.grains;
@@ -22,14 +14,14 @@ StoredEnergy stored_energy(const Snapshot &snapshot)
     }
   for (const Contact &c : snapshot.contacts)
     {
-      const ContactStiffness k = contact_stiffness(snapshot.law, grains.radius(c.first), grains.radius(c.second));
-      energy.normal += spring_energy(c.normal_force * c.normal_force, k.normal);
-      energy.shear += spring_energy(c.history.shear_force.squaredNorm(), k.shear);
-      energy.rolling += spring_energy(c.history.bending_moment.squaredNorm(), k.rolling);
-      energy.twisting += spring_energy(c.history.twisting_moment.squaredNorm(), k.twisting);
+      const ContactEnergy held = snapshot.law->energy(snapshot.closed(c));
+      energy.normal += held.normal;
+      energy.shear += held.shear;
+      energy.rolling += held.rolling;
+      energy.twisting += held.twisting;
     }
   for (const WallContact &c : snapshot.wall_contacts)
-    energy.wall += spring_energy(c.normal_force * c.normal_force, wall_stiffness(snapshot.law, grains.radius(c.grain)));
+    energy.wall += snapshot.law->wall_energy(grains.radius(c.grain), c.overlap, c.normal_force);
   return energy;
 }
 } // namespace isostat

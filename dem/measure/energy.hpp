@@ -9,20 +9,27 @@ struct StoredEnergy
 {
   double translation = 0; ///< sum 1/2 m v^2
   double rotation = 0;    ///< sum 1/2 I w^2
-  double normal = 0;      ///< grain-grain contacts, sum 1/2 fn^2/kn
+  double normal = 0;      ///< grain-grain contacts, 1/2 fn^2/kn where springs are linear
   double shear = 0;       ///< sum 1/2 fs^2/ks
   double rolling = 0;     ///< sum 1/2 mb^2/kr
   double twisting = 0;    ///< sum 1/2 mt^2/kt
   double wall = 0;        ///< grain-wall contacts, sum 1/2 fn^2/(E R)
 
+  /// visit(name, J) for each of them.
+  template <typename Visit>
+  void for_each(const Visit &visit) const
+  {
+    visit("translation", translation), visit("rotation", rotation), visit("normal", normal), visit("shear", shear);
+    visit("rolling", rolling), visit("twisting", twisting), visit("wall", wall);
+  }
   double kinetic() const { return translation + rotation; }
   double elastic() const { return normal + shear + rolling + twisting + wall; }
   double total() const { return kinetic() + elastic(); }
 };
 
-/// Kinetic and elastic energy (contact law of DESIGN 3; springs are linear, so each holds 1/2 force^2/stiffness).
+/// Kinetic energy, and the elastic energy that the contact law says its springs hold (docs/theory.md, section 14).
 /// Velocities are those of the half step before the positions: the kinetic part is half a step old. A spring that the
-/// law has switched off holds nothing.      cost four squares per contact
+/// law has switched off holds nothing.      cost one call of the law per contact
 /// tested: tests/dem/measure/energy_test.cpp (each spring alone, moving grain, law without rolling)
 StoredEnergy stored_energy(const Snapshot &snapshot);
 
@@ -39,8 +46,16 @@ struct EnergyBalance
   double damping = 0;       ///< taken out by local damping, >= 0
   double created = 0;       ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
 
+  /// visit(name, J) for each of them, const or not.
+  template <typename Balance, typename Visit>
+  static void for_each(Balance &b, const Visit &visit)
+  {
+    visit("boundary_work", b.boundary_work), visit("kinetic", b.kinetic), visit("elastic", b.elastic);
+    visit("sliding", b.sliding), visit("rolling", b.rolling), visit("released", b.released);
+    visit("damping", b.damping), visit("created", b.created);
+  }
   double dissipated() const { return sliding + rolling + released + damping; }
-  /// boundary work + created = stored + dissipated (DESIGN 6). What is left over is the error of the time step.
+  /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the time step.
   double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }
 };
 } // namespace isostat

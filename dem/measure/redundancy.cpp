@@ -7,14 +7,10 @@ namespace
 {
 ContactClasses classify(const Snapshot &snapshot)
 {
-  const LawParams &law = snapshot.law;
-  const Packing &grains = snapshot.grains;
   ContactClasses classes;
   for (const Contact &c : snapshot.contacts)
     {
-      const double length = rolling_length(law, grains.radius(c.first), grains.radius(c.second));
-      const bool slides = is_sliding(c.history.shear_force.norm(), c.normal_force, law);
-      const bool rolls = is_rolling(c.history.bending_moment.norm(), c.normal_force, length, law);
+      const auto [slides, rolls] = snapshot.law->yield(snapshot.closed(c));
       ++(slides ? (rolls ? classes.sr : classes.s) : (rolls ? classes.r : classes.nsr));
     }
   return classes;

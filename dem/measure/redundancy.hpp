@@ -64,7 +64,7 @@ private:
   double index(double nsr, double s, double r, double sr) const;
 };
 
-/// Classes and counts of a snapshot; is_sliding and is_rolling of the contact law decide.
+/// Classes and counts of a snapshot; the contact law says what slides and rolls.
 /// @pre the moments and forces are those after the plastic return     cost two norms per contact
 /// tested: tests/dem/measure/redundancy_test.cpp (nothing yields, hand-made classes, bounds, no contacts, rattlers)
 ContactNetwork contact_network(const Snapshot &snapshot);

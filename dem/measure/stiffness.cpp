@@ -41,13 +41,13 @@ struct Element
 Element element(const Snapshot &snapshot, const Contact &c, Sliding sliding)
 {
   const double r1 = snapshot.grains.radius(c.first), r2 = snapshot.grains.radius(c.second);
-  const LawParams &law = snapshot.law;
-  ContactStiffness k = contact_stiffness(law, r1, r2);
+  ContactStiffness k = snapshot.law->stiffness(r1, r2, c.overlap);
   if (sliding == Sliding::released)
     {
-      if (is_sliding(c.history.shear_force.norm(), c.normal_force, law))
+      const YieldState yield = snapshot.law->yield(snapshot.closed(c));
+      if (yield.sliding)
         k.shear = 0;
-      if (is_rolling(c.history.bending_moment.norm(), c.normal_force, rolling_length(law, r1, r2), law))
+      if (yield.rolling)
         k.rolling = 0;
     }
   const double branch = r1 + r2 - c.overlap;
@@ -253,7 +253,7 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding)
   drop_unloaded(elements, n_grains);
   if (elements.empty())
     return Mat6::Zero();
-  const Unknowns unknowns(elements, n_grains, snapshot.law.active().friction);
+  const Unknowns unknowns(elements, n_grains, snapshot.law->friction > 0);
   const Eigen::MatrixXd motion = fluctuations(elements, unknowns);
   Mat6 sum = Mat6::Zero();
   for (const Element &e : elements)

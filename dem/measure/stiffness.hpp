@@ -12,7 +12,7 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 enum class Sliding
 {
   elastic, ///< as if it had never yielded: stiffness after a reversal, that of small waves
-  released ///< no ks where is_sliding, no kr where is_rolling: a loading that keeps all yielding contacts yielding
+  released ///< no ks where the contact slides, no kr where it rolls: a loading that keeps all yielding contacts yielding
 };
 
 /// Instantaneous elastic stiffness of a periodic packing, by condensation of its contact network onto the mean strain.

@@ -10,6 +10,8 @@ namespace
 {
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
+/// Of the radius: where a law whose stiffness grows with overlap is asked for that of grains which do not touch yet.
+constexpr double overlap_expected = 0.01;
 
 /// One closed contact as an elastic element.
 struct Element
@@ -20,7 +22,7 @@ struct Element
   ContactStiffness k;
 };
 
-std::vector<Element> closed_contacts(const LawParams &law, const Packing &packing, const ContactList &contacts)
+std::vector<Element> closed_contacts(const ContactLaw &law, const Packing &packing, const ContactList &contacts)
 {
   std::vector<Element> elements;
   elements.reserve(contacts.n_pairs());
@@ -30,7 +32,7 @@ std::vector<Element> closed_contacts(const LawParams &law, const Packing &packin
       const Vec3 branch = contacts.branch(packing, p);
       const double r1 = packing.radius(i), r2 = packing.radius(j), distance = branch.norm();
       if (distance < r1 + r2)
-        elements.push_back({i, j, branch / distance, r1, r2, contact_stiffness(law, r1, r2)});
+        elements.push_back({i, j, branch / distance, r1, r2, law.stiffness(r1, r2, r1 + r2 - distance)});
     }
   return elements;
 }
@@ -56,7 +58,7 @@ Mat6 body_block(const Element &e, double radius, double sign)
 }
 
 template <typename Visit>
-void for_wall_contacts(const LawParams &law, const Packing &packing, const RigidBox *walls, const Visit &visit)
+void for_wall_contacts(const ContactLaw &law, const Packing &packing, const RigidBox *walls, const Visit &visit)
 {
   if (!walls)
     return;
@@ -66,9 +68,9 @@ void for_wall_contacts(const LawParams &law, const Packing &packing, const Rigid
       {
         const double x = packing.position[4 * i + axis], r = packing.radius(i);
         if (x - box.lower[axis] < r)
-          visit(i, axis, wall_stiffness(law, r));
+          visit(i, axis, law.wall(r, r - (x - box.lower[axis])).stiffness);
         if (box.upper[axis] - x < r)
-          visit(i, axis, wall_stiffness(law, r));
+          visit(i, axis, law.wall(r, r - (box.upper[axis] - x)).stiffness);
       }
 }
 
@@ -86,7 +88,7 @@ double eigenvalue_bound(const Mat6 &b)
 
 using Blocks = std::vector<Mat6, Eigen::aligned_allocator<Mat6>>;
 
-Blocks wall_blocks(const LawParams &law, const Packing &packing, const RigidBox *walls)
+Blocks wall_blocks(const ContactLaw &law, const Packing &packing, const RigidBox *walls)
 {
   Blocks blocks(packing.n_grains(), Mat6::Zero());
   for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += k; });
@@ -104,10 +106,10 @@ Mat6 scaled_block(const Packing &packing, std::size_t i, const Mat6 &block)
 
 /// lambda of two smallest grains that meet while each is held by one more contact on the far side: what may come about
 /// before the next review, in a cloud or a liquid where little is closed now.
-double min_eigenvalue(const LawParams &law, const Packing &packing)
+double min_eigenvalue(const ContactLaw &law, const Packing &packing)
 {
   const double r = packing.min_radius();
-  const ContactStiffness k = contact_stiffness(law, r, r);
+  const ContactStiffness k = law.stiffness(r, r, overlap_expected * r);
   const double mass = 4.0 / 3.0 * M_PI * r * r * r * packing.density, inertia = 0.4 * mass * r * r;
   return 2 * std::max((2 * k.normal + 2 * k.shear) / mass, (2 * (k.shear * r * r + k.rolling) + k.twisting) / inertia);
 }
@@ -157,7 +159,7 @@ struct ScaledStiffness
 };
 } // namespace
 
-double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox *walls,
+double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
                            const ContactList &contacts)
 {
   const std::vector<Element> elements = closed_contacts(law, packing, contacts);
@@ -197,7 +199,7 @@ double critical_step_bound(const LawParams &law, const Packing &packing, const R
   return 2 / std::sqrt(maximum);
 }
 
-double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox *walls,
+double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
                                         const ContactList &contacts, int iterations)
 {
   const std::size_t n = packing.n_grains();

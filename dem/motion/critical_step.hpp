@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/contact/law.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/state/contact_list.hpp"
 #include "dem/state/packing.hpp"
 
 namespace isostat
 {
-/// A time step that leapfrog can bear, from the stiffness of the contacts that are closed (DESIGN 4).
+/// A time step that leapfrog can bear, from the stiffness of the contacts that are closed.
 ///
 /// With K the 6N x 6N stiffness of all contacts (normal, shear, rolling, twisting) and M the masses and inertias, each
 /// contact is an elastic element between two bodies, and (a + b)^2 <= (1 + t) a^2 + (1 + 1/t) b^2 for any t > 0 gives
@@ -19,12 +20,12 @@ namespace isostat
 /// @param walls  nullptr in a periodic cell
 /// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
 /// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
-double critical_step_bound(const LawParams &law, const Packing &packing, const RigidBox *walls,
+double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
                            const ContactList &contacts);
 
 /// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured
 /// with.
 /// @param iterations  each costs two passes over the contacts; converges from below to omega_max
-double critical_step_by_power_iteration(const LawParams &law, const Packing &packing, const RigidBox *walls,
+double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
                                         const ContactList &contacts, int iterations);
 } // namespace isostat

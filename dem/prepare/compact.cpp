@@ -53,10 +53,10 @@ Stage servo_stage(StageKind kind, double pressure, double balance)
 }
 } // namespace
 
-Snapshot compact(const Cloud &cloud, LawParams law, double friction, const SpecimenSpec &specimen,
+Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen,
                  RunObserver &observer)
 {
-  law.friction = friction;
+  law->friction = friction;
   Snapshot start;
   start.grains = cloud.packing;
   start.box = cloud.box;
@@ -68,7 +68,7 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
                     observer);
 }
 
-Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen, RunObserver &observer)
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen, RunObserver &observer)
 {
   Snapshot start = compacted;
   start.law = law;

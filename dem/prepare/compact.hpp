@@ -13,7 +13,7 @@ namespace isostat
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force
 /// cost: some 60,000 steps at 10,000 grains
-Snapshot compact(const Cloud &cloud, LawParams law, double friction, const SpecimenSpec &specimen,
+Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen,
                  RunObserver &observer);
 
 /// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
@@ -22,6 +22,6 @@ Snapshot compact(const Cloud &cloud, LawParams law, double friction, const Speci
 /// A loose packing that loses its pressure while it is held is brought back to it, up to five times.
 /// @param law  with the friction of shearing
 /// @throws RunFailure  it does not keep its pressure
-Snapshot rebalance(const Snapshot &compacted, const LawParams &law, const SpecimenSpec &specimen,
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen,
                    RunObserver &observer);
 } // namespace isostat

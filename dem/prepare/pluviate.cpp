@@ -19,7 +19,7 @@ constexpr std::uint64_t review = 200, most_steps = 50'000'000;
 
 /// The cloud stretched upwards, in a box of twice its height. Stretching all heights above the floor by one factor >= 1
 /// brings no two centres nearer to each other.
-Snapshot stretched(const Cloud &cloud, const LawParams &law, double fall)
+Snapshot stretched(const Cloud &cloud, const Law &law, double fall)
 {
   Snapshot start;
   start.grains = cloud.packing;
@@ -160,17 +160,17 @@ double void_ratio_inside(const Packing &packing, const RigidBox &inside)
   return solid > 0 ? static_cast<double>(columns.size()) * inside.edges()[1] / solid - 1 : 0.0;
 }
 
-Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how, RunObserver &observer)
+Deposit pluviate(const Cloud &cloud, const Law &law, const Pluviation &how, RunObserver &observer)
 {
   check_pluviation(how);
   Deposit deposit;
   const double d50 = cloud.packing.d50(), density = cloud.packing.density;
   deposit.fall_speed = fastest_impact(cloud, how);
-  LawParams falling = law;
+  Law falling = law;
   if (how.soften)
-    falling.young =
-        std::min(law.young, deposition_modulus(density, deposit.fall_speed, d50, how.overlap_allowed * d50));
-  deposit.young = falling.young;
+    falling->young =
+        std::min(law->young, deposition_modulus(density, deposit.fall_speed, d50, how.overlap_allowed * d50));
+  deposit.young = falling->young;
   observer.event(fmt::format("deposition: fall {:g}, fastest impact {:.3f} m/s, contact modulus {:.3g} Pa", how.fall,
                              deposit.fall_speed, deposit.young));
 

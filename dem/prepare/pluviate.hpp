@@ -43,7 +43,7 @@ struct Deposit
 /// @throws InputError   as check_pluviation
 /// @throws RunFailure   grains do not come to rest
 /// tested: tests/dem/prepare/pluviate_test.cpp
-Deposit pluviate(const Cloud &cloud, const LawParams &law, const Pluviation &how, RunObserver &observer);
+Deposit pluviate(const Cloud &cloud, const Law &law, const Pluviation &how, RunObserver &observer);
 
 /// Contact modulus at which a sphere of diameter d that meets a wall, or its like at rest, with speed v overlaps by
 /// u: half an oscillation of mass m = pi/6 rho d^3 on a spring k = E d/2,

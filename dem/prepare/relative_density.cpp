@@ -30,7 +30,7 @@ double further(double friction, double end, bool at_once)
 class Search
 {
 public:
-  Search(const Cloud &cloud, const LawParams &law, double target, double tolerance, const SpecimenSpec &specimen,
+  Search(const Cloud &cloud, const Law &law, double target, double tolerance, const SpecimenSpec &specimen,
          RunObserver &observer)
       : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), specimen_(specimen), observer_(observer)
   {}
@@ -58,14 +58,14 @@ public:
 
 private:
   const Cloud &cloud_;
-  const LawParams &law_;
+  const Law &law_;
   double target_, tolerance_;
   const SpecimenSpec &specimen_;
   RunObserver &observer_;
 };
 } // namespace
 
-PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &law, double target, double tolerance,
+PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, double target, double tolerance,
                                           const SpecimenSpec &specimen, RunObserver &observer)
 {
   Search search(cloud, law, target, tolerance, specimen, observer);

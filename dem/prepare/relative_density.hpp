@@ -32,6 +32,6 @@ struct PreparedDensity
 /// @throws RunFailure when no friction tried comes within the tolerance
 /// cost: 3 to 7 compressions, up to 30 where e is noisy
 /// tested: tests/verification/programme_test.cpp
-PreparedDensity find_preparation_friction(const Cloud &cloud, const LawParams &law, double target, double tolerance,
+PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, double target, double tolerance,
                                           const SpecimenSpec &specimen, RunObserver &observer);
 } // namespace isostat

@@ -30,8 +30,7 @@ Contact renumbered(const Contact &c, const std::vector<std::uint32_t> &place)
   if (moved.first > moved.second)
     {
       std::swap(moved.first, moved.second);
-      const ContactHistory &h = c.history;
-      moved.history = {-h.normal, -h.shear_force, -h.bending_moment, -h.twisting_moment};
+      moved.history = c.history.from_the_other_side();
     }
   return moved;
 }

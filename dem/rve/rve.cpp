@@ -64,7 +64,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
   update_time_step(settings_.motion, true, assembly_, drive_);
   assembly_.compute_forces();
-  drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law().young);
+  drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
   keep_safe();
 }
 

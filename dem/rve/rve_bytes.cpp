@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A representative volume element as bytes and back:
 //
-//     magic, version, checksum of the rest | law, density | ids, radii, inverse masses and inertias | grains, contacts,
-//     cell | driver's numbers | cost
+//     magic, version, checksum of the rest | [name of the law], its parameters, density | ids, radii, inverse masses
+//     and inertias | grains, contacts, cell | driver's numbers | cost
 #include "dem/rve/rve.hpp"
 
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
+#include "dem/contact/law_parameters.hpp"
 
 #include <fmt/format.h>
 #include <type_traits>
@@ -15,7 +16,8 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t magic = 0x4556525453495349, version = 1;
+constexpr std::uint64_t magic = 0x4556525453495349;
+constexpr std::uint64_t default_law = 1, named_law = 2; ///< version: does the law need its name?
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return Hash().words(bytes).value(); }
 
@@ -50,12 +52,10 @@ struct Archive
 };
 
 /// Sizes, masses and law: what never changes.
-template <typename Visitor, typename Law, typename Grains>
+template <typename Visitor, typename Grains>
 void fixed_part(Visitor &archive, Law &law, Grains &grains)
 {
-  archive(law.young), archive(law.stiffness_ratio), archive(law.friction), archive(law.rolling_stiffness);
-  archive(law.rolling_limit), archive(law.twisting_stiffness);
-  archive(law.features.friction), archive(law.features.rolling), archive(law.features.twisting);
+  for_each_parameter(*law.operator->(), [&](const std::string &, auto &value) { archive(value); });
   archive(grains.density), archive(grains.id);
   archive(grains.position), archive(grains.velocity), archive(grains.spin);
 }
@@ -65,8 +65,7 @@ void moving_part(Visitor &archive, State &state)
 {
   auto &g = state.grains;
   archive(g.grains), archive(g.pairs), archive(g.history), archive(g.virial);
-  archive(g.cell.edges), archive(g.cell.deformation), archive(g.cell.rotation), archive(g.cell.strain_step);
-  archive(g.cell.volume_strain), archive(g.cell.reference_volume), archive(g.cell.flips);
+  PeriodicCell::for_each(g.cell, [&](const char *, auto &field) { archive(field); });
   archive(g.time), archive(g.time_step), archive(g.step);
 }
 } // namespace
@@ -76,7 +75,12 @@ std::vector<std::byte> Rve::pack() const
   ByteWriter bytes;
   Archive<ByteWriter> body{bytes};
   RveState state = save();
-  fixed_part(body, assembly_.law(), assembly_.packing());
+  Law law = assembly_.law();
+  const std::string_view name = law->name();
+  const std::uint64_t version = is_default(law) ? default_law : named_law;
+  if (version == named_law)
+    body(std::vector<char>(name.begin(), name.end()));
+  fixed_part(body, law, assembly_.packing());
   moving_part(body, state);
   state.drive.for_each([&](const std::string &, double &value) { body(value); });
   body(cost_);
@@ -92,8 +96,9 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   ByteReader bytes(packed, "a packed element", "pack it again");
   if (bytes.count() != magic)
     bytes.fail("these bytes are no representative volume element");
-  if (const std::uint64_t found = bytes.count(); found != version)
-    bytes.fail(fmt::format("they are of version {}, this program reads {}", found, version));
+  const std::uint64_t version = bytes.count();
+  if (version != default_law && version != named_law)
+    bytes.fail(fmt::format("they are of version {}, this program reads {} and {}", version, default_law, named_law));
   const std::uint64_t stored_checksum = bytes.count();
   if (checksum(bytes.rest()) != stored_checksum)
     bytes.fail("they are cut short or damaged: the checksum is wrong");
@@ -101,6 +106,11 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   Snapshot start;
   RveState state;
   RveCost cost;
+  if (std::vector<char> name; version == named_law)
+    {
+      body(name);
+      start.law = law_named({name.data(), name.size()});
+    }
   fixed_part(body, start.law, start.grains);
   moving_part(body, state);
   state.drive.for_each([&](const std::string &, double &value) { body(value); });

@@ -40,11 +40,12 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
 
 void check_contact(const SceneDocument &document, const Scene &scene)
 {
-  for (const char *path : {"contact.rolling", "contact.twisting"})
-    if (document.find(path) && !document.find("contact.friction"))
+  for (const Key &key : scene.contact->keys())
+    if (const std::string path = std::string("contact.") + key.path;
+        key.kind == Kind::table && document.find(path) && !document.find("contact.friction"))
       document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    if (scene.stages[i].friction > 0 && !scene.contact.features.friction)
+    if (scene.stages[i].friction > 0 && !(scene.contact->friction > 0))
       document.refuse(fmt::format("stage.{}.friction", i),
                       "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
 }

@@ -11,20 +11,12 @@ namespace isostat
 {
 namespace
 {
-bool equal(const LawParams &a, const LawParams &b)
-{
-  return a.young == b.young && a.stiffness_ratio == b.stiffness_ratio && a.friction == b.friction &&
-         a.rolling_stiffness == b.rolling_stiffness && a.rolling_limit == b.rolling_limit &&
-         a.twisting_stiffness == b.twisting_stiffness && a.features == b.features;
-}
-
 Scene checked_scene(const SceneDocument &document)
 {
   Scene scene;
   fill_scene(document, &scene);
   if (!document.find("contact.friction"))
-    scene.contact.friction = 0;
-  scene.contact.features.friction = scene.contact.friction > 0;
+    scene.contact->friction = 0;
   if (document.find("grading.table"))
     scene.grading.curve.clear();
   check_scene(document, scene);
@@ -37,12 +29,6 @@ SpecimenPlace specimen_place(const std::string &file)
   const std::size_t ending = file.rfind(".h5#");
   return ending == std::string::npos ? SpecimenPlace{file, ""}
                                      : SpecimenPlace{file.substr(0, ending + 3), file.substr(ending + 4)};
-}
-
-bool Scene::operator==(const Scene &other) const
-{
-  return title == other.title && grading == other.grading && equal(contact, other.contact) &&
-         specimen == other.specimen && motion == other.motion && stages == other.stages && output == other.output;
 }
 
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/law.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -138,13 +138,13 @@ struct Scene
 {
   std::string title;
   GradingSpec grading;
-  LawParams contact;
+  Law contact;
   SpecimenSpec specimen;
   MotionSpec motion;
   std::vector<Stage> stages;
   OutputSpec output;
 
-  bool operator==(const Scene &other) const; ///< bit for bit, every field
+  bool operator==(const Scene &) const = default; ///< bit for bit, every field
 };
 
 /// Reads and checks a scene file. Angles of friction become their tangents here and nowhere else; an output folder left

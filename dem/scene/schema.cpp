@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a scene file. A new key is one entry here, one field in dem/scene/scene.hpp and, if it takes part in a
 // rule that binds several keys, a line in dem/scene/checks.cpp.
+// The keys of a contact law are in its folder.
 #include "dem/scene/schema.hpp"
+
+#include "base/scene/fragment.hpp"
+
+#include <algorithm>
 
 namespace isostat
 {
@@ -24,7 +29,7 @@ constexpr const char *kind_choices[] = {"compress",
                                         "undrained-simple-shear",
                                         "undrained-cyclic-simple-shear"};
 
-constexpr Section sections[] = {
+constexpr Section fixed_sections[] = {
     {.name = "grading",
      .text = "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from."},
     {.name = "contact",
@@ -76,7 +81,7 @@ constexpr const char *because_shear_strain = "because this is a shear strain, no
 constexpr const char *because_damping = "because at 1 no grain would get moving";
 
 // clang-format off
-constexpr Key keys[] = {
+constexpr Key first_keys[] = {
   {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
    .field = [](Scene &s) -> Field { return &s.title; }},
 
@@ -110,38 +115,9 @@ constexpr Key keys[] = {
   {.path = "grading.seed", .kind = Kind::integer, .value = "1",
    .text = "Realisation: the same seed gives the same specimen on any number of threads.",
    .field = [](Scene &s) -> Field { return &s.grading.seed; }},
+};
 
-  {.path = "contact.young", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
-   .value = "10 GPa", .range = positive, .text = "Contact modulus E; the normal stiffness is 2 E R1 R2/(R1+R2).",
-   .field = [](Scene &s) -> Field { return &s.contact.young; }},
-  {.path = "contact.stiffness_ratio", .value = "0.3", .range = positive,
-   .reason = "because without tangential stiffness friction does not act (leave friction out instead)",
-   .text = "Tangential over normal stiffness, ks/kn.",
-   .field = [](Scene &s) -> Field { return &s.contact.stiffness_ratio; }},
-  {.path = "contact.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
-   .presence = Presence::experiment, .value = "18 deg", .range = right_angle, .reason = because_tan,
-   .text = "Angle of friction between grains while the specimen is tested; left out or 0 deg: frictionless, and "
-           "then without rolling and twisting resistance too. Walls are always frictionless.",
-   .field = [](Scene &s) -> Field { return &s.contact.friction; }},
-  {.path = "contact.rolling", .kind = Kind::table, .presence = Presence::experiment,
-   .value = "{ stiffness = 0.3, limit = 0.5 }", .text = "Rolling resistance; left out: none.",
-   .field = [](Scene &s) -> Field { return &s.contact.features.rolling; }},
-  {.path = "contact.rolling.stiffness", .value = "0.3", .range = positive,
-   .reason = "because zero means no resistance (leave the table out instead)",
-   .text = "alpha_r: rolling stiffness over R1 R2 ks.",
-   .field = [](Scene &s) -> Field { return &s.contact.rolling_stiffness; }},
-  {.path = "contact.rolling.limit", .value = "0.5", .range = positive,
-   .reason = "because zero means no resistance (leave the table out instead)",
-   .text = "eta_r: the rolling moment stays below eta_r min(R1,R2) times the normal force.",
-   .field = [](Scene &s) -> Field { return &s.contact.rolling_limit; }},
-  {.path = "contact.twisting", .kind = Kind::table, .presence = Presence::experiment, .value = "{ stiffness = 0.3 }",
-   .text = "Twisting resistance, elastic without limit; left out: none.",
-   .field = [](Scene &s) -> Field { return &s.contact.features.twisting; }},
-  {.path = "contact.twisting.stiffness", .value = "0.3", .range = positive,
-   .reason = "because zero means no resistance (leave the table out instead)",
-   .text = "alpha_t: twisting stiffness over R1 R2 ks; not given in the paper.",
-   .field = [](Scene &s) -> Field { return &s.contact.twisting_stiffness; }},
-
+constexpr Key later_keys[] = {
   {.path = "specimen.domain", .kind = Kind::choice, .value = "rigid-box", .choices = domain_choices,
    .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z.",
    .field = [](Scene &s) -> Field { return &s.specimen.domain; }},
@@ -338,23 +314,72 @@ A scene is one TOML file that says all about a run. This page is generated from 
 )";
 // clang-format on
 
-/// A rigid box is always consolidated isotropically. Not writing it keeps the recipes of specimens that are in caches.
+/// A rigid box is always consolidated isotropically, and the default law needs no name. Not writing them keeps the
+/// recipes of specimens that are in caches.
 bool is_implied(const Key &key, const void *scene)
 {
-  return std::string_view(key.path) == "specimen.consolidation" &&
-         static_cast<const Scene *>(scene)->specimen.domain == "rigid-box";
+  const Scene &s = *static_cast<const Scene *>(scene);
+  const std::string_view path = key.path;
+  return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
+         (path == "contact.law" && is_default(s.contact));
 }
 
-constexpr SceneSchema schema{.keys = keys,
-                             .sections = sections,
-                             .groups = groups,
-                             .dimensions = dimensions,
-                             .set_example = "motion.damping=0.3",
-                             .defaults_head = defaults_head,
-                             .manual_head = manual_head,
-                             .is_implied = is_implied};
+/// The word of contact.law is a number of registered_laws().
+std::size_t law_number(const void *place)
+{
+  const std::span<const Law> laws = registered_laws();
+  const Law &law = *static_cast<const Law *>(place);
+  const auto is_it = [&](const Law &l) { return std::string_view(l->name()) == law->name(); };
+  return static_cast<std::size_t>(std::find_if(laws.begin(), laws.end(), is_it) - laws.begin());
+}
+
+void set_law(void *place, std::size_t number) { *static_cast<Law *>(place) = registered_laws()[number]; }
+
+/// The tables together with the keys of all laws that there are when the first scene is read.
+struct WholeSchema
+{
+  std::vector<const char *> law_names;
+  std::vector<Key> law_keys;
+  std::vector<Section> sections{std::begin(fixed_sections), std::end(fixed_sections)};
+  std::optional<KeyTable> table;
+  SceneSchema schema;
+
+  WholeSchema()
+  {
+    const std::span<const Law> laws = registered_laws();
+    for (const Law &law : laws)
+      law_names.push_back(law->name());
+    law_keys = {{.path = "contact.law",
+                 .kind = Kind::choice,
+                 .value = law_names[0],
+                 .choices = law_names,
+                 .text = "The contact law.",
+                 .field = [](Scene &s) -> Field { return EnumField(&s.contact, law_number, set_law); }}};
+    std::vector<KeyRun> runs{first_keys, {law_keys, "", 0, {}}};
+    for (std::size_t i = 0; i < laws.size(); ++i)
+      runs.push_back({laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
+                      [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); }});
+    runs.push_back(later_keys);
+    table.emplace(std::span<const KeyRun>(runs));
+    for (Section &section : sections)
+      if (laws.size() > 1 && std::string_view(section.name) == "contact")
+        section.kind_key = "law", section.kinds_title = "Laws";
+    schema = {.keys = table->keys(),
+              .sections = sections,
+              .groups = groups,
+              .dimensions = dimensions,
+              .set_example = "motion.damping=0.3",
+              .defaults_head = defaults_head,
+              .manual_head = manual_head,
+              .is_implied = is_implied};
+  }
+};
 } // namespace
 
-const SceneSchema &scene_schema() { return schema; }
+const SceneSchema &scene_schema()
+{
+  static const WholeSchema whole;
+  return whole.schema;
+}
 std::span<const char *const> stage_kind_names() { return kind_choices; }
 } // namespace isostat

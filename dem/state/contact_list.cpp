@@ -8,34 +8,28 @@ namespace isostat
 ContactHistory ContactList::history(std::size_t pair) const
 {
   ContactHistory h;
-  if (!features_.friction)
-    return h;
-  auto vector_at = [&](std::size_t c) {
-    return Vec3(*component(pair, c), *component(pair, c + 1), *component(pair, c + 2));
-  };
-  h.normal = vector_at(0);
-  h.shear_force = vector_at(3);
-  if (features_.rolling)
-    h.bending_moment = vector_at(6);
-  if (features_.twisting)
-    h.twisting_moment = vector_at(features_.rolling ? 9 : 6);
+  std::size_t c = 0;
+  for (std::size_t v = 0; v < history_vectors.size(); ++v)
+    if (layout_.keeps[v])
+      for (double &x : h.*history_vectors[v].place)
+        x = *component(pair, c++);
+  h.own.resize(layout_.n_own);
+  for (double &x : h.own)
+    x = *component(pair, c++);
   return h;
 }
 
 void ContactList::set_history(std::size_t pair, const ContactHistory &h)
 {
-  if (!features_.friction)
+  if (n_components() == 0)
     return;
-  auto put = [&](std::size_t c, const Vec3 &v) {
-    for (std::size_t k = 0; k < 3; ++k)
-      *component(pair, c + k) = v[k];
-  };
-  put(0, h.normal);
-  put(3, h.shear_force);
-  if (features_.rolling)
-    put(6, h.bending_moment);
-  if (features_.twisting)
-    put(features_.rolling ? 9 : 6, h.twisting_moment);
+  std::size_t c = 0;
+  for (std::size_t v = 0; v < history_vectors.size(); ++v)
+    if (layout_.keeps[v])
+      for (const double x : h.*history_vectors[v].place)
+        *component(pair, c++) = x;
+  for (std::size_t k = 0; k < layout_.n_own; ++k)
+    *component(pair, c++) = k < h.own.size() ? h.own[k] : 0.0;
   occupied_[pair / lanes] = 1;
 }
 
@@ -167,7 +161,8 @@ void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint
 {
   thread_local ContactList scratch; // its memory is used again
   ContactList &next = scratch;      // for all threads
-  next.features_ = features_;
+  next.layout_ = layout_;
+  next.n_components_ = n_components_;
   next.place(sorted_pairs, n_grains);
   next.place_images(images);
   next.history_.resize(next.n_lanes() * n_components());
@@ -183,7 +178,7 @@ void ContactList::save_history(std::vector<Pair> &pairs, std::vector<double> &nu
 {
   for (std::size_t lane = 0; lane < n_lanes(); ++lane)
     {
-      if (!features_.friction || !occupied_[lane / lanes] || history(lane).normal == Vec3::Zero())
+      if (n_components() == 0 || !occupied_[lane / lanes] || history(lane).normal == Vec3::Zero())
         continue;
       pairs.emplace_back(first_[lane], second_[lane]);
       for (std::size_t c = 0; c < n_components(); ++c)
@@ -206,13 +201,14 @@ void ContactList::restore_history(const std::vector<Pair> &pairs, const std::vec
     }
 }
 
-void ContactList::set_features(LawFeatures active)
+void ContactList::set_layout(const HistoryLayout &layout)
 {
-  if (active == features_)
+  if (layout == layout_)
     return;
   ContactList next = *this;
-  next.features_ = active;
-  next.history_.assign(first_.size() * n_components(active), 0.0);
+  next.layout_ = layout;
+  next.n_components_ = layout.n_components();
+  next.history_.assign(n_lanes() * next.n_components_, 0.0);
   next.occupied_.assign(occupied_.size(), 0);
   for (std::size_t pair = 0; pair < n_lanes(); ++pair)
     next.set_history(pair, history(pair));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/history.hpp"
 #include "dem/domain/periodic_cell.hpp"
 #include "dem/state/packing.hpp"
 #include "dem/state/partition.hpp"
@@ -19,7 +19,7 @@ struct Ghost
 ///
 ///     block b:  8 lanes;  first[8b .. 8b+7], second[8b .. 8b+7]
 ///     history:  component c of lane l in block b at  (b * n_components + c) * 8 + l
-///     components: n' (3), fs (3), [mb (3) with rolling], [mt (3) with twisting]; none at all without friction
+///     components: as HistoryLayout says, e.g. n' (3), fs (3), mb (3), mt (3); none for a law without memory
 ///
 /// Pairs are sorted by (first, second), first < second, and belong to the chunk of their first grain; every chunk fills
 /// whole blocks. Idle lanes point at the packing's padding grains. Pairs that do not touch carry zeros and add exact
@@ -39,13 +39,13 @@ public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
   ContactList() = default;
-  explicit ContactList(LawFeatures active) : features_(active) {}
+  explicit ContactList(const HistoryLayout &layout) : layout_(layout), n_components_(layout.n_components()) {}
 
   std::size_t n_pairs() const { return n_pairs_; }
   std::size_t n_lanes() const { return first_.size(); } ///< pairs and idle lanes: how far an index runs
   std::size_t n_blocks() const { return first_.size() / lanes; }
-  std::size_t n_components() const { return n_components(features_); }
-  LawFeatures features() const { return features_; }
+  std::size_t n_components() const { return n_components_; }
+  const HistoryLayout &layout() const { return layout_; }
   const std::uint32_t *first() const { return first_.data(); }
   const std::uint32_t *second() const { return second_.data(); }
   /// Slot that the force on the second grain goes to.
@@ -79,7 +79,7 @@ public:
   void set_history(std::size_t pair, const ContactHistory &history);
 
   /// Pairs that hold history and its n_components() numbers each, in order; and back: all other pairs forget.
-  /// @pre restore: features as when saved, every pair in the list
+  /// @pre restore: layout as when saved, every pair in the list
   void save_history(std::vector<Pair> &pairs, std::vector<double> &numbers) const;
   void restore_history(const std::vector<Pair> &pairs, const std::vector<double> &numbers);
 
@@ -90,13 +90,9 @@ public:
   void replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint32_t n_grains, int threads = 1,
                      const std::vector<ImageCode> &images = {});
 
-  /// Switches parts of the law on or off; history of parts that stay is kept.
-  void set_features(LawFeatures active);
+  /// For another law, or other parts of it; what both layouts keep stays.
+  void set_layout(const HistoryLayout &layout);
 
-  static std::size_t n_components(LawFeatures on)
-  {
-    return on.friction ? 6u + (on.rolling ? 3u : 0u) + (on.twisting ? 3u : 0u) : 0u;
-  }
   /// Memory that belongs to the state: pairs, slots and history.
   std::size_t bytes() const
   {
@@ -117,7 +113,8 @@ private:
     return const_cast<ContactList *>(this)->component(pair, c);
   }
 
-  LawFeatures features_;
+  HistoryLayout layout_;
+  std::size_t n_components_ = 0;
   std::size_t n_pairs_ = 0;
   std::size_t n_slots_ = 0;
   Partition partition_;

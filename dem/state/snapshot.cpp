@@ -14,9 +14,8 @@ Snapshot turned(Snapshot s, const Mat3 &q)
       s.grains.set_angular_velocity(i, q * s.grains.angular_velocity(i));
     }
   for (Contact &contact : s.contacts)
-    for (Vec3 *v : {&contact.history.normal, &contact.history.shear_force, &contact.history.bending_moment,
-                    &contact.history.twisting_moment})
-      *v = q * *v;
+    for (const HistoryVector &v : history_vectors)
+      contact.history.*v.place = q * contact.history.*v.place;
   PeriodicCell &cell = *s.cell;
   cell.edges = q * cell.edges;
   cell.deformation = q * cell.deformation;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/law.hpp"
 #include "dem/domain/periodic_cell.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/state/packing.hpp"
@@ -34,13 +34,17 @@ struct Snapshot
   Packing grains;
   RigidBox box;                     ///< without meaning where there is a cell
   std::optional<PeriodicCell> cell; ///< bounds the grains instead of the box
-  LawParams law;
+  Law law;
   std::vector<Contact> contacts;          ///< sorted by (first, second)
   std::vector<WallContact> wall_contacts; ///< sorted by (wall, grain)
   double time = 0;                        ///< s
   std::uint64_t step = 0;
   Vec3 strain = Vec3::Zero(); ///< logarithmic, along x, y, z, tension positive; 0 at the start of shearing
 
+  ClosedContact closed(const Contact &c) const
+  {
+    return {grains.radius(c.first), grains.radius(c.second), c.overlap, c.normal_force, c.history};
+  }
   double volume() const { return cell ? cell->volume() : box.volume(); }
 };
 

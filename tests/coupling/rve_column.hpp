@@ -12,7 +12,7 @@ inline CellRecipe soft_recipe(std::uint64_t seed, double pressure)
   CellRecipe recipe;
   recipe.grading = small_grading(200);
   recipe.grading.seed = seed;
-  recipe.law.young = 5e8;
+  recipe.law->young = 5e8;
   recipe.pressure = pressure;
   return recipe;
 }

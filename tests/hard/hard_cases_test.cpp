@@ -123,7 +123,7 @@ TEST(HardCases, RattlersOnlyCarryNoStress)
 TEST(HardCases, WithoutFrictionItLiquefiesAtOnce)
 {
   Snapshot s = test::specimen(500, 2);
-  s.law.features.friction = false;
+  s.law->friction = 0;
   Shear shear(s);
   shear.to(0.005, 1);
   const Micromechanics m = shear.look();
@@ -137,7 +137,7 @@ TEST(HardCases, WithoutFrictionItLiquefiesAtOnce)
 TEST(HardCases, TenTimesStifferGrains)
 {
   Snapshot s = test::specimen(500, 10);
-  s.law.young *= 10;
+  s.law->young *= 10;
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
     s.grains.set_linear_velocity(i, Vec3::Zero());
   const double soft =

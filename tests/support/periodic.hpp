@@ -8,7 +8,7 @@ namespace isostat::test
 struct CellRecipe
 {
   GradingSpec grading = small_grading(500);
-  LawParams law = paper_law();
+  Law law = paper_law();
   double degrees = 10; ///< preparation friction
   double pressure = 200e3;
   std::string consolidation = "isotropic";

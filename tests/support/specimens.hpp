@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/prepare/compact.hpp"
 
 #include <cmath>
@@ -14,9 +15,9 @@ struct Unobserved : RunObserver
   void record(const Assembly &, const DriveState &, const Observation &, bool) override {}
 };
 
-inline LawParams paper_law()
+inline LinearRolling paper_law()
 {
-  LawParams law;
+  LinearRolling law;
   law.friction = std::tan(18 * M_PI / 180);
   return law;
 }

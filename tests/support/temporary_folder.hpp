@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/state/snapshot.hpp"
 
 #include <filesystem>
@@ -73,9 +74,9 @@ inline Snapshot small_snapshot()
       s.grains.set_angular_velocity(i, Vec3(1e-300, 1e300 / 7, -0.7) / (i + 1));
     }
   s.box = {Vec3(-0.05, -0.1, 0), Vec3(1.0 / 3 + 0.4, 0.9, 1.1)};
-  s.law.friction = 0.7;
-  s.law.young = 1.1e9;
-  s.law.features = {true, true, false};
+  s.law->friction = 0.7;
+  s.law->young = 1.1e9;
+  s.law.as<LinearRolling>().twisting = false;
   s.contacts = {{0, 1, 0.01, 12.3, {Vec3::UnitX(), Vec3(0, 8.61, 0), Vec3(0, 0, 0.1), Vec3(0.2, 0, 0)}},
                 {1, 2, 0.02, 4.5, {Vec3::UnitY(), Vec3(0.1, 0, 1.0 / 3), Vec3(0, 0, -0.1), Vec3(0, -0.2, 0)}}};
   s.wall_contacts = {{0, 0, 0.01, 3.3}};

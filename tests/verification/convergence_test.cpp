@@ -3,6 +3,7 @@
 // at dt and dt/2, which fall by 2^order. All start from a state at t = 0 that has velocities and histories half a step
 // and a step old, as leapfrog wants them: with v(0) in the place of v(-dt/2) every order would be 1.
 #include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/drive/strain_path.hpp"
 #include "dem/io/text_tables.hpp"
 #include "tests/support/near.hpp"
@@ -141,9 +142,9 @@ Assembly run(const Snapshot &at_zero, const Drive &drive, int n_steps)
 constexpr double radius = 1e-4, squeeze = 1e-8; // m; overlap at rest, of the grains and with the walls
 
 /// The law without yielding.
-LawParams elastic_law()
+LinearRolling elastic_law()
 {
-  LawParams law = test::paper_law();
+  LinearRolling law = test::paper_law();
   law.friction = 10;
   law.rolling_limit = 10;
   return law;
@@ -167,7 +168,7 @@ TEST(Convergence, NormalOscillationIsOfSecondOrder)
   // Both modes of the pair, out of phase and in phase: x = a cos(w1 t) and b cos(w2 t) with m w1^2 = 2 kn + kw and
   // m w2^2 = kw. Amplitudes stay below the overlap, so the contacts stay closed and the motion is linear.
   Snapshot s = squeezed_pair();
-  const double kn = contact_stiffness(s.law, radius, radius).normal, kw = wall_stiffness(s.law, radius);
+  const double kn = s.law->stiffness(radius, radius, 0).normal, kw = s.law->wall(radius, 0).stiffness;
   const double m = s.grains.mass(0), w1 = std::sqrt((2 * kn + kw) / m), w2 = std::sqrt(kw / m);
   const double a = 0.3 * squeeze, b = 0.2 * squeeze, duration = 1e-6;
   const double x0[] = {s.grains.centre(0)[0], s.grains.centre(1)[0]};
@@ -247,7 +248,7 @@ TEST(Convergence, RotationOfHistoryIsOfFirstOrder)
   // A pair turns as one rigid body, so fs, mb and mt must turn with it. Two errors of first order: the rotation by n' x
   // n and s is one, of relative size |w| dt/2 per radian; and slip is taken across the normal at the end of the step
   // but from the velocities of its middle, which leaves (R1 + R2) |w|^2 dt/2 of slip rate, in fs only.
-  const LawParams law = elastic_law();
+  const LinearRolling law = elastic_law();
   const Vec3 spin = 1e3 * Vec3(1, 2, -0.5).normalized(), n0 = Vec3::UnitX();
   const double duration = 1e-3, distance = 2 * radius * (1 - 1e-2);
   const ContactHistory begin{n0, Vec3(0, 3, 4), 1e-4 * Vec3(0, -2, 1), 1e-4 * Vec3(2, 0, 0)};
@@ -285,7 +286,7 @@ TEST(Convergence, RotationOfHistoryIsOfFirstOrder)
 // --- a packing ---------------------------------------------------------------------------------------------------
 
 /// The stored packing of 1,000 grains at 200 kPa, grains at rest at t = 0.
-Snapshot packing_at_rest(const LawParams &law)
+Snapshot packing_at_rest(const LinearRolling &law)
 {
   Snapshot s = import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", "comp", "step0", law, 2650);
   set_velocities(s.grains, s.grains, -1, s.grains);
@@ -315,7 +316,7 @@ void compare_ends(const Snapshot &start, const Snapshot &end, PackingSeries &ser
     {
       after.insert({c.first, c.second});
       series.closed += !before.contains({c.first, c.second});
-      series.sliding += is_sliding(c.history.shear_force.norm(), c.normal_force, end.law);
+      series.sliding += end.law->yield(end.closed(c)).sliding;
     }
   for (const auto &pair : before)
     series.opened += !after.contains(pair);

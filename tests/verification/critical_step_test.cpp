@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The critical step from contact stiffness: the bound is a bound, how tight it is, and what happens on either side.
 #include "base/error.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "tests/support/near.hpp"
@@ -26,14 +27,14 @@ Steps steps_of(const Assembly &a)
 TEST(CriticalStep, ClosedFormOfTwoGrains)
 {
   // two equal grains, frictionless: omega^2 = 2 kn/m
-  LawParams law = test::paper_law();
-  law.features.friction = false;
+  LinearRolling law = test::paper_law();
+  law.friction = 0;
   Snapshot s;
   s.grains = make_packing({Vec3(0, 0, 0), Vec3(1.9e-4, 0, 0)}, {1e-4, 1e-4}, 2650);
   s.box = {Vec3::Constant(-1e-3), Vec3::Constant(1e-3)};
   s.law = law;
   const Assembly a(s);
-  const double kn = contact_stiffness(law, 1e-4, 1e-4).normal;
+  const double kn = law.stiffness(1e-4, 1e-4).normal;
   const double exact = 2 / std::sqrt(2 * kn * s.grains.velocity[3]);
   const Steps steps = steps_of(a);
   EXPECT_NEAR_BECAUSE(steps.true_step / exact, 1.0, 1e-9, "convergence of 2,000 power iterations");

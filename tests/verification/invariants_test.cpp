@@ -2,6 +2,7 @@
 // What must hold for any packing: conservation of momentum, the redundancy index of a packing at rest, the trace of the
 // fabric, and the equality of boundary and contact stress in equilibrium.
 #include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/fabric.hpp"
 #include "dem/measure/redundancy.hpp"
@@ -16,9 +17,9 @@ namespace isostat
 {
 namespace
 {
-LawParams paper_law()
+LinearRolling paper_law()
 {
-  LawParams law;
+  LinearRolling law;
   law.friction = std::tan(18 * M_PI / 180);
   return law;
 }
@@ -161,9 +162,8 @@ TEST_P(PackingAtRest, RedundancyIsHalfTheCoordinationNumber)
   Snapshot s = at_rest(GetParam());
   const std::size_t all = s.contacts.size();
   std::erase_if(s.contacts, [&](const Contact &c) {
-    const double length = rolling_length(s.law, s.grains.radius(c.first), s.grains.radius(c.second));
-    return is_sliding(c.history.shear_force.norm(), c.normal_force, s.law) ||
-           is_rolling(c.history.bending_moment.norm(), c.normal_force, length, s.law);
+    const YieldState yield = s.law->yield(s.closed(c));
+    return yield.sliding || yield.rolling;
   });
   EXPECT_LE(all - s.contacts.size(), 1u);
   const ContactNetwork network = contact_network(s);

@@ -3,6 +3,7 @@
 // state with the same contact history, step by step as long as round-off stays small, along the stress path after that.
 #include "base/files/csv_table.hpp"
 #include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
 
@@ -48,7 +49,7 @@ public:
 private:
   static Snapshot start(const std::string &packing)
   {
-    LawParams law;
+    LinearRolling law;
     law.friction = std::tan(18 * M_PI / 180);
     return import_yade_tables(folder_of(packing), "comp", "step0", law, 2650);
   }

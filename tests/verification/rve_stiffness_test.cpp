@@ -262,7 +262,7 @@ TEST(RveStiffness, WaveSpeedsAtTheModulusOfThePaperAndAtASofterOne)
 {
   const auto element = [](double young) {
     test::CellRecipe recipe;
-    recipe.law.young = young;
+    recipe.law->young = young;
     return Rve(test::prepare_in_cell(recipe), {});
   };
   const Moduli stiff = moduli_of(element(1e10)), soft = moduli_of(element(5e8));

@@ -17,9 +17,61 @@ Vec3 returned_to(const Vec3 &trial, double limit)
   const double norm = trial.norm();
   return norm > limit ? Vec3(trial * (limit / norm)) : trial;
 }
+
+double spring_energy(double force_squared, double stiffness)
+{
+  return stiffness > 0 ? 0.5 * force_squared / stiffness : 0.0;
+}
 } // namespace
 
-ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt, ContactHistory &history)
+HistoryLayout history_of(LawFeatures on)
+{
+  return {{on.friction, on.friction, on.friction && on.rolling, on.friction && on.twisting}};
+}
+
+HistoryLayout LinearRolling::history() const { return history_of(active()); }
+
+double LinearRolling::normal_force(double r1, double r2, double overlap) const
+{
+  return 2 * young * r1 * r2 / (r1 + r2) * overlap;
+}
+
+ContactStiffness LinearRolling::stiffness(double r1, double r2, double) const
+{
+  const double kn = 2 * young * r1 * r2 / (r1 + r2);
+  const double ks = stiffness_ratio * kn;
+  const LawFeatures on = active();
+  return {kn, on.friction ? ks : 0.0, on.rolling ? r1 * r2 * ks * rolling_stiffness : 0.0,
+          on.twisting ? r1 * r2 * ks * twisting_stiffness : 0.0};
+}
+
+YieldState LinearRolling::yield(const ClosedContact &c) const
+{
+  return {is_sliding(c.history.shear_force.norm(), c.normal_force, *this),
+          is_rolling(c.history.bending_moment.norm(), c.normal_force, rolling_length(c.r1, c.r2), *this)};
+}
+
+ContactEnergy LinearRolling::energy(const ClosedContact &c) const
+{
+  const ContactStiffness k = stiffness(c.r1, c.r2);
+  return {spring_energy(c.normal_force * c.normal_force, k.normal),
+          spring_energy(c.history.shear_force.squaredNorm(), k.shear),
+          spring_energy(c.history.bending_moment.squaredNorm(), k.rolling),
+          spring_energy(c.history.twisting_moment.squaredNorm(), k.twisting)};
+}
+
+WallResponse LinearRolling::wall(double radius, double overlap) const
+{
+  const double kn = young * radius;
+  return {kn * overlap, kn};
+}
+
+double LinearRolling::wall_energy(double radius, double, double normal_force) const
+{
+  return spring_energy(normal_force * normal_force, young * radius);
+}
+
+ContactForce contact_force(const LinearRolling &law, const ContactPair &p, double dt, ContactHistory &history)
 {
   ContactForce result;
   const Vec3 branch = p.x2 - p.x1;
@@ -31,7 +83,7 @@ ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt
       return result;
     }
   const LawFeatures on = law.active();
-  const ContactStiffness k = contact_stiffness(law, p.r1, p.r2);
+  const ContactStiffness k = law.stiffness(p.r1, p.r2);
   const Vec3 n = branch / distance;
   const double fn = k.normal * overlap;
   result.touching = true;
@@ -58,7 +110,7 @@ ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt
   const Vec3 dw_bend = dw - dw_twist;
   if (on.rolling)
     history.bending_moment = returned_to(turned(history.bending_moment, tilt, twist) - k.rolling * dt * dw_bend,
-                                         rolling_length(law, p.r1, p.r2) * fn);
+                                         law.rolling_length(p.r1, p.r2) * fn);
   if (on.twisting)
     history.twisting_moment = turned(history.twisting_moment, tilt, twist) + tilt * twist.dot(history.twisting_moment) -
                               k.twisting * dt * dw_twist;
@@ -72,12 +124,12 @@ ContactForce contact_force(const LawParams &law, const ContactPair &p, double dt
   return result;
 }
 
-bool is_sliding(double shear_force, double normal_force, const LawParams &law)
+bool is_sliding(double shear_force, double normal_force, const LinearRolling &law)
 {
   return law.active().friction && shear_force >= yield_margin * law.friction * normal_force;
 }
 
-bool is_rolling(double bending_moment, double normal_force, double rolling_length, const LawParams &law)
+bool is_rolling(double bending_moment, double normal_force, double rolling_length, const LinearRolling &law)
 {
   return law.active().rolling && bending_moment >= yield_margin * rolling_length * normal_force;
 }

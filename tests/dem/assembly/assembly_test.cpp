@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
 
 #include "base/error.hpp"
 #include "dem/io/text_tables.hpp"
@@ -20,7 +21,7 @@ constexpr double dt = 5e-8;
 /// 1,000 grains at 200 kPa with the history of their contacts.
 Snapshot packing_at_pressure()
 {
-  LawParams law;
+  LinearRolling law;
   law.friction = std::tan(18 * M_PI / 180);
   return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/vloose", "comp", "step0", law, 2650);
 }
@@ -229,8 +230,8 @@ TEST(Assembly, GoesOnFromACheckpointToTheBit)
 TEST(Assembly, SwitchingFrictionOffForgetsAndOnStartsAnew)
 {
   Assembly assembly = make_assembly(packing_at_pressure());
-  LawParams frictionless = assembly.law();
-  frictionless.friction = 0;
+  Law frictionless = assembly.law();
+  frictionless->friction = 0;
   assembly.set_law(frictionless);
   assembly.compute_forces();
   for (const Contact &c : assembly.snapshot().contacts)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the contact loop is tested against: contact_force() over all pairs of a random cloud, and the misfit of both.
 #pragma once
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/loop.hpp"
 #include "tests/dem/contact/random_cloud.hpp"
 
 namespace isostat::test
@@ -32,19 +33,19 @@ inline double spring_energy(const Vec3 &force, double stiffness)
 
 /// Losses of a pair from the scalar law alone: without limits it gives the trial state, without stiffness the history
 /// that has only turned.
-inline void scalar_loss(const LawParams &law, const ContactPair &pair, const ContactHistory &past,
+inline void scalar_loss(const LinearRolling &law, const ContactPair &pair, const ContactHistory &past,
                         const ContactHistory &now, bool touching, std::size_t p, DissipationPerPair &loss)
 {
-  const ContactStiffness k = contact_stiffness(law, pair.r1, pair.r2);
+  const ContactStiffness k = law.stiffness(pair.r1, pair.r2);
   if (!touching)
     {
       loss.released[p] = spring_energy(past.shear_force, k.shear) + spring_energy(past.bending_moment, k.rolling) +
                          spring_energy(past.twisting_moment, k.twisting);
       return;
     }
-  LawParams unlimited = law;
+  LinearRolling unlimited = law;
   unlimited.friction = unlimited.rolling_limit = 1e30;
-  LawParams limp = unlimited;
+  LinearRolling limp = unlimited;
   limp.stiffness_ratio = 0;
   ContactHistory trial = past, turned = past;
   contact_force(unlimited, pair, dt, trial);
@@ -64,7 +65,7 @@ inline void scalar_loss(const LawParams &law, const ContactPair &pair, const Con
 
 /// The same by the scalar law, pair after pair; `see(p)` gives pair p as the law sees it.
 template <typename See>
-Outcome scalar_outcome(const LawParams &law, const Cloud &cloud, const See &see)
+Outcome scalar_outcome(const LinearRolling &law, const Cloud &cloud, const See &see)
 {
   Outcome out;
   const Packing &g = cloud.packing;
@@ -146,11 +147,10 @@ inline constexpr Variant variants[] = {{"frictionless", false, false, false},
                                        {"twisting", true, false, true},
                                        {"full", true, true, true}};
 
-inline LawParams law_of(const Variant &v)
+inline LinearRolling law_of(const Variant &v)
 {
-  LawParams law;
+  LinearRolling law;
   law.twisting_stiffness = 0.7; // other than alpha_r: a mix-up would show
-  law.features = {v.friction, v.rolling, v.twisting};
-  return law;
+  return law.with({v.friction, v.rolling, v.twisting});
 }
 } // namespace isostat::test

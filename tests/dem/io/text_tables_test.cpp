@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/text_tables.hpp"
 
 #include "base/error.hpp"
@@ -28,7 +29,7 @@ protected:
                                                     "-1,5,0.05,1,0,0,10,3,0.5,0,0,0,0,0,0,0,0,0\n");
     put("comp_walls_step0.csv", "wall,axis,side,pos\n0,x,-,0\n1,x,+,0.9\n2,y,-,-1\n3,y,+,1\n4,z,-,0\n5,z,+,1e0\n");
   }
-  Snapshot import() const { return import_tables(folder, LawParams{}, 2650); }
+  Snapshot import() const { return import_tables(folder, LinearRolling{}, 2650); }
   std::string refusal() const
   {
     return message_of<InputError>([&] { import(); });
@@ -41,7 +42,7 @@ protected:
   std::string refusal_of_spheres(const std::string &text) const
   {
     const auto path = put("spheres.txt", text);
-    return message_of<InputError>([&] { import_tables(path, LawParams{}, 2650); });
+    return message_of<InputError>([&] { import_tables(path, LinearRolling{}, 2650); });
   }
   std::filesystem::path put_gzip(const std::string &name, const std::string &text) const
   {
@@ -78,10 +79,10 @@ TEST_F(TextTables, GzippedTablesOtherPrefixAndTag)
 {
   for (const std::string what : {"particles", "contacts", "walls"})
     put_gzip("cyc_" + what + "_step10.csv.gz", get(folder / ("comp_" + what + "_step0.csv")));
-  const Snapshot s = import_yade_tables(folder, "cyc", "step10", LawParams{}, 2650);
+  const Snapshot s = import_yade_tables(folder, "cyc", "step10", LinearRolling{}, 2650);
   EXPECT_EQ(s.grains.position, import().grains.position);
   EXPECT_EQ(s.contacts.size(), 1u);
-  EXPECT_THAT(message_of<InputError>([&] { import_yade_tables(folder, "cyc", "step1", LawParams{}, 2650); }),
+  EXPECT_THAT(message_of<InputError>([&] { import_yade_tables(folder, "cyc", "step1", LinearRolling{}, 2650); }),
               HasSubstr("cyc_walls_step1.csv"));
 }
 
@@ -91,9 +92,9 @@ TEST_F(TextTables, CutGzipIsRefused)
   for (int i = 0; i < 2000; ++i)
     text += std::to_string(i * 7919 % 1000003) + " 0 0 1\n";
   const auto path = put_gzip("spheres.txt.gz", text);
-  EXPECT_EQ(import_tables(path, LawParams{}, 2650).grains.n_grains(), 2000u);
+  EXPECT_EQ(import_tables(path, LinearRolling{}, 2650).grains.n_grains(), 2000u);
   cut_to_half(path);
-  EXPECT_THAT(message_of<InputError>([&] { import_tables(path, LawParams{}, 2650); }), HasSubstr("cut off"));
+  EXPECT_THAT(message_of<InputError>([&] { import_tables(path, LinearRolling{}, 2650); }), HasSubstr("cut off"));
 }
 
 TEST_F(TextTables, UnknownOverlapFollowsFromForceAndStiffness)
@@ -147,12 +148,12 @@ TEST_F(TextTables, PlainSpheres)
 {
   const auto with_box =
       put("a.txt", "# made by hand\n# box 0 1 0 2 0 3\nx y z r\n0.5 0.5 0.5 0.25\n0.5,1.5,\t2.5 , 0.1\n\n");
-  const Snapshot s = import_tables(with_box, LawParams{}, 2650);
+  const Snapshot s = import_tables(with_box, LinearRolling{}, 2650);
   EXPECT_EQ(s.grains.n_grains(), 2u);
   EXPECT_EQ(s.grains.centre(1), Vec3(0.5, 1.5, 2.5));
   EXPECT_EQ(s.box.upper, Vec3(1, 2, 3));
   EXPECT_TRUE(s.contacts.empty());
-  const Snapshot free = import_tables(put("b.txt", "0 0 0 1\n2 0 0 0.5\n"), LawParams{}, 2650);
+  const Snapshot free = import_tables(put("b.txt", "0 0 0 1\n2 0 0 0.5\n"), LinearRolling{}, 2650);
   EXPECT_EQ(free.box.lower, Vec3(-1, -1, -1));
   EXPECT_EQ(free.box.upper, Vec3(2.5, 1, 1));
 }
@@ -166,9 +167,9 @@ TEST_F(TextTables, BadPlainSpheres)
   EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1\n0 0 0 1\n"), HasSubstr("spheres.txt:1"));
   EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1 1 0\n0 0 0 1\n"), HasSubstr("each pair rising"));
   EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1 0 1\n\n2 0 0 1\n"), HasSubstr("spheres.txt:3: centre x = 2"));
-  EXPECT_THAT(message_of<InputError>([&] { import_tables(folder / "absent.txt", LawParams{}, 2650); }),
+  EXPECT_THAT(message_of<InputError>([&] { import_tables(folder / "absent.txt", LinearRolling{}, 2650); }),
               HasSubstr("absent.txt: cannot be opened"));
-  EXPECT_THROW(import_tables(folder, LawParams{}, 0), InputError);
+  EXPECT_THROW(import_tables(folder, LinearRolling{}, 0), InputError);
 }
 } // namespace
 } // namespace isostat

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/energy.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ TEST(StoredEnergy, MovingGrain)
 TEST(StoredEnergy, EachSpringAlone)
 {
   const Snapshot s = touching_pair();
-  const ContactStiffness k = contact_stiffness(s.law, 2e-4, 1.5e-4);
+  const ContactStiffness k = s.law->stiffness(2e-4, 1.5e-4, 0);
 
   Snapshot normal = s;
   normal.contacts[0].normal_force = k.normal * 1e-8;
@@ -54,17 +55,17 @@ TEST(StoredEnergy, EachSpringAlone)
   EXPECT_DOUBLE_EQ(stored_energy(twisting).total(), stored_energy(twisting).twisting);
 
   Snapshot wall = s;
-  wall.wall_contacts = {{1, 3, 1e-8, wall_stiffness(s.law, 1.5e-4) * 1e-8}};
-  EXPECT_DOUBLE_EQ(stored_energy(wall).wall, 0.5 * s.law.young * 1.5e-4 * 1e-16);
+  wall.wall_contacts = {{1, 3, 1e-8, s.law->wall(1.5e-4, 1e-8).force}};
+  EXPECT_DOUBLE_EQ(stored_energy(wall).wall, 0.5 * s.law->young * 1.5e-4 * 1e-16);
   EXPECT_DOUBLE_EQ(stored_energy(wall).elastic(), stored_energy(wall).wall);
 }
 
 TEST(StoredEnergy, SpringsThatAreOffHoldNothing)
 {
   Snapshot s = touching_pair();
-  s.law.features = {false, false, false};
+  s.law = LinearRolling().with({false, false, false});
   EXPECT_EQ(stored_energy(s).total(), 0); // and not 0/0
-  s.law.features = {true, false, false};
+  s.law = LinearRolling().with({true, false, false});
   s.contacts[0].history.shear_force = Vec3(0, 1, 0);
   EXPECT_EQ(stored_energy(s).total(), stored_energy(s).shear);
 }

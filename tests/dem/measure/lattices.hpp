@@ -3,6 +3,7 @@
 // stiffness with dense matrices.
 #pragma once
 
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/stiffness.hpp"
 
 #include <Eigen/Dense>
@@ -27,12 +28,13 @@ inline Contact closed(std::uint32_t i, std::uint32_t j, const Vec3 &normal, doub
 
 inline void make_sliding(const Snapshot &s, Contact &c)
 {
-  c.history.shear_force = s.law.friction * c.normal_force * c.history.normal.unitOrthogonal();
+  c.history.shear_force = s.law->friction * c.normal_force * c.history.normal.unitOrthogonal();
 }
 
 inline void make_rolling(const Snapshot &s, Contact &c)
 {
-  const double limit = rolling_length(s.law, s.grains.radius(c.first), s.grains.radius(c.second)) * c.normal_force;
+  const double limit =
+      s.law.as<LinearRolling>().rolling_length(s.grains.radius(c.first), s.grains.radius(c.second)) * c.normal_force;
   c.history.bending_moment = limit * c.history.normal.unitOrthogonal();
 }
 
@@ -154,10 +156,8 @@ inline Mat6 dense_stiffness(const Snapshot &s, Sliding sliding)
           const Vec3 w1 = q.segment<3>(6 * c.first + 3) / radius, w2 = q.segment<3>(6 * c.second + 3) / radius;
           const Vec3 v = q.segment<3>(6 * c.second) - q.segment<3>(6 * c.first) + l * eps * m -
                          (r1 / a * w1 + r2 / a * w2).cross(m);
-          const ContactStiffness stiff = contact_stiffness(s.law, r1, r2);
-          const bool slides = is_sliding(c.history.shear_force.norm(), c.normal_force, s.law);
-          const bool rolls =
-              is_rolling(c.history.bending_moment.norm(), c.normal_force, rolling_length(s.law, r1, r2), s.law);
+          const ContactStiffness stiff = s.law->stiffness(r1, r2, c.overlap);
+          const auto [slides, rolls] = s.law->yield(s.closed(c));
           const double ks = sliding == Sliding::released && slides ? 0 : a * stiff.shear;
           const double kr = sliding == Sliding::released && rolls ? 0 : stiff.rolling;
           auto rows = j.col(column).segment<10>(10 * k);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/redundancy.hpp"
 #include "tests/support/near.hpp"
 
@@ -25,8 +26,9 @@ Contact contact(const Snapshot &s, std::uint32_t i, std::uint32_t j, double shea
 {
   Contact c{i, j, 1e-8, force, {}};
   c.history.normal = Vec3::UnitX();
-  c.history.shear_force = shear * s.law.friction * force * Vec3(0, 0.6, 0.8);
-  c.history.bending_moment = roll * rolling_length(s.law, radius, radius) * force * Vec3(0, 0.8, -0.6);
+  c.history.shear_force = shear * s.law->friction * force * Vec3(0, 0.6, 0.8);
+  c.history.bending_moment =
+      roll * s.law.as<LinearRolling>().rolling_length(radius, radius) * force * Vec3(0, 0.8, -0.6);
   return c;
 }
 
@@ -99,10 +101,10 @@ TEST(Redundancy, NeverBelowOneSixth)
 TEST(Redundancy, WhatTheLawLeavesOutDoesNotYield)
 {
   Snapshot s = one_of_each_class();
-  s.law.features.rolling = false;
+  s.law.as<LinearRolling>().rolling = false;
   EXPECT_EQ(contact_network(s).classes.r + contact_network(s).classes.sr, 0u);
   EXPECT_EQ(contact_network(s).classes.s, 2u);
-  s.law.features.friction = false;
+  s.law->friction = 0;
   EXPECT_EQ(contact_network(s).classes.nsr, 4u);
 }
 

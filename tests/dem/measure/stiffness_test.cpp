@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/stiffness.hpp"
 
 #include "base/error.hpp"
@@ -36,7 +37,7 @@ std::uint32_t add_grain(Snapshot &s, double size)
   return radii.size() - 1;
 }
 
-const ContactStiffness equal_spheres = contact_stiffness(LawParams{}, radius, radius);
+const ContactStiffness equal_spheres = LinearRolling{}.stiffness(radius, radius);
 const double kn = equal_spheres.normal, ks = alpha * equal_spheres.shear; // N/m, of one contact
 } // namespace
 
@@ -63,7 +64,7 @@ TEST(Stiffness, OneGrainThatTouchesItsOwnImages)
   EXPECT_BELOW_BECAUSE(misfit(condensed_stiffness(s), condensed_stiffness(simple_cubic())), eliminated);
   make_sliding(s, s.contacts[2]);
   EXPECT_BELOW_BECAUSE(condensed_stiffness(s, Sliding::released)(3, 3), kn / branch * eliminated);
-  s.law.features.friction = false; // not one unknown
+  s.law->friction = 0; // not one unknown
   EXPECT_BELOW_BECAUSE(misfit(condensed_stiffness(s), cubic(kn / branch, 0, 0)), eliminated);
 }
 
@@ -86,10 +87,10 @@ TEST(Stiffness, BodyCentredLattice)
 TEST(Stiffness, WithoutFrictionOnlyNormalsResist)
 {
   Snapshot s = simple_cubic();
-  s.law.features.friction = false;
+  s.law->friction = 0;
   EXPECT_BELOW_BECAUSE(misfit(condensed_stiffness(s), cubic(kn / branch, 0, 0)), eliminated);
   s = face_centred();
-  s.law.friction = 0;
+  s.law->friction = 0;
   EXPECT_BELOW_BECAUSE(misfit(condensed_stiffness(s), std::sqrt(2) / branch * cubic(kn, kn / 2, kn / 2)), eliminated);
 }
 
@@ -137,7 +138,7 @@ TEST(Stiffness, ShearForceIsThatOfTheContactLaw)
   ContactPair pair{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), l * Vec3::UnitX(), l * gamma / 2 * Vec3::UnitY(),
                    Vec3::Zero(), radius,       radius / 2};
   ContactHistory history = s.contacts[0].history;
-  contact_force(s.law, pair, 1.0, history); // eps_xy = gamma/2
+  contact_force(s.law.as<LinearRolling>(), pair, 1.0, history); // eps_xy = gamma/2
   const double stress = affine_stiffness(s)(5, 5) * gamma;
   EXPECT_NEAR_BECAUSE(stress, -history.shear_force[1] * l / 2 / s.box.volume(), 1e-12 * stress,
                       "round-off of some ten operations");
@@ -154,7 +155,7 @@ TEST(Stiffness, ColumnOfUnequalGrainsIsARowOfSprings)
       const std::uint32_t j = (i + 1) % 4;
       s.contacts.push_back(closed(i, j, Vec3::UnitZ(), (i + 1) * 1e-6));
       length += radii[i] + radii[j] - s.contacts.back().overlap;
-      compliance += 1 / contact_stiffness(s.law, radii[i], radii[j]).normal;
+      compliance += 1 / s.law->stiffness(radii[i], radii[j], 0).normal;
     }
   s.box.upper = Vec3(1e-3, 2e-3, length);
   Mat6 expected = Mat6::Zero(); // shear: the column turns as a whole
@@ -172,7 +173,7 @@ TEST(Stiffness, EqualsADensePseudoInverse)
       for (Sliding sliding : {Sliding::elastic, Sliding::released})
         {
           Snapshot s = disordered(3, swell, 5);
-          s.law.features = law;
+          s.law = LinearRolling().with(law);
           const Mat6 expected = dense_stiffness(s, sliding);
           EXPECT_BELOW_BECAUSE((condensed_stiffness(s, sliding) - expected).norm(),
                                affine_stiffness(s).norm() * solved_twice);
@@ -260,7 +261,8 @@ TEST(Stiffness, AClusterThatEndsInsideTheCellBearsNothing)
                 closed(1, 2, q * (b - Vec3::UnitX()), squeeze)};
   for (bool friction : {true, false})
     {
-      s.law.features.friction = friction;
+      if (!friction)
+        s.law->friction = 0;
       EXPECT_BELOW_BECAUSE(condensed_stiffness(s).norm(), affine_stiffness(s).norm() * eliminated);
     }
 }

@@ -14,7 +14,7 @@ namespace
 {
 Contact pressed(const Snapshot &s, std::uint32_t i, std::uint32_t j, const Vec3 &normal, double force)
 {
-  const double kn = contact_stiffness(s.law, s.grains.radius(i), s.grains.radius(j)).normal;
+  const double kn = s.law->stiffness(s.grains.radius(i), s.grains.radius(j), 0).normal;
   Contact c{i, j, force / kn, force, {}};
   c.history.normal = normal;
   return c;
@@ -22,7 +22,7 @@ Contact pressed(const Snapshot &s, std::uint32_t i, std::uint32_t j, const Vec3 
 
 WallContact pressed_on_wall(const Snapshot &s, std::uint32_t grain, std::uint8_t wall, double force)
 {
-  return {grain, wall, force / wall_stiffness(s.law, s.grains.radius(grain)), force};
+  return {grain, wall, force / s.law->wall(s.grains.radius(grain), 0).stiffness, force};
 }
 
 /// Unequal spheres in a row along an axis, squeezed by `force` between the two walls; the box is wide.

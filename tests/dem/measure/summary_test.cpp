@@ -19,7 +19,7 @@ Snapshot cubic_lattice(const Vec3 &force)
 {
   Snapshot s;
   const auto index = [](int i, int j, int k) { return static_cast<std::uint32_t>((i * side + j) * side + k); };
-  const double stiffness = s.law.young * radius; // grain-grain and wall alike: equal radii
+  const double stiffness = s.law->young * radius; // grain-grain and wall alike: equal radii
   const Vec3 overlap = force / stiffness;
   std::vector<Vec3> centres;
   for (int i = 0; i < side; ++i)
@@ -67,7 +67,7 @@ TEST(Micromechanics, CubicLatticeInBalance)
   EXPECT_NEAR_BECAUSE(m.p_contact, p, p * sums);
   EXPECT_NEAR_BECAUSE(m.q_contact, q, p * sums);
   // V/V_s = 6/pi for touching spheres, less what the five overlaps of a row shorten each edge
-  const Vec3 shortening = (side + 1) * force / (s.law.young * radius) / (2 * side * radius);
+  const Vec3 shortening = (side + 1) * force / (s.law->young * radius) / (2 * side * radius);
   const double ratio = 6 / std::numbers::pi * (Vec3::Ones() - shortening).prod();
   EXPECT_NEAR_BECAUSE(m.void_ratio, ratio - 1, sums);
   EXPECT_DOUBLE_EQ(m.n_contacts, 3 * side * side * (side - 1));
@@ -83,7 +83,7 @@ TEST(Micromechanics, CubicLatticeInBalance)
   EXPECT_NEAR_BECAUSE(m.a_normal, 7.5 * (0.6 - 0.2), sums); // X/f0 = diag(1, 3, 1)/5
   EXPECT_NEAR_BECAUSE(m.unbalanced, 0, 1e-15, "forces cancel to their last digit");
   EXPECT_EQ(m.kinetic_energy, 0);
-  const double springs = side * side * (side + 1) * 0.5 * force.squaredNorm() / (s.law.young * radius);
+  const double springs = side * side * (side + 1) * 0.5 * force.squaredNorm() / (s.law->young * radius);
   EXPECT_NEAR_BECAUSE(m.elastic_energy, springs, springs * sums);
 }
 

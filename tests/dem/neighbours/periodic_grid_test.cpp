@@ -247,7 +247,7 @@ private:
   Packing packing_;
   std::vector<Vec3> drift_;
   VerletList list_;
-  ContactList contacts_{LawFeatures{true, false, false}};
+  ContactList contacts_{HistoryLayout{{true, true, false, false}}};
   std::map<Pair, Image> touching_;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/prepare/pluviate.hpp"
 
 #include "base/error.hpp"
@@ -82,7 +83,7 @@ TEST(SurfaceHeight, OfALatticeIsItsTopLayerSeenFromAbove)
 
 TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
 {
-  LawParams law = test::paper_law();
+  LinearRolling law = test::paper_law();
   const double radius = 0.2e-3, height = 20 * radius;
   const Cloud cloud = single_grain(radius, height);
   Pluviation how;

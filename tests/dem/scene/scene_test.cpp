@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a scene says; what is refused is in tests/dem/scene/scene_error_test.cpp.
+#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/scene/scene.hpp"
 
 #include "dem/scene/schema.hpp"
@@ -73,10 +74,10 @@ TEST(Scene, ReadsTheSketchOfTheDesign)
   EXPECT_EQ(scene.grading.cloud_edge, 10e-3);
   EXPECT_EQ(scene.grading.finest_percent, 5);
   EXPECT_EQ(scene.grading.coarsest_percent, 99.75);
-  EXPECT_EQ(scene.contact.young, 1e10);
-  EXPECT_NEAR_BECAUSE(scene.contact.friction, 0.32491969623290632616, 1e-16,
+  EXPECT_EQ(scene.contact->young, 1e10);
+  EXPECT_NEAR_BECAUSE(scene.contact->friction, 0.32491969623290632616, 1e-16,
                       "half a unit of the last place of a tangent near 1/3");
-  EXPECT_EQ(scene.contact.features, LawFeatures{});
+  EXPECT_EQ(scene.contact.as<LinearRolling>().active(), LawFeatures{});
   EXPECT_EQ(scene.specimen.relative_density, 0.64);
   EXPECT_FALSE(scene.specimen.void_ratio || scene.specimen.preparation_friction);
   EXPECT_EQ(scene.motion.quasi_static_tolerance, 0.02);
@@ -97,8 +98,7 @@ TEST(Scene, DefaultsAreThoseOfTheStructs)
 {
   Scene expected;
   expected.specimen.relative_density = 0.64;
-  expected.contact.friction = 0;
-  expected.contact.features = {false, false, false};
+  expected.contact = LinearRolling().with({false, false, false});
   EXPECT_EQ(parse_scene(smallest, "scene.toml"), expected);
 
   Stage stage;
@@ -110,7 +110,9 @@ TEST(Scene, DefaultsAreThoseOfTheStructs)
 TEST(Scene, WhatIsLeftOutOfContactIsSwitchedOff)
 {
   const auto features = [](const std::string &contact) {
-    return parse_scene(smallest + "[contact]\n" + contact, "scene.toml").contact.features;
+    const Scene scene = parse_scene(smallest + "[contact]\n" + contact, "scene.toml");
+    const auto &law = scene.contact.as<LinearRolling>();
+    return LawFeatures{law.friction > 0, law.rolling, law.twisting};
   };
   EXPECT_EQ(features(""), (LawFeatures{false, false, false}));
   EXPECT_EQ(features("friction = \"18 deg\""), (LawFeatures{true, false, false}));
@@ -204,7 +206,7 @@ TEST(SceneOverride, ReplacesValues)
   EXPECT_EQ(scene.specimen.pressure, 100e3);
   EXPECT_EQ(scene.stages[1].strain, 0.02);
   EXPECT_EQ(scene.title, "New = title");
-  EXPECT_EQ(scene.contact.rolling_limit, 0.4);
+  EXPECT_EQ(scene.contact.as<LinearRolling>().rolling_limit, 0.4);
   EXPECT_EQ(scene.output.checkpoint_minutes, 10);
   EXPECT_EQ(scene.grading.finest_percent, 1);
   EXPECT_EQ(scene.stages[0].max_cycles, 3u);
@@ -320,7 +322,7 @@ TEST(Scene, PrintedDefaultsAreAScene)
   const Scene scene = parse_scene(default_scene(), "default.toml");
   Scene expected;
   expected.specimen.relative_density = 0.64;
-  expected.contact.friction = parse_quantity("18 deg", Dimension::angle).value;
+  expected.contact->friction = parse_quantity("18 deg", Dimension::angle).value;
   expected.stages.resize(1);
   expected.stages[0].kind = StageKind::undrained_cyclic;
   EXPECT_EQ(scene, expected);

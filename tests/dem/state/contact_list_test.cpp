@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/state/contact_list.hpp"
 
+#include "dem/contact/linear_rolling/law.hpp"
+
 #include <gtest/gtest.h>
 
 namespace isostat
@@ -28,7 +30,7 @@ Pair pair_at(const ContactList &list, std::size_t p) { return {list.first()[p], 
 
 ContactList marked_list(LawFeatures on, const std::vector<Pair> &pairs, std::uint32_t n_grains)
 {
-  ContactList list(on);
+  ContactList list(history_of(on));
   list.replace_pairs(pairs, n_grains);
   for (std::size_t p = 0; p < pairs.size(); ++p)
     list.set_history(p, marked(pairs[p]));
@@ -119,8 +121,8 @@ TEST(ContactList, SwitchingPartsOfTheLawKeepsWhatStays)
     for (const LawFeatures to : {full, sliding, rolling, twisting, frictionless})
       {
         ContactList list = marked_list(from, pairs, 6);
-        list.set_features(to);
-        EXPECT_EQ(list.features(), to);
+        list.set_layout(history_of(to));
+        EXPECT_EQ(list.layout(), history_of(to));
         for (std::size_t p = 0; p < pairs.size(); ++p)
           {
             ContactHistory expected;
@@ -146,7 +148,7 @@ TEST(ContactList, ChunksHaveBlocksAndGhostsOfTheirOwn)
     for (std::uint32_t j : {i + 1, i + 1000})
       if (j < n)
         pairs.emplace_back(i, j);
-  ContactList list(full);
+  ContactList list(history_of(full));
   list.replace_pairs(pairs, n);
   const Partition &partition = list.partition();
   ASSERT_GE(partition.n_chunks, 4u);
@@ -184,7 +186,7 @@ TEST(ContactList, HistoryGoesOverInEveryChunkOnAnyNumberOfThreads)
     }
   for (int threads : {1, 2, 3})
     {
-      ContactList list(full);
+      ContactList list(history_of(full));
       list.replace_pairs(old_pairs, n);
       for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
         if (list.first()[lane] < n)
@@ -214,13 +216,13 @@ TEST(ContactList, ImagesStayWithTheirPairsInEveryChunk)
   const Packing packing = make_packing(std::vector<Vec3>(n, Vec3(1, 2, 3)), std::vector<double>(n, 0.1), 2650);
   Mat3 edges;
   edges << 2, 0.5, 0.25, 0, 3, -0.5, 0, 0.125, 4;
-  ContactList list(full);
+  ContactList list(history_of(full));
   list.replace_pairs(pairs, n, 1, images);
   ASSERT_GE(list.partition().n_chunks, 4u);
   for (const LawFeatures on : {full, sliding})
     for (const double factor : {1.0, 2.0}) // the cell deforms, the pairs stay
       {
-        list.set_features(on);
+        list.set_layout(history_of(on));
         list.set_cell(factor * edges);
         for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
           {
@@ -244,7 +246,7 @@ TEST(ContactList, SavedHistoryComesBackAndAllOtherPairsForget)
              all = pairs_of(12, [](auto, auto) { return true; });
   for (const LawFeatures on : {full, sliding, rolling, twisting})
     {
-      ContactList list(on);
+      ContactList list(history_of(on));
       list.replace_pairs(few, 12);
       for (std::size_t p = 0; p < few.size(); p += 2)
         list.set_history(p, marked(few[p]));

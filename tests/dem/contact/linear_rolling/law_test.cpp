@@ -2,7 +2,8 @@
 // The contact law against recorded pair paths of YADE (tests/reference/README.md): two driven spheres, or a sphere and
 // a wall. Every row holds positions, half-step velocities and the forces that belong to them.
 #include "base/files/csv_table.hpp"
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/loop.hpp"
 #include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
@@ -16,9 +17,9 @@ namespace
 {
 constexpr double dt = 5e-8, r1 = 2e-4, r2 = 1.5e-4;
 
-LawParams yade_law()
+LinearRolling yade_law()
 {
-  LawParams law;
+  LinearRolling law;
   law.friction = 0.3249196962329063; // tan 18 deg
   return law;
 }
@@ -58,7 +59,7 @@ PairPath read_path(const std::string &name)
   return path;
 }
 
-Response scalar_response(const LawParams &law, const ContactPair &pair, ContactHistory &history)
+Response scalar_response(const LinearRolling &law, const ContactPair &pair, ContactHistory &history)
 {
   const ContactForce f = contact_force(law, pair, dt, history);
   return {f.normal_force,
@@ -69,8 +70,8 @@ Response scalar_response(const LawParams &law, const ContactPair &pair, ContactH
 class KernelPair
 {
 public:
-  explicit KernelPair(const LawParams &law)
-      : law_(law), packing_(make_packing({Vec3::Zero(), Vec3(1, 0, 0)}, {r1, r2}, 2650)), list_(law.active())
+  explicit KernelPair(const LinearRolling &law)
+      : law_(law), packing_(make_packing({Vec3::Zero(), Vec3(1, 0, 0)}, {r1, r2}, 2650)), list_(law.history())
   {
     list_.replace_pairs({{0, 1}}, 2);
   }
@@ -92,7 +93,7 @@ public:
   }
 
 private:
-  LawParams law_;
+  LinearRolling law_;
   Packing packing_;
   ContactList list_;
 };
@@ -153,7 +154,7 @@ TEST_P(RecordedPath, ScalarLawAndKernelFollowIt)
 {
   const PairPath path = read_path(GetParam());
   ASSERT_GE(path.pairs.size(), 1999u);
-  const LawParams law = yade_law();
+  const LinearRolling law = yade_law();
   ContactHistory history;
   KernelPair kernel(law);
   Misfit scalar, simd;
@@ -181,7 +182,7 @@ TEST(RecordedWallPath, StiffnessIsThatOfAnEqualSphere)
       if (overlap > 0)
         {
           ++touching;
-          got.normal_force = wall_stiffness(yade_law(), r2) * overlap;
+          got.normal_force = yade_law().wall(r2, overlap).force;
           got.vectors[3] = Vec3(got.normal_force, 0, 0);
         }
       Response expected = path.expected[i];
@@ -194,12 +195,12 @@ TEST(RecordedWallPath, StiffnessIsThatOfAnEqualSphere)
 
 TEST(ContactLaw, NewContactStartsWithoutRotation)
 {
-  const LawParams law = yade_law();
+  const LinearRolling law = yade_law();
   const ContactPair p = moving_pair();
   ContactHistory history;
   contact_force(law, p, 1e-12, history); // so short a step that nothing yields
   const Vec3 n = (p.x2 - p.x1).normalized();
-  const ContactStiffness k = contact_stiffness(law, r1, r2);
+  const ContactStiffness k = law.stiffness(r1, r2);
   const double alpha = (r1 + r2) / (p.x2 - p.x1).norm();
   const Vec3 vr = alpha * (p.v2 - p.v1) - (r2 * p.w2 + r1 * p.w1).cross(n);
   const Vec3 dw = p.w2 - p.w1;
@@ -214,7 +215,7 @@ TEST(ContactLaw, NewContactStartsWithoutRotation)
 
 TEST(ContactLaw, LostContactForgets)
 {
-  const LawParams law = yade_law();
+  const LinearRolling law = yade_law();
   const ContactPair p = moving_pair();
   ContactPair apart = p;
   apart.x2 *= 1.01;
@@ -236,8 +237,8 @@ TEST(ContactLaw, LostContactForgets)
 
 TEST(ContactLaw, SlidingAndRollingAreReachedFromBelow)
 {
-  const LawParams law = yade_law();
-  const double fn = 2.0, length = rolling_length(law, r1, r2);
+  const LinearRolling law = yade_law();
+  const double fn = 2.0, length = law.rolling_length(r1, r2);
   EXPECT_DOUBLE_EQ(length, 0.5 * r2);
   EXPECT_TRUE(is_sliding(law.friction * fn, fn, law));
   EXPECT_TRUE(is_sliding((1 - 0.9e-9) * law.friction * fn, fn, law));
@@ -246,8 +247,8 @@ TEST(ContactLaw, SlidingAndRollingAreReachedFromBelow)
   EXPECT_TRUE(is_rolling((1 - 0.9e-9) * length * fn, fn, length, law));
   EXPECT_FALSE(is_rolling((1 - 1.1e-9) * length * fn, fn, length, law));
 
-  LawParams without = law;
-  without.features.rolling = false;
+  LinearRolling without = law;
+  without.rolling = false;
   EXPECT_FALSE(is_rolling(length * fn, fn, length, without));
   without.friction = 0;
   EXPECT_FALSE(is_sliding(0, fn, without));
@@ -255,7 +256,7 @@ TEST(ContactLaw, SlidingAndRollingAreReachedFromBelow)
 
 TEST(ContactLaw, YieldedStateLiesOnTheSurface)
 {
-  const LawParams law = yade_law();
+  const LinearRolling law = yade_law();
   ContactPair p = moving_pair();
   p.v2 *= 1000;
   p.w2 *= 1e5;
@@ -271,16 +272,16 @@ TEST(ContactLaw, YieldedStateLiesOnTheSurface)
 
 TEST(ContactLaw, StiffnessesFollowFromTheFeatures)
 {
-  LawParams law = yade_law();
-  const ContactStiffness k = contact_stiffness(law, r1, r2);
+  LinearRolling law = yade_law();
+  const ContactStiffness k = law.stiffness(r1, r2);
   EXPECT_DOUBLE_EQ(k.normal, 1714285.714285714);
   EXPECT_DOUBLE_EQ(k.shear, 514285.71428571414);
   EXPECT_DOUBLE_EQ(k.rolling, 0.004628571428571427);
   EXPECT_DOUBLE_EQ(k.twisting, 0.004628571428571427);
-  law.features.twisting = false;
-  EXPECT_EQ(contact_stiffness(law, r1, r2).twisting, 0);
+  law.twisting = false;
+  EXPECT_EQ(law.stiffness(r1, r2).twisting, 0);
   law.friction = 0;
-  EXPECT_EQ(contact_stiffness(law, r1, r2).shear, 0);
-  EXPECT_EQ(contact_stiffness(law, r1, r2).rolling, 0);
+  EXPECT_EQ(law.stiffness(r1, r2).shear, 0);
+  EXPECT_EQ(law.stiffness(r1, r2).rolling, 0);
 }
 } // namespace isostat

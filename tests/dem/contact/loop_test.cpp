@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The SIMD contact loop against its scalar twin, for every variant of the law and every instruction set of this
 // machine.
-#include "dem/contact/kernel.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
+#include "dem/contact/loop.hpp"
 #include "tests/dem/contact/scalar_twin.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/near.hpp"
@@ -19,7 +20,7 @@ constexpr double tolerance = 1e-13;
 using namespace test;
 using Pair = ContactList::Pair;
 
-ContactList make_list(const Cloud &cloud, const LawParams &law, bool touching_only = false)
+ContactList make_list(const Cloud &cloud, const LinearRolling &law, bool touching_only = false)
 {
   std::vector<Pair> pairs;
   std::vector<ContactHistory> histories;
@@ -29,14 +30,14 @@ ContactList make_list(const Cloud &cloud, const LawParams &law, bool touching_on
         pairs.push_back(cloud.pairs[p]);
         histories.push_back(cloud.histories[p]);
       }
-  ContactList list(law.active());
+  ContactList list(law.history());
   list.replace_pairs(pairs, static_cast<std::uint32_t>(cloud.packing.n_grains()));
   for (std::size_t p = 0; p < pairs.size(); ++p)
     list.set_history(p, histories[p]);
   return list;
 }
 
-Outcome simd_outcome(const LawParams &law, const Cloud &cloud, bool with_energy, bool touching_only = false)
+Outcome simd_outcome(const LinearRolling &law, const Cloud &cloud, bool with_energy, bool touching_only = false)
 {
   Outcome out;
   ContactList list = make_list(cloud, law, touching_only);
@@ -146,7 +147,7 @@ TEST_P(ContactKernel, DissipationIsNotNegativeAndNotNaN)
 TEST_P(ContactKernel, ChunksAndGhostsAddUpToTheScalarSums)
 {
   // random clouds side by side, as many as make several chunks; pairs that reach across from each cloud to the next
-  const LawParams law = law_of(variants[4]);
+  const LinearRolling law = law_of(variants[4]);
   const Cloud cloud = random_cloud(15);
   const auto n = static_cast<std::uint32_t>(cloud.packing.n_grains());
   const std::uint32_t copies = 3000 / n + 1, total = n * copies;
@@ -165,7 +166,7 @@ TEST_P(ContactKernel, ChunksAndGhostsAddUpToTheScalarSums)
           pairs.emplace_back(copy * n + i, (copy + 1) * n + p->second);
       }
   Packing packing = make_packing(centres, radii, 2650);
-  ContactList list(law.active());
+  ContactList list(law.history());
   list.replace_pairs(pairs, total);
   ASSERT_GT(list.partition().n_chunks, 3u);
   ASSERT_GT(list.n_slots(), total + Packing::n_padding);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/contact/law.hpp"
 #include "dem/contact/virial.hpp"
 #include "dem/state/contact_list.hpp"
 #include "dem/state/packing.hpp"
@@ -34,8 +35,24 @@ struct CellMotion
   Virial *virial;   ///< sums of F b, added to
 };
 
-/// Contact forces of the pairs of one chunk, added to the slots of their grains: the SIMD form of contact_force() in
-/// law.hpp.
+/// Plain view of one chunk, all that a law's loop (loop-inl.hpp) reads and writes.
+struct LoopView
+{
+  const double *position, *velocity, *spin; ///< records of the packing
+  const std::uint32_t *first, *second, *target;
+  double *history, *action;
+  std::uint8_t *occupied;
+  std::size_t begin, end;                                                                 ///< blocks
+  double dt;                                                                              ///< s
+  double *sliding = nullptr, *rolling = nullptr, *released = nullptr, *created = nullptr; ///< null: no energy sums
+  // periodic cell only
+  const std::uint32_t *image = nullptr;
+  const double *offsets = nullptr;
+  double rate[6] = {}; ///< D: xx yy zz yz xz xy, 1/s
+  double *virial = nullptr, virial_start = 0;
+};
+
+/// Contact forces of the pairs of one chunk, added to the slots of their grains, by any law.
 ///
 /// `action` holds one cache line per slot, [Fx Fy Fz 0 Tx Ty Tz 0] (N, N m), and is added to. History in `list` is
 /// advanced in place. Sums run in the order of the pair list, lane by lane, so a grain's sum is bitwise the same for
@@ -44,19 +61,20 @@ struct CellMotion
 /// @param dt          s
 /// @param action      list.n_slots() lines
 /// @param dissipation nullptr: the loop without energy sums; otherwise as large as the list, its part is overwritten
+/// @pre               the layout of the list is law.history()
 /// @param cell        of a list with images: branch vectors end at the image, the velocities of `packing` are
 ///                    fluctuations, and the virial is summed; 26 vector operations more. nullptr in a box
-/// cost: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with AVX-512 no divide
+/// cost, linear-rolling: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with AVX-512 no divide
 /// and no root (estimates and series); 400 bytes of traffic per pair; see benchmarks/README.md
-/// tested: tests/dem/contact/kernel_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
-void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
+/// tested: tests/dem/contact/loop_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
+void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
                         double *action, DissipationPerPair *dissipation, const CellMotion *cell = nullptr);
 
 /// Adds to the grains of a chunk what other chunks have left in their ghosts, and clears the ghosts.
 void add_ghosts(const ContactList &list, std::size_t chunk, double *action);
 
 /// Both for all chunks, one after the other; resizes `dissipation`.
-void add_contact_forces(const LawParams &law, const Packing &packing, double dt, ContactList &list, double *action,
+void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, double *action,
                         DissipationPerPair *dissipation = nullptr, const CellMotion *cell = nullptr);
 
 /// Name of the instruction set that add_contact_forces uses on this machine, e.g. "AVX3".

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The SIMD contact loop in a periodic cell against its scalar twin: images of grains, homogeneous strain, virial.
+#include "dem/contact/linear_rolling/law.hpp"
 #include "tests/dem/contact/scalar_twin.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/near.hpp"
@@ -80,9 +81,9 @@ struct CellOutcome : Outcome
   Mat3 virial;
 };
 
-ContactList list_of(const CloudInCell &c, LawFeatures active, bool with_images = true)
+ContactList list_of(const CloudInCell &c, const HistoryLayout &layout, bool with_images = true)
 {
-  ContactList list(active);
+  ContactList list(layout);
   const auto n = static_cast<std::uint32_t>(c.cloud.packing.n_grains());
   list.replace_pairs(c.cloud.pairs, n, 1, with_images ? c.images : std::vector<ImageCode>{});
   list.set_cell(c.edges);
@@ -94,10 +95,10 @@ ContactList list_of(const CloudInCell &c, LawFeatures active, bool with_images =
 }
 
 /// @param bound  of the sum of F b, J
-CellOutcome simd_outcome(const LawParams &law, const CloudInCell &c, bool with_energy, double bound)
+CellOutcome simd_outcome(const LinearRolling &law, const CloudInCell &c, bool with_energy, double bound)
 {
   CellOutcome out;
-  ContactList list = list_of(c, law.active());
+  ContactList list = list_of(c, law.history());
   Virial virial;
   virial.start(list.partition().n_chunks, bound);
   const CellMotion motion{c.strain_step, &virial};
@@ -118,7 +119,7 @@ CellOutcome simd_outcome(const LawParams &law, const CloudInCell &c, bool with_e
 }
 
 /// Symmetric part of the sum of F b by the scalar law, and sum of |F| |b|.
-std::pair<Mat3, double> scalar_virial(const LawParams &law, const CloudInCell &c)
+std::pair<Mat3, double> scalar_virial(const LinearRolling &law, const CloudInCell &c)
 {
   Mat3 sum = Mat3::Zero();
   double size = 0;
@@ -166,10 +167,10 @@ CloudInCell many_clouds(unsigned seed)
   return all;
 }
 
-double energy_of(const LawParams &law, const CloudInCell &c) { return law.young * c.edges.determinant(); }
+double energy_of(const LinearRolling &law, const CloudInCell &c) { return law.young * c.edges.determinant(); }
 
 /// Worst misfit of the loop: forces, histories and losses, and the virial in units of sum |F| |b|.
-std::pair<double, double> worst_misfit(const LawParams &law, const CloudInCell &c, bool with_energy)
+std::pair<double, double> worst_misfit(const LinearRolling &law, const CloudInCell &c, bool with_energy)
 {
   const CellOutcome out = simd_outcome(law, c, with_energy, energy_of(law, c));
   const auto [virial, size] = scalar_virial(law, c);
@@ -232,8 +233,8 @@ TEST_P(CellKernel, WithoutStrainAndImagesItChangesNoBit)
     {
       CloudInCell c = cloud_in_cell(16, 0);
       c.strain_step.setZero();
-      const LawParams law = law_of(v);
-      ContactList box_list = list_of(c, law.active(), false);
+      const LinearRolling law = law_of(v);
+      ContactList box_list = list_of(c, law.history(), false);
       AlignedVector<double> action(8 * box_list.n_slots(), 0.0);
       add_contact_forces(law, c.cloud.packing, dt, box_list, action.data());
       const CellOutcome out = simd_outcome(law, c, false, energy_of(law, c));

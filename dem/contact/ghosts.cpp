@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What chunks leave in each other's ghosts, compiled once per instruction set and chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/contact/ghosts.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "dem/contact/loop.hpp"
+#include "dem/contact/triple-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace isostat
+{
+namespace HWY_NAMESPACE
+{
+/// Adds to each grain what its ghosts have, and clears them.
+void AddGhosts(const Ghost *ghosts, std::size_t n, double *action)
+{
+  const D d;
+  for (std::size_t g = 0; g < n; ++g)
+    for (std::size_t c = 0; c < 8; c += hn::Lanes(d))
+      {
+        double *grain = action + 8 * std::size_t{ghosts[g].grain} + c,
+               *ghost = action + 8 * std::size_t{ghosts[g].slot} + c;
+        hn::Store(hn::Add(hn::Load(d, grain), hn::Load(d, ghost)), d, grain);
+        hn::Store(hn::Zero(d), d, ghost);
+      }
+}
+
+const char *InstructionSet() { return hwy::TargetName(HWY_TARGET); }
+} // namespace HWY_NAMESPACE
+} // namespace isostat
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isostat
+{
+HWY_EXPORT(AddGhosts);
+HWY_EXPORT(InstructionSet);
+
+void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
+{
+  HWY_DYNAMIC_DISPATCH(AddGhosts)(list.ghosts(chunk).data(), list.ghosts(chunk).size(), action);
+}
+
+std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
+} // namespace isostat
+#endif

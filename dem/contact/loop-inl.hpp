@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The loop over contacts for any law: records of grains in, forces, torques, virial and energy sums out. Included once
+// per instruction set by the SIMD source of a law (hence no #pragma once).
+#if defined(ISOSTAT_LOOP_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef ISOSTAT_LOOP_INL_HPP
+#undef ISOSTAT_LOOP_INL_HPP
+#else
+#define ISOSTAT_LOOP_INL_HPP
+#endif
+
+#include "dem/contact/loop.hpp"
+#include "dem/contact/records-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace isostat
+{
+namespace HWY_NAMESPACE
+{
+/// Pairs of grains, one to a lane, as a law sees them. In lanes that do not touch n is 0, and whatever is not a number
+/// there must go through closed().
+struct Pairs
+{
+  V r1, r2, reach;         ///< R1, R2, R1 + R2
+  V inv_distance, overlap; ///< 1/L, u
+  Triple n;                ///< from the first grain to the second
+  Triple dv, w1, w2;       ///< v2 - v1 with the strain of a cell, spins; not set for a central law
+  Mask touching;
+};
+
+/// 0 in lanes that do not touch.
+HWY_INLINE V closed(const Pairs &p, V v) { return hn::IfThenElseZero(p.touching, v); }
+
+/// What a law answers: F = fn n + fs on the second grain and M on it, acting at the contact point.
+struct Response
+{
+  V fn;
+  Triple fs, moment;
+};
+
+/// How history turns with its contact: a = n' x n,  s = (dt/2) [n'.(w1 + w2)] n'
+struct Turning
+{
+  Triple n0, tilt, turn; ///< n', a, a + s
+  V along;               ///< s = along n'
+
+  HWY_INLINE Turning(const Pairs &p, const double *normal_before, double half_dt)
+  {
+    n0 = load3(normal_before);
+    tilt = cross(n0, p.n);
+    along = hn::Mul(hn::Set(D(), half_dt), dot(n0, plus(p.w1, p.w2)));
+    turn = madd(n0, along, tilt);
+  }
+  /// z - z x (a + s): history that is normal to n' turned with the contact; (z x a) x s = a (s.z) is 0 for it.
+  HWY_INLINE Triple turned(const Triple &z) const { return minus_cross(z, turn); }
+  /// The same of any history.
+  HWY_INLINE Triple turned_whole(const Triple &z) const { return madd(tilt, hn::Mul(along, dot(n0, z)), turned(z)); }
+};
+
+/// min(1, limit/|z|): brings `z` back to |z| <= limit. 1 where z is 0. With a cheap root there is no branch: about as
+/// many vectors have a yielding lane as have none, and a wrong guess costs more than the root.
+HWY_INLINE V return_factor(const Triple &z, V limit)
+{
+  const D d;
+  const V one = hn::Set(d, 1.0), norm2 = dot(z, z);
+#if HWY_TARGET <= HWY_AVX3
+  // not a number where z is 0; the minimum is then its second operand
+  return V{_mm512_min_pd(hn::Mul(limit, inverse_root(norm2)).raw, one.raw)};
+#else
+  const Mask outside = hn::Gt(norm2, hn::Mul(limit, limit));
+  if (HWY_LIKELY(hn::AllFalse(d, outside)))
+    return one;
+  return hn::IfThenElse(outside, hn::Mul(limit, inverse_root(norm2)), one);
+#endif
+}
+
+/// Work that a return to the yield surface dissipates, (mid-step force).(trial - returned)/stiffness, J.
+HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Triple &after, V stiffness, Mask yielded)
+{
+  const V half = hn::Set(D(), 0.5);
+  const Triple mid = scaled(plus(before, after), half);
+  return hn::IfThenElseZero(yielded, hn::Div(dot(mid, minus(trial, after)), stiffness));
+}
+
+/// One law over the contacts of a chunk. A law over lanes has
+///
+///     Numbers                    its parameters as the lanes want them: plain doubles
+///     n_components               of its history; 0: no memory. With memory its first three are n', kept by the law
+///     is_central                 only a normal force: velocities and spins are not read, Energy is not asked for
+///     normal_force(numbers, pairs) -> V                                        of a central law
+///     response<Energy>(numbers, pairs, history, view, pair) -> Response        of any other; advances its history, and
+///                                with Energy stores what it dissipates in view.sliding, .rolling, .created at `pair`
+///     forgotten(numbers, history, r1 r2, reach) -> V       elastic energy that an opening contact forgets
+///
+/// all static and HWY_INLINE: the loop and its law become one function.
+template <typename Law, bool Energy, bool Periodic>
+struct Loop
+{
+  using Numbers = typename Law::Numbers;
+  static constexpr std::size_t n_components = Law::n_components;
+  static constexpr std::size_t lanes = ContactList::lanes;
+
+  static void clear(double *history)
+  {
+    for (std::size_t c = 0; c < n_components; ++c)
+      hn::Store(hn::Zero(D()), D(), history + c * lanes);
+  }
+
+  /// dv + D b: what homogeneous strain adds to the relative velocity of the fluctuations.
+  static HWY_INLINE Triple with_strain(const LoopView &k, const Triple &dv, const Triple &b)
+  {
+    const D d;
+    auto rate = [&](int c) { return hn::Set(d, k.rate[c]); };
+    return {hn::MulAdd(rate(0), b.x, hn::MulAdd(rate(5), b.y, hn::MulAdd(rate(4), b.z, dv.x))),
+            hn::MulAdd(rate(5), b.x, hn::MulAdd(rate(1), b.y, hn::MulAdd(rate(3), b.z, dv.y))),
+            hn::MulAdd(rate(4), b.x, hn::MulAdd(rate(3), b.y, hn::MulAdd(rate(2), b.z, dv.z)))};
+  }
+
+  /// Sums of F b and its transpose, lane by lane: see Virial.
+  static HWY_INLINE void add_virial(const LoopView &k, std::size_t lane, const Triple &force, const Triple &b)
+  {
+    const D d;
+    double *sums = k.virial + lane;
+    auto add = [&](int c, V f, V l) {
+      const V sum = hn::Load(d, sums + 8 * c);
+#if HWY_NATIVE_FMA
+      hn::Store(hn::MulAdd(f, l, sum), d, sums + 8 * c);
+#else // a rounded product may be halfway between two points of the grid; which one it goes to must not follow the sum
+      const V start = hn::Set(d, k.virial_start), rounded = hn::Sub(hn::MulAdd(f, l, start), start);
+      hn::Store(hn::Add(sum, rounded), d, sums + 8 * c);
+#endif
+    };
+    add(0, force.x, b.x);
+    add(1, force.y, b.y);
+    add(2, force.z, b.z);
+    add(3, force.y, b.z), add(3, force.z, b.y);
+    add(4, force.x, b.z), add(4, force.z, b.x);
+    add(5, force.x, b.y), add(5, force.y, b.x);
+  }
+
+  static HWY_INLINE void sub_block(const LoopView &k, const Numbers &law, std::size_t pair, std::size_t lane, double *h,
+                                   bool occupied, std::uint8_t &touched)
+  {
+    const D d;
+    Pairs p;
+    const Records x1 = load_records(k.position, k.first + pair), x2 = load_records(k.position, k.second + pair);
+    Records apart = differences_and_sum(x1, x2);
+    if constexpr (Periodic)
+      apart = sums(apart, load_records(k.offsets, k.image + pair));
+    const Quad between = transposed(apart);
+    const Triple &branch = between.xyz;
+    p.reach = between.w;
+    const V distance2 = dot(branch, branch);
+    p.inv_distance = inverse_root(distance2);
+    p.overlap = hn::Sub(p.reach, root(distance2, p.inv_distance));
+    p.touching = hn::Gt(p.overlap, hn::Zero(d));
+    if (HWY_UNLIKELY(hn::AllFalse(d, p.touching)))
+      return skip(k, law, pair, h, occupied, transposed(x1).w, p.reach);
+    touched = 1;
+    // lanes that do not touch get n = 0, no stiffness and an empty history: all they add is an exact 0
+    p.n = {closed(p, hn::Mul(branch.x, p.inv_distance)), closed(p, hn::Mul(branch.y, p.inv_distance)),
+           closed(p, hn::Mul(branch.z, p.inv_distance))};
+    if constexpr (Law::is_central)
+      {
+        p.r1 = transposed(x1).w;
+        p.r2 = hn::Sub(p.reach, p.r1);
+        const Triple force = scaled(p.n, Law::normal_force(law, p));
+        if constexpr (Periodic)
+          add_virial(k, lane, force, branch);
+        add_forces(k.action, k.first + pair, k.target + pair, force);
+        return;
+      }
+    else
+      {
+        const Quad moving = transposed(
+            differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
+        p.dv = moving.xyz;
+        if constexpr (Periodic)
+          p.dv = with_strain(k, p.dv, branch);
+        p.r1 = moving.w;
+        p.w1 = transposed(load_records(k.spin, k.first + pair)).xyz;
+        p.w2 = transposed(load_records(k.spin, k.second + pair)).xyz;
+        p.r2 = hn::Sub(p.reach, p.r1);
+        if constexpr (Energy)
+          store_released(k, law, pair, h, p.touching, hn::Mul(p.r1, p.r2), p.reach);
+        const Response r = Law::template response<Energy>(law, p, h, k, pair);
+
+        // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
+        const V half = hn::Set(d, 0.5);
+        const Triple force = madd(p.n, r.fn, r.fs), couple = cross(p.n, r.fs);
+        if constexpr (Periodic)
+          add_virial(k, lane, force, branch);
+        add_actions(k.action, k.first + pair, k.target + pair, force,
+                    nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), r.moment),
+                    nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), r.moment));
+      }
+  }
+
+  /// A vector of pairs none of which touches: history is forgotten, nothing else happens.
+  static void skip(const LoopView &k, const Numbers &law, std::size_t pair, double *h, bool occupied, V r1, V reach)
+  {
+    if (n_components == 0 || !occupied)
+      return;
+    if constexpr (Energy)
+      store_released(k, law, pair, h, hn::Gt(hn::Zero(D()), hn::Zero(D())), hn::Mul(r1, hn::Sub(reach, r1)), reach);
+    clear(h);
+  }
+
+  static void store_released(const LoopView &k, const Numbers &law, std::size_t pair, const double *h, Mask touching,
+                             V rr, V reach)
+  {
+    if constexpr (n_components > 0)
+      {
+        const D d;
+        const Triple n0 = load3(h);
+        const Mask opened = hn::AndNot(touching, hn::Gt(dot(n0, n0), hn::Zero(d)));
+        hn::StoreU(hn::IfThenElseZero(opened, Law::forgotten(law, h, rr, reach)), d, k.released + pair);
+      }
+  }
+
+  static HWY_NOINLINE void run(const LoopView &view, const Numbers &numbers)
+  {
+    const LoopView k = view; // copies that no store can alias
+    const Numbers law = numbers;
+    for (std::size_t b = k.begin; b < k.end; ++b)
+      {
+        std::uint8_t touched = 0;
+        for (std::size_t l = 0; l < lanes; l += hn::Lanes(D()))
+          sub_block(k, law, b * lanes + l, l, k.history + b * n_components * lanes + l, k.occupied[b], touched);
+        k.occupied[b] = touched;
+      }
+  }
+};
+
+/// The loop of a law in a box or a cell, with or without energy sums, as the view asks for.
+template <typename Law>
+void run_loop(const LoopView &view, const typename Law::Numbers &numbers)
+{
+  if constexpr (!Law::is_central)
+    if (view.sliding)
+      return view.image ? Loop<Law, true, true>::run(view, numbers) : Loop<Law, true, false>::run(view, numbers);
+  view.image ? Loop<Law, false, true>::run(view, numbers) : Loop<Law, false, false>::run(view, numbers);
+}
+} // namespace HWY_NAMESPACE
+} // namespace isostat
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/dem/contact/soft_spheres/law.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "dem/contact/law_parameters.hpp"
+#include "dem/contact/loop-inl.hpp"
+#include "tests/dem/contact/soft_spheres/law.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace isostat
+{
+namespace HWY_NAMESPACE
+{
+struct SoftSpheresLanes
+{
+  struct Numbers
+  {
+    double twice_modulus; ///< 2 softness E
+  };
+  static constexpr bool is_central = true;
+  static constexpr std::size_t n_components = 0;
+
+  static HWY_INLINE V normal_force(const Numbers &k, const Pairs &p)
+  {
+    const V kn = hn::Mul(hn::Mul(p.r1, p.r2), hn::Mul(inverse(p.reach), hn::Set(D(), k.twice_modulus)));
+    return closed(p, hn::Mul(kn, p.overlap));
+  }
+};
+
+void AddSoftSpheres(double twice_modulus, const LoopView &view) { run_loop<SoftSpheresLanes>(view, {twice_modulus}); }
+} // namespace HWY_NAMESPACE
+} // namespace isostat
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isostat
+{
+HWY_EXPORT(AddSoftSpheres);
+
+namespace test
+{
+namespace
+{
+constexpr Key keys_of_law[] = {{.path = "young",
+                                .kind = Kind::quantity,
+                                .dimension = Dimension::pressure,
+                                .unit = "GPa",
+                                .value = "10 GPa",
+                                .range = {0, 1e15, true},
+                                .text = "Modulus of the material.",
+                                .field = law_field<&SoftSpheres::young>},
+                               {.path = "softness",
+                                .value = "0.1",
+                                .range = {0, 1, true},
+                                .reason = "because no sphere is stiffer than its material",
+                                .text = "Modulus of the contact over that of the material.",
+                                .field = law_field<&SoftSpheres::softness>}};
+} // namespace
+
+std::span<const Key> SoftSpheres::keys() const { return keys_of_law; }
+
+void SoftSpheres::add_forces(const LoopView &view) const
+{
+  HWY_DYNAMIC_DISPATCH(AddSoftSpheres)(2 * softness * young, view);
+}
+} // namespace test
+} // namespace isostat
+#endif
