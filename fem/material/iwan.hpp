@@ -38,31 +38,29 @@ struct Backbone
 Backbone fit_hyperbola(unsigned elements);
 
 /// Sand under cyclic shear, of which a column of soil can liquefy without a grain: elements side by side, each elastic
-/// and perfectly plastic (Iwan 1967; overlay of Besseling 1958), here in the space of deviators, with strength and
-/// stiffness that follow p'. With gamma_r = M p'/G, all per volume of soil:
+/// and perfectly plastic (Iwan 1967, doi:10.1115/1.3607751; overlay of Besseling 1958), here in the space of deviators,
+/// with strength and stiffness that follow p'. With gamma_r = M p'/G, all per volume of soil, docs/theory_column.md:
 ///
-///     element k      s_k = w_k G (gamma - gamma_pk),  |s_k| <= w_k x_k M p'       radial return (von Mises)
-///     deviator       s = sum of s_k;  |s| = sqrt(J2),  |gamma| = 2 sqrt(J2 of strain), both simple shear's tau, gamma
-///     plastic flow   d gamma_p = sum of w_k d gamma_pk
-///     volume         d eps_vp = A (M_pt |d gamma_p| - s . d gamma_p / p')         contraction positive; A =
-///     contraction
-///                                                                                 if the bracket is > 0, else dilation
-///     fabric         contraction grows by 1 + z, dz = fabric_rate (z_max - z) d(dilation)
-///     pressure       d p' = K (d eps_v - d eps_vp)
-///     moduli         G, K ~ (p'/p_ref)^n
+///     (19) element k      s_k = w_k G (gamma - gamma_pk),  |s_k| <= w_k x_k M p'     radial return (von Mises)
+///     (20) deviator       s = sum of s_k;  |s| = sqrt(J2),  |gamma| = 2 sqrt(J2 of strain): simple shear's tau, gamma
+///     (21) plastic flow   d gamma_p = sum of w_k d gamma_pk
+///     (22) volume         d eps_vp = A (M_pt |d gamma_p| - s . d gamma_p / p')       contraction positive;
+///                         A = contraction (1 + z) if the bracket is > 0, else dilation max(0, 1 - p'/p_c)
+///     (23) fabric         dz = fabric_rate (z_max - z) d(dilation)
+///     (24) pressure       d p' = K (d eps_v - d eps_vp)
+///     (25) moduli         G, K ~ (p'/p_ref)^n
 ///
 /// The volume law is Rowe's (1962) stress dilatancy with the stress ratio seen along the flow (Manzari and Dafalias
-/// 1997): after a reversal it contracts most. What has dilated contracts faster
-/// afterwards (their fabric of 2004, here a number z that only grows), else no p' near zero is ever met. Without
-/// drainage p' falls cycle by cycle, and rises on the way to the strength: loops like a butterfly. As p' falls,
-/// elements are scaled back to their yield; this flow is not counted in the volume law. p' has a floor: contraction (or
-/// pulling apart) beyond it is kept as loosening, a strain that must be closed by compression or dilation before p' can
-/// rise again.
+/// 1997, doi:10.1680/geot.1997.47.2.255): after a reversal it contracts most. What has dilated contracts faster
+/// afterwards (the fabric of Dafalias and Manzari 2004, doi:10.1061/(ASCE)0733-9399(2004)130:6(622), here a number z
+/// that only grows), else no p' near zero is ever met. Without drainage p' falls cycle by cycle, and rises on the way
+/// to the strength: loops like a butterfly. As p' falls, elements are scaled back to their yield; this flow is not
+/// counted in the volume law. p' has a floor: contraction (or pulling apart) beyond it is kept as loosening, a strain
+/// that must be closed by compression or dilation before p' can rise again.
 ///
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
-/// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are
-/// those of loosening and of K.
-/// tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
+/// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are those of
+/// loosening and of K.   tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
 class Iwan : public Material
 {
 public:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The stress update of Iwan. Numbers in brackets are equations of docs/theory_column.md, as in iwan.hpp.
 #include "base/error.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan.hpp"
@@ -33,6 +34,7 @@ double sum_of_products(const double *a, const double *b, std::size_t n)
 }
 } // namespace
 
+/// (25)
 double Iwan::shear_modulus(double p) const
 {
   return parameters_.shear_modulus * power(p / parameters_.reference_pressure, parameters_.exponent);
@@ -60,7 +62,7 @@ Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
   return d;
 }
 
-/// Pressure, loosening: d p' = K (d eps_v - d eps_vp), moduli and stress ratio of the beginning.
+/// Pressure (24), volume (22), fabric (23) and loosening, with the moduli and the stress ratio of the beginning.
 void Iwan::change_pressure(const double *from, const Shear &flow, double volumetric, double shear, double *to) const
 {
   const double p = from[pressure], bulk = bulk_per_shear_ * shear;
@@ -70,10 +72,11 @@ void Iwan::change_pressure(const double *from, const Shear &flow, double volumet
       square += flow[c] * flow[c];
       along += from[deviator + c] * flow[c];
     }
+  // (22)
   double plastic = parameters_.phase_transformation_ratio * std::sqrt(square) - along / p;
   plastic *= plastic > 0 ? parameters_.contraction * (1 + from[fabric])
                          : parameters_.dilation * std::max(0.0, 1 - p / parameters_.critical_pressure);
-  // a gap, and what closes it, are volumetric strain that changes no stress
+  // (24); a gap, and what closes it, are volumetric strain that changes no stress
   double elastic = volumetric - plastic - from[loose], gap = std::max(0.0, -elastic);
   if (from[loose] > 0 && elastic < 0)
     elastic = 0; // still open, at the floor
@@ -85,6 +88,7 @@ void Iwan::change_pressure(const double *from, const Shear &flow, double volumet
       gap = (from[floor_pressure] - next) / bulk;
       next = from[floor_pressure];
     }
+  // (23), integrated by one explicit step that cannot overshoot z_max
   const double growth = std::min(1.0, parameters_.fabric_rate * std::max(0.0, -plastic));
   to[fabric] = from[fabric] + growth * (parameters_.fabric_limit - from[fabric]);
   to[pressure] = next;
@@ -92,8 +96,9 @@ void Iwan::change_pressure(const double *from, const Shear &flow, double volumet
   to[floor_pressure] = from[floor_pressure];
 }
 
-/// One sub-step; `to` may be `from`. Elements yield with the p' of the beginning, which gives flow and the new p', and
-/// are then returned to the yield of the new one. Sums run over `lanes` elements side by side, in a fixed order.
+/// One sub-step of (19) to (21); `to` may be `from`. Elements yield with the p' of the beginning, which gives flow and the
+/// new p', and are then returned to the yield of the new one. Sums run over `lanes` elements side by side, in a fixed
+/// order.
 void Iwan::step(const double *from, const Increment &d, double *to) const
 {
   const double p = from[pressure], shear = shear_modulus(p), compliance = 1 / shear;
@@ -101,6 +106,7 @@ void Iwan::step(const double *from, const Increment &d, double *to) const
   Shear g = d.shear, flow{};
   for (double &x : g)
     x *= shear;
+  // (19): trial deviators of the elements and the part of each that is above its yield
   double above[max_elements], inverse[max_elements];
   double s[5][max_elements]; // apart from `to`, which could be `from`
   for (std::size_t k = 0; k < n; k += lanes)
@@ -119,9 +125,11 @@ void Iwan::step(const double *from, const Increment &d, double *to) const
           above[k + l] = 1 - (p * inverse[k + l] < 1 ? p * inverse[k + l] : 1); // part above yield
         }
     }
+  // (21): w_k d gamma_pk = above_k s_k / G
   for (int c = 0; c < 5; ++c)
     flow[c] = compliance * sum_of_products(above, s[c], n);
   change_pressure(from, flow, d.volumetric, shear, to);
+  // radial return to the yield of the new p', and (20)
   const double p_new = to[pressure];
   for (std::size_t k = 0; k < n; ++k)
     inverse[k] = p_new * inverse[k] < 1 ? p_new * inverse[k] : 1;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers in brackets are equations of docs/theory_column.md.
 #include "fem/solve/dynamics.hpp"
 
 #include "base/error.hpp"
@@ -70,6 +71,8 @@ void Dynamics<dim>::check_settings() const
     throw InputError(fmt::format("mass damping = {} 1/s; must be >= 0", settings_.mass_damping));
 }
 
+/// Equation (4) solved for v+: v+ = D (f - F + G^T p) + keep v-, D = 1/(M/dt + C/2), keep = D (M/dt - C/2). C is mass
+/// damping and the dashpots (13).
 template <int dim>
 void Dynamics<dim>::make_coefficients()
 {
@@ -100,6 +103,7 @@ void Dynamics<dim>::make_coefficients()
       damping_.local_element(i) = update_.local_element(i) = keep_.local_element(i) = 0;
 }
 
+/// (10), with the present moduli.
 template <int dim>
 double Dynamics<dim>::stable_step() const
 {
@@ -136,7 +140,7 @@ void Dynamics<dim>::find_loads()
     force_.local_element(i) += minus_reference_.local_element(i);
 }
 
-/// From the velocity at the start to the one half a step before.
+/// From the velocity at the start to the one half a step before: v(-1/2) = v(0) - dt/2 a(0).
 template <int dim>
 void Dynamics<dim>::start()
 {
@@ -152,7 +156,7 @@ void Dynamics<dim>::start()
       }
 }
 
-/// Pore pressure of this instant, from the velocity that would follow without it.
+/// Pore pressure of this instant by (8), from the velocity v* that would follow without it.
 template <int dim>
 void Dynamics<dim>::find_pressure()
 {
@@ -169,9 +173,9 @@ void Dynamics<dim>::find_pressure()
   pressure_system_->force(p_, pore_force_);
 }
 
-/// v+ and u, and the work of the half intervals before and after time(); with the kinetic energy at time() the balance
-/// of central differences is an identity, for any material. One pass; sums of x, y and z are kept apart, their order is
-/// that of the code.
+/// v+ of (4) and u of (6), and the work (11) of the half intervals before and after time(); with the kinetic energy at
+/// time() the balance of central differences is an identity, for any material. One pass; sums of x, y and z are kept
+/// apart, their order is that of the code.
 template <int dim>
 template <bool coupled>
 void Dynamics<dim>::move()

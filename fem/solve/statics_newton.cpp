@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One sub-step of statics: Newton with a line search.
+// One sub-step of statics: Newton with a line search. Numbers in brackets are equations of docs/theory_column.md.
 #include "base/error.hpp"
 #include "fem/solve/statics.hpp"
 #include "fem/solve/statics_system.hpp"
@@ -39,6 +39,7 @@ bool Statics<dim>::solve_substep(double duration)
 template <int dim>
 void Statics<dim>::start_substep(double duration)
 {
+  // (15): theta and c of BDF2 with the ratio of this step to the one before, of backward Euler without one
   const double ratio = duration_before_ > 0 ? duration / duration_before_ : 0;
   const bool second_order = flow_ && ratio > 0 && ratio <= 2.4;
   theta_ = !flow_ ? 0 : second_order ? duration * (1 + ratio) / (1 + 2 * ratio) : duration;
@@ -61,7 +62,7 @@ void Statics<dim>::start_substep(double duration)
   find_residual();
 }
 
-/// One linear system and the search along its solution.
+/// One linear system (16) and the search along its solution.
 template <int dim>
 bool Statics<dim>::iterate(unsigned iteration)
 {
@@ -93,7 +94,7 @@ bool Statics<dim>::iterate(unsigned iteration)
   return search_line(merit(1));
 }
 
-/// Backtracking with the parabola through the merit's squares at both ends and the slope at the start, which for a
+/// Backtracking (18) with the parabola through the merit's squares at both ends and the slope at the start, which for a
 /// Newton step is known (Nocedal & Wright, Numerical Optimization, 3.5 and 11.2).
 template <int dim>
 bool Statics<dim>::search_line(double merit_before)
@@ -163,11 +164,12 @@ template <int dim>
 void Statics<dim>::find_residual()
 {
   const std::size_t n_u = u_.locally_owned_size(), n_p = p_.locally_owned_size();
+  // F(sigma') - F(sigma'_0) of (14)
   force_ = 0;
   space_.add_internal_force(trial_stresses_, force_);
   force_ -= reference_force_;
   trial_scale_ = std::max({scale_, min_scale_, load_.l2_norm(), force_.l2_norm()});
-  if (water_)
+  if (water_) // (15): G (du - c du') + S (dp - c dp') + theta H p, and G^T p of (14)
     {
       for (std::size_t i = 0; i < n_u; ++i)
         work_u_.local_element(i) = du_.local_element(i) - last_part_ * last_du_.local_element(i);
@@ -186,7 +188,7 @@ void Statics<dim>::find_residual()
     r_u_.local_element(i) = load_.local_element(i) - force_.local_element(i) + pore_force_.local_element(i);
 }
 
-/// Norm of the residual, as a force, once held unknowns have gone `moved_part` of the last iteration's way.
+/// Norm of the residual (17), as a force, once held unknowns have gone `moved_part` of the last iteration's way.
 template <int dim>
 double Statics<dim>::merit(double moved_part) const
 {

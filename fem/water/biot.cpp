@@ -256,18 +256,22 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
   const Matrices &m = *matrices_;
   const std::size_t n = m.work.locally_owned_size();
   double *rhs = m.right_hand_side.begin(), *work = m.work.begin();
+  // right-hand side of docs/theory_column.md (8), term by term: S (4p' - p'')/(2 dt)
   for (std::size_t i = 0; i < n; ++i)
     work[i] = 4 * p_before.local_element(i) - p_before_that.local_element(i);
   check(MatMult(m.storage, m.of_p->of(m.work), m.of_pressure_residual->of(m.right_hand_side)));
   m.of_p->release();
+  // - (G/2 + L/dt) v*
   check(MatMult(m.ahead, m.of_u->of(v_star), m.of_p->of(m.work)));
   m.of_u->release();
   for (std::size_t i = 0; i < n; ++i)
     rhs[i] -= work[i];
+  // - (G/2 - L/dt) v-
   check(MatMult(m.behind, m.of_u->of(v_before), m.of_p->vec()));
   m.of_u->release();
   for (std::size_t i = 0; i < n; ++i)
     rhs[i] -= work[i];
+  // - L a_base
   for (int axis = 0; axis < 3; ++axis)
     if (base_acceleration[axis] != 0)
       for (std::size_t i = 0; i < n; ++i)

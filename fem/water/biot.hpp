@@ -14,16 +14,21 @@ struct PorousLayer
 };
 std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
 
-/// The implicit pressure of u-p dynamics (see dynamics.hpp). With the water's equation
+/// The implicit pore pressure of u-p dynamics: docs/theory_column.md (4) to (8). With the water's equation
 ///
 ///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt + L a_base = 0
-///     G_iA = int N_i div N_A,  S_ij = int N_i N_j/Q,  H_ij = int kb grad N_i grad N_j,  L_iA = int kb rho_f grad N_i
-///     N_A
+///     G_iA = int N_i div N_A              S_ij = int N_i N_j / Q
+///     H_ij = int kb grad N_i . grad N_j   L_iA = int kb rho_f grad N_i . N_A
 ///
 /// and the momentum update v+ = v* + D G^T p with a diagonal D, the pressure solves
-///     (3S/(2 dt) + H + (G/2 + L/dt) D G^T) p = S (4p' - p'')/(2 dt) - (G/2 + L/dt) v* - (G/2 - L/dt) v- - L a_base .
-/// The matrix is constant: assembled and factorised once with PETSc (its own LU on one rank, MUMPS on several). Biot's
-/// coefficient is 1 (rigid grains).   tested: tests/fem/water/biot_test.cpp
+///
+///     (3S/(2 dt) + H + (G/2 + L/dt) D G^T) p
+///         = S (4p' - p'')/(2 dt) - (G/2 + L/dt) v* - (G/2 - L/dt) v- - L a_base
+///
+/// p is excess pressure, compression positive, Pa; v in m/s. The matrix is constant: assembled and factorised once by
+/// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
+/// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains).
+/// tested: tests/fem/water/biot_test.cpp
 template <int dim>
 class PressureSystem
 {
