@@ -110,14 +110,4 @@ Motion scaled(const Motion &motion, double factor); ///< all accelerations times
 /// sum.     @param start  s; rounded up to whole intervals   @throws InputError unless start > 0
 /// tested: tests/fem/motion/motion_input_test.cpp
 Motion repeated(const Motion &motion, double start);
-
-/// S_a(T): peak absolute acceleration of oscillators u'' + 2 xi w u' + w^2 u = -a(t), w = 2 pi/T, that start at rest;
-/// the absolute acceleration is -(2 xi w u' + w^2 u). Each step is the exact solution for linear a (Nigam & Jennings
-/// 1969). Steps are at most T/64 long, which misses at most 0.13 % of a peak (1000 steps between two samples at most,
-/// so below T = interval/16 peaks may be missed); one more period of free vibration follows the record.
-/// @param periods  s; 0 gives the peak of the motion   @param damping  fraction xi of the critical one, [0, 1)
-/// @return m/s2, one for each period   @throws InputError for a negative period, a damping outside [0, 1)
-/// cost: samples * max(1, 64 interval/T) steps for each period       tested:
-/// tests/fem/motion/response_spectrum_test.cpp
-std::vector<double> response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping);
 } // namespace isostat
