@@ -30,13 +30,6 @@ struct Pairs
 /// 0 in lanes that do not touch.
 HWY_INLINE V closed(const Pairs &p, V v) { return hn::IfThenElseZero(p.touching, v); }
 
-/// What a law answers: F = fn n + fs on the second grain and M on it, acting at the contact point.
-struct Response
-{
-  V fn;
-  Triple fs, moment;
-};
-
 /// How history turns with its contact: a = n' x n,  s = (dt/2) [n'.(w1 + w2)] n'
 struct Turning
 {
@@ -87,11 +80,15 @@ HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Tripl
 ///     n_components               of its history; 0: no memory. With memory its first three are n', kept by the law
 ///     is_central                 only a normal force: velocities and spins are not read, Energy is not asked for
 ///     normal_force(numbers, pairs) -> V                                        of a central law
-///     response<Energy>(numbers, pairs, history, view, pair) -> Response        of any other; advances its history, and
-///                                with Energy stores what it dissipates in view.sliding, .rolling, .created at `pair`
+///     Contact                    of any other: the pairs, made as Contact(numbers, pairs, history), with
+///         fn                     normal force
+///         shear_force<Energy>(history, view, pair)   fs on the second grain; then history holds n and what else is new
+///         moment<Energy>(history, view, pair)        M on it, both acting at the contact point; with Energy they store
+///                                what they dissipate in view.sliding, .rolling, .created at `pair`
 ///     forgotten(numbers, history, r1 r2, reach) -> V       elastic energy that an opening contact forgets
 ///
-/// all static and HWY_INLINE: the loop and its law become one function.
+/// all HWY_INLINE: the loop and its law become one function. A struct of several triples as a result would go through
+/// memory, which is why a Contact is asked for one after the other.
 template <typename Law, bool Energy, bool Periodic>
 struct Loop
 {
@@ -182,16 +179,18 @@ struct Loop
         p.r2 = hn::Sub(p.reach, p.r1);
         if constexpr (Energy)
           store_released(k, law, pair, h, p.touching, hn::Mul(p.r1, p.r2), p.reach);
-        const Response r = Law::template response<Energy>(law, p, h, k, pair);
+        const typename Law::Contact contact(law, p, h);
+        const Triple fs = contact.template shear_force<Energy>(h, k, pair);
+        const Triple moment = contact.template moment<Energy>(h, k, pair);
 
         // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
         const V half = hn::Set(d, 0.5);
-        const Triple force = madd(p.n, r.fn, r.fs), couple = cross(p.n, r.fs);
+        const Triple force = madd(p.n, contact.fn, fs), couple = cross(p.n, fs);
         if constexpr (Periodic)
           add_virial(k, lane, force, branch);
         add_actions(k.action, k.first + pair, k.target + pair, force,
-                    nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), r.moment),
-                    nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), r.moment));
+                    nmsub(couple, hn::NegMulAdd(half, p.overlap, p.r1), moment),
+                    nmadd(couple, hn::NegMulAdd(half, p.overlap, p.r2), moment));
       }
   }
 

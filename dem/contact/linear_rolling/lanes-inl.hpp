@@ -50,17 +50,6 @@ struct LinearRollingLanes
     return hn::Mul(normal_stiffness(k, p), p.overlap);
   }
 
-  template <bool Energy>
-  static HWY_INLINE Response response(const Numbers &k, const Pairs &p, double *h, const LoopView &sums,
-                                      std::size_t pair)
-  {
-    const V kn = normal_stiffness(k, p), fn = hn::Mul(kn, p.overlap);
-    const Turning turning(p, h, k.half_dt);
-    const Triple fs = shear<Energy>(k, p, turning, kn, fn, h, sums, pair);
-    store3(p.n, h);
-    return {fn, fs, moments<Energy>(k, p, turning, kn, fn, h, sums, pair)};
-  }
-
   /// Elastic energy that an opening contact forgets, J.
   static V forgotten(const Numbers &k, const double *h, V rr, V reach)
   {
@@ -82,80 +71,88 @@ struct LinearRollingLanes
     return hn::Mul(energy, hn::Set(D(), 0.5));
   }
 
-  static HWY_INLINE Mask yielded(const Pairs &p, V factor)
+  struct Contact
   {
-    return hn::And(p.touching, hn::Lt(factor, hn::Set(D(), 1.0)));
-  }
+    const Numbers &k;
+    const Pairs &p;
+    V kn, fn;
+    Turning turning;
 
-  /// v_r = alpha (v2 - v1) - (R1 w1 + R2 w2) x n;  fs <- turned(fs) - ks dt [v_r - (v_r.n) n], |fs| <= mu fn
-  template <bool Energy>
-  static HWY_INLINE Triple shear(const Numbers &k, const Pairs &p, const Turning &turning, V kn, V fn, double *h,
-                                 const LoopView &sums, std::size_t pair)
-  {
-    const D d;
-    const Triple rolling_speed = madd(p.w1, p.r1, scaled(p.w2, p.r2));
-    const V alpha = closed(p, hn::Mul(p.reach, p.inv_distance));
-    const Triple vr = minus_cross(scaled(p.dv, alpha), rolling_speed, p.n);
-    const Triple before = turning.turned(load3(h + at_shear * lanes));
-    const Triple slip_rate = nmadd(p.n, dot(vr, p.n), vr);
-    const Triple trial = nmadd(slip_rate, hn::Mul(kn, hn::Set(d, k.shear_dt)), before);
-    const V factor = return_factor(trial, hn::Mul(fn, hn::Set(d, k.friction)));
-    const Triple fs = scaled(trial, factor);
-    store3(fs, h + at_shear * lanes);
-    if constexpr (Energy)
-      {
-        const V ks = hn::Mul(kn, hn::Set(d, k.stiffness_ratio));
-        hn::StoreU(plastic_work(before, trial, fs, ks, yielded(p, factor)), d, sums.sliding + pair);
-        // fs.(true slip rate - slip rate of the law) dt
-        const Triple mid = scaled(plus(before, fs), hn::Set(d, 0.5));
-        const Triple arm_gap = scaled(cross(plus(p.w1, p.w2), p.n), hn::Mul(p.overlap, hn::Set(d, 0.5)));
-        const Triple gap = nmadd(p.dv, hn::Mul(p.overlap, p.inv_distance), arm_gap);
-        hn::StoreU(closed(p, hn::Mul(dot(mid, gap), hn::Set(d, k.dt))), d, sums.created + pair);
-      }
-    return fs;
-  }
+    HWY_INLINE Contact(const Numbers &numbers, const Pairs &pairs, const double *h)
+        : k(numbers), p(pairs), kn(normal_stiffness(k, p)), fn(hn::Mul(kn, p.overlap)), turning(p, h, k.half_dt)
+    {}
 
-  /// mb <- turned(mb) - kr dt dw_b, |mb| <= rho_r fn;  mt <- turned(mt) - kt dt dw_t;  returns mb + mt
-  template <bool Energy>
-  static HWY_INLINE Triple moments(const Numbers &k, const Pairs &p, const Turning &turning, V kn, V fn, double *h,
-                                   const LoopView &sums, std::size_t pair)
-  {
-    const D d;
-    Triple moment = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    if constexpr (Rolling || Twisting)
-      {
-        const Triple dw = minus(p.w2, p.w1);
-        const V spin_n = dot(dw, p.n), rr_kn = hn::Mul(hn::Mul(p.r1, p.r2), kn);
-        if constexpr (Rolling)
-          {
-            const Triple before = turning.turned(load3(h + at_bending * lanes));
-            const V rate = hn::Mul(rr_kn, hn::Set(d, k.rolling_dt));
-            const Triple trial = nmadd(nmadd(p.n, spin_n, dw), rate, before);
-            const V factor =
-                return_factor(trial, hn::Mul(fn, hn::Mul(hn::Min(p.r1, p.r2), hn::Set(d, k.rolling_limit))));
-            moment = scaled(trial, factor);
-            store3(moment, h + at_bending * lanes);
-            if constexpr (Energy)
-              {
-                const V kr = hn::Mul(rr_kn, hn::Set(d, k.stiffness_ratio * k.rolling_stiffness));
-                hn::StoreU(plastic_work(before, trial, moment, kr, yielded(p, factor)), d, sums.rolling + pair);
-              }
-          }
-        if constexpr (Twisting)
-          {
-            const Triple z = load3(h + at_twisting * lanes);
-            const V rate = hn::Mul(rr_kn, hn::Set(d, k.twisting_dt));
-            const Triple with_tilt = turning.turned_whole(z); // mt is along n'
-            const V turned_by = hn::Mul(rate, spin_n);
-            const Triple mt = {closed(p, hn::NegMulAdd(p.n.x, turned_by, with_tilt.x)),
-                               closed(p, hn::NegMulAdd(p.n.y, turned_by, with_tilt.y)),
-                               closed(p, hn::NegMulAdd(p.n.z, turned_by, with_tilt.z))};
-            store3(mt, h + at_twisting * lanes);
-            moment = Rolling ? plus(moment, mt) : mt;
-          }
-      }
-    return moment;
-  }
+    HWY_INLINE Mask yielded(V factor) const { return hn::And(p.touching, hn::Lt(factor, hn::Set(D(), 1.0))); }
+
+    /// v_r = alpha (v2 - v1) - (R1 w1 + R2 w2) x n;  fs <- turned(fs) - ks dt [v_r - (v_r.n) n], |fs| <= mu fn
+    template <bool Energy>
+    HWY_INLINE Triple shear_force(double *h, const LoopView &sums, std::size_t pair) const
+    {
+      const D d;
+      const Triple rolling_speed = madd(p.w1, p.r1, scaled(p.w2, p.r2));
+      const V alpha = closed(p, hn::Mul(p.reach, p.inv_distance));
+      const Triple vr = minus_cross(scaled(p.dv, alpha), rolling_speed, p.n);
+      const Triple before = turning.turned(load3(h + at_shear * lanes));
+      const Triple slip_rate = nmadd(p.n, dot(vr, p.n), vr);
+      const Triple trial = nmadd(slip_rate, hn::Mul(kn, hn::Set(d, k.shear_dt)), before);
+      const V factor = return_factor(trial, hn::Mul(fn, hn::Set(d, k.friction)));
+      const Triple fs = scaled(trial, factor);
+      store3(fs, h + at_shear * lanes);
+      if constexpr (Energy)
+        {
+          const V ks = hn::Mul(kn, hn::Set(d, k.stiffness_ratio));
+          hn::StoreU(plastic_work(before, trial, fs, ks, yielded(factor)), d, sums.sliding + pair);
+          // fs.(true slip rate - slip rate of the law) dt
+          const Triple mid = scaled(plus(before, fs), hn::Set(d, 0.5));
+          const Triple arm_gap = scaled(cross(plus(p.w1, p.w2), p.n), hn::Mul(p.overlap, hn::Set(d, 0.5)));
+          const Triple gap = nmadd(p.dv, hn::Mul(p.overlap, p.inv_distance), arm_gap);
+          hn::StoreU(closed(p, hn::Mul(dot(mid, gap), hn::Set(d, k.dt))), d, sums.created + pair);
+        }
+      store3(p.n, h);
+      return fs;
+    }
+
+    /// mb <- turned(mb) - kr dt dw_b, |mb| <= rho_r fn;  mt <- turned(mt) - kt dt dw_t;  returns mb + mt
+    template <bool Energy>
+    HWY_INLINE Triple moment(double *h, const LoopView &sums, std::size_t pair) const
+    {
+      const D d;
+      Triple sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+      if constexpr (Rolling || Twisting)
+        {
+          const Triple dw = minus(p.w2, p.w1);
+          const V spin_n = dot(dw, p.n), rr_kn = hn::Mul(hn::Mul(p.r1, p.r2), kn);
+          if constexpr (Rolling)
+            {
+              const Triple before = turning.turned(load3(h + at_bending * lanes));
+              const V rate = hn::Mul(rr_kn, hn::Set(d, k.rolling_dt));
+              const Triple trial = nmadd(nmadd(p.n, spin_n, dw), rate, before);
+              const V factor =
+                  return_factor(trial, hn::Mul(fn, hn::Mul(hn::Min(p.r1, p.r2), hn::Set(d, k.rolling_limit))));
+              sum = scaled(trial, factor);
+              store3(sum, h + at_bending * lanes);
+              if constexpr (Energy)
+                {
+                  const V kr = hn::Mul(rr_kn, hn::Set(d, k.stiffness_ratio * k.rolling_stiffness));
+                  hn::StoreU(plastic_work(before, trial, sum, kr, yielded(factor)), d, sums.rolling + pair);
+                }
+            }
+          if constexpr (Twisting)
+            {
+              const Triple z = load3(h + at_twisting * lanes);
+              const V rate = hn::Mul(rr_kn, hn::Set(d, k.twisting_dt));
+              const Triple with_tilt = turning.turned_whole(z); // mt is along n'
+              const V turned_by = hn::Mul(rate, spin_n);
+              const Triple mt = {closed(p, hn::NegMulAdd(p.n.x, turned_by, with_tilt.x)),
+                                 closed(p, hn::NegMulAdd(p.n.y, turned_by, with_tilt.y)),
+                                 closed(p, hn::NegMulAdd(p.n.z, turned_by, with_tilt.z))};
+              store3(mt, h + at_twisting * lanes);
+              sum = Rolling ? plus(sum, mt) : mt;
+            }
+        }
+      return sum;
+    }
+  };
 };
 } // namespace HWY_NAMESPACE
 } // namespace isostat
