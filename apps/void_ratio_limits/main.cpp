@@ -137,8 +137,9 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
   row("e_min", dense.void_ratio, dense.void_ratio_inside, 0.568, 0.677);
   row("e_max", loose.void_ratio, loose.void_ratio_inside, 0.841, 1.054);
   text += fmt::format("inside: two d50 ({:.3f} mm) away from walls and surface\n", 2e3 * loose.state.grains.d50());
-  text += fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n",
-                      dense.state.grains.n_grains(), scene.specimen.pressure / 1e3, scene.contact->young, dense.seconds);
+  text +=
+      fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n", dense.state.grains.n_grains(),
+                  scene.specimen.pressure / 1e3, scene.contact->young, dense.seconds);
   text += fmt::format("e_max: {:.2f} deg, fastest impact about {:.2f} m/s, deposit {:.2f} mm high; {:.0f} s\n",
                       (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0.0, loose.fall_speed,
                       1e3 * loose.height, loose_seconds);

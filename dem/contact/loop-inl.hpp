@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The loop over contacts for any law: records of grains in, forces, torques, virial and energy sums out. Included once
 // per instruction set by the SIMD source of a law (hence no #pragma once).
+// tested: tests/dem/contact/loop_test.cpp
 #if defined(ISOSTAT_LOOP_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOSTAT_LOOP_INL_HPP
 #undef ISOSTAT_LOOP_INL_HPP

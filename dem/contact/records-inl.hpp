@@ -2,7 +2,7 @@
 // Grain records to vectors of lanes and back. Records are four numbers [x y z w], loaded whole, subtracted as records
 // where only the difference is wanted, and transposed in registers; `action` is [F 0 T 0]. Included once per
 // instruction set by SIMD sources (hence no #pragma once).
-// tested: tests/dem/contact/kernel_test.cpp
+// tested: tests/dem/contact/loop_test.cpp
 #if defined(ISOSTAT_RECORDS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOSTAT_RECORDS_INL_HPP
 #undef ISOSTAT_RECORDS_INL_HPP

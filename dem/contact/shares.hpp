@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/dem/contact/kernel_test.cpp (chunks add up), tests/verification/threads_test.cpp
+// tested: tests/dem/contact/loop_test.cpp (chunks add up), tests/verification/threads_test.cpp
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Vector algebra over lanes: triples of vectors, reciprocals. Included once per instruction set by SIMD sources (hence
 // no #pragma once).
-// tested: tests/dem/contact/kernel_test.cpp
+// tested: tests/dem/contact/loop_test.cpp
 #if defined(ISOSTAT_TRIPLE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOSTAT_TRIPLE_INL_HPP
 #undef ISOSTAT_TRIPLE_INL_HPP

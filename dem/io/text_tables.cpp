@@ -226,8 +226,8 @@ Snapshot import_tables(const fs::path &path, const Law &law, double density)
   return import_spheres(path, law, density);
 }
 
-Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, const std::string &tag,
-                            const Law &law, double density)
+Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, const std::string &tag, const Law &law,
+                            double density)
 {
   check_density(density);
   Snapshot snapshot;

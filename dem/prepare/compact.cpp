@@ -53,8 +53,7 @@ Stage servo_stage(StageKind kind, double pressure, double balance)
 }
 } // namespace
 
-Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen,
-                 RunObserver &observer)
+Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer)
 {
   law->friction = friction;
   Snapshot start;

@@ -13,8 +13,7 @@ namespace isostat
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force
 /// cost: some 60,000 steps at 10,000 grains
-Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen,
-                 RunObserver &observer);
+Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer);
 
 /// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
 /// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5. A periodic packing is then stopped:
@@ -22,6 +21,5 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpe
 /// A loose packing that loses its pressure while it is held is brought back to it, up to five times.
 /// @param law  with the friction of shearing
 /// @throws RunFailure  it does not keep its pressure
-Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen,
-                   RunObserver &observer);
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen, RunObserver &observer);
 } // namespace isostat

@@ -368,8 +368,7 @@ TEST(Convergence, YieldingPackingIsOfFirstOrder)
   // Contacts change at steps, not between them. The return to the friction limit is a backward Euler step in the
   // direction of slip; a contact that closes counts the slip of its whole first step; one that opens drops its twisting
   // moment, which has no limit, at a step. All are of first order, and each event has an error of its own: orders
-  // scatter, their mean over the series is what is asked for. The errors are small: 1e-3 of the way at the longest
-  // step.
+  // scatter, their mean over the series is what is asked for.
   for (const double strain : {1e-5, 1e-4})
     {
       const PackingSeries s =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law over lanes: contact_force() of law.cpp, as many pairs at once as there are lanes. Included once per
 // instruction set (hence no #pragma once).
+// tested: tests/dem/contact/loop_test.cpp
 #if defined(ISOSTAT_LINEAR_ROLLING_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOSTAT_LINEAR_ROLLING_LANES_INL_HPP
 #undef ISOSTAT_LINEAR_ROLLING_LANES_INL_HPP
