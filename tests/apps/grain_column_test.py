@@ -175,14 +175,14 @@ class Rest(GrainColumnTest):
         rows, steps = self.rest(*settings(motion__0__amplitude="1e-6 g"))
         self.assertGreater(steps, 0.9)
         for name in ("surface_ux", "surface_uy"):
-            self.assertLess(np.abs(rows[name]).max(), 2e-7, name)  # m; 4e-8 measured
+            self.assert_below(np.abs(rows[name]).max(), 2e-7, f"m, left of unbalanced forces; 4e-8 measured ({name})")
         for name in ("d0_sigma_v", "d1_sigma_v"):
-            self.assertLess(np.ptp(rows[name]), 2e-4 * rows[name][0], name)  # 7e-5 measured
+            self.assert_below(np.ptp(rows[name]), 2e-4 * rows[name][0], f"as above; 7e-5 measured ({name})")
         for name in ("d0_tau_xz", "d1_tau_xz"):
             self.assertLess(np.ptp(rows[name]), 3, name)  # Pa, of 13 and 30 kPa vertical stress; 0.5 measured
         late = rows["time"] > 25
         for name in ("surface_ux", "surface_uy"):
-            self.assertLess(np.ptp(rows[name][late]), 3e-8, name)
+            self.assert_below(np.ptp(rows[name][late]), 3e-8, f"m, what still creeps ({name})")
 
 
 class Failures(GrainColumnTest):
@@ -342,7 +342,7 @@ class Drained(GrainColumnTest):
         settled = rows["settlement"]
         self.assertGreater(settled[-1], 1e-3)
         self.assertLess(np.ptp(settled[after]), 0.02 * settled[-1])
-        self.assertLess(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max())
+        self.assert_below(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max(), "round-off of the work")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include "tests/dem/contact/random_cloud.hpp"
 #include "tests/dem/contact/soft_spheres/law.hpp"
 #include "tests/support/instruction_sets.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -64,7 +65,8 @@ TEST(OwnLaw, LoopGivesItsEquationOnEveryInstructionSet)
       AlignedVector<double> action(8 * list.n_slots(), 0.0);
       add_contact_forces(law, cloud.packing, 1e-8, list, action.data());
       for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_LT((Vec3(&action[8 * i]) - expected[i]).norm(), 1e-11 * (1 + expected[i].norm()))
+        EXPECT_BELOW_BECAUSE((Vec3(&action[8 * i]) - expected[i]).norm(), 1e-11 * (1 + expected[i].norm()),
+                             "round-off of overlaps, 1e-16 of a position over 1e-5 of it")
             << hwy::TargetName(set);
     }
   hwy::SetSupportedTargetsForTest(0);
@@ -81,8 +83,8 @@ TEST(OwnLaw, TwoGrainsBounceBackAsFastAsTheyCame)
       parted = assembly.snapshot().contacts.empty() && assembly.packing().linear_velocity(0)[0] < 0;
       ASSERT_LT(assembly.step(), 100000u);
     }
-  // leapfrog: an impact of some 60 steps gives the speed back to the square of a step's share of it
-  EXPECT_NEAR(assembly.packing().linear_velocity(0)[0], -0.1, 1e-3 * 0.1);
+  EXPECT_NEAR_BECAUSE(assembly.packing().linear_velocity(0)[0], -0.1, 1e-3 * 0.1,
+                      "leapfrog: the square of a step's share of the impact, which takes some 60");
   EXPECT_DOUBLE_EQ(assembly.packing().linear_velocity(1)[0], -assembly.packing().linear_velocity(0)[0]);
   EXPECT_EQ(assembly.packing().angular_velocity(0), Vec3::Zero());
 }
