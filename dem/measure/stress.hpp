@@ -11,7 +11,7 @@ struct StressInvariants
   double q = 0; ///< q  = syy - (sxx + szz)/2; y is the axial direction, q > 0 in triaxial compression
 };
 
-/// p' and q (DESIGN 2) of the principal stresses along x, y, z.
+/// p' and q (docs/theory.md, section 1) of the principal stresses along x, y, z.
 /// @param sxx, syy, szz  Pa, **tension positive** as everywhere inside     @return compression positive
 inline StressInvariants invariants(double sxx, double syy, double szz)
 {

@@ -15,7 +15,7 @@ namespace isostat
 /// tested: tests/dem/measure/unbalanced_test.cpp (row in balance and not, shear, floating grain, no contacts)
 double unbalanced_force(const Snapshot &snapshot);
 
-/// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004); DESIGN 4
+/// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004)
 /// @param strain_rate  1/s, its magnitude counts     @param d50  m     @param density  of the grains, kg/m3
 /// @param pressure  p', Pa, compression positive
 /// @return [-]; infinite where p' <= 0 and the packing is strained: nothing is quasi-static without pressure

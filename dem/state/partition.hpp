@@ -7,7 +7,7 @@
 namespace isostat
 {
 /// Fixed division of the grains into chunks of storage order, the unit of work of a thread. It depends on the number of
-/// grains alone, so that sums over pairs have one order whatever the number of threads (DESIGN 9). Grains are stored
+/// grains alone, so that sums over pairs have one order whatever the number of threads. Grains are stored
 /// along a space-filling curve: a chunk is a compact region, and few pairs reach into another one.
 struct Partition
 {

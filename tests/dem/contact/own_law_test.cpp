@@ -5,11 +5,13 @@
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/motion/critical_step.hpp"
+#include "dem/rve/rve.hpp"
 #include "dem/scene/scene.hpp"
 #include "tests/dem/contact/random_cloud.hpp"
 #include "tests/dem/contact/soft_spheres/law.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/specimens.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -125,6 +127,17 @@ TEST(OwnLaw, IsAWordOfTheScene)
   EXPECT_THAT(to_toml(usual), testing::Not(testing::HasSubstr("law = ")));
   EXPECT_ANY_THROW(parse_scene(head + "softness = 0.25\n", "scene.toml"));
   EXPECT_ANY_THROW(parse_scene(head + "law = \"soft-spheres\"\nstiffness_ratio = 0.3\n", "scene.toml"));
+}
+
+TEST(OwnLaw, BytesOfAnElementNameIt)
+{
+  Snapshot specimen = test::periodic_specimen(500, 10);
+  specimen.law = SoftSpheres();
+  specimen.law.as<SoftSpheres>().softness = 0.7;
+  const Rve element(specimen, {});
+  const Rve again = Rve::unpack(element.pack(), {});
+  EXPECT_EQ(again.assembly().law(), specimen.law);
+  EXPECT_EQ(again.stress(), element.stress());
 }
 
 using OwnLawFiles = TemporaryFolder;
