@@ -69,9 +69,9 @@ INNER = {
     },
     "coupling": {
         "placement": set(),
+        "element": set(),
         "in_situ": set(),
-        "element": {"in_situ"},
-        "batch": {"placement", "in_situ", "element"},
+        "batch": {"element", "in_situ", "placement"},
     },
     "apps": {
         "common": set(),

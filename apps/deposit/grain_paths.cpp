@@ -33,8 +33,6 @@ void GrainPaths::write_start(std::size_t k) const
   start.depth = depths_[k];
   start.packing = element->pack();
   start.settings = grains_.element_settings();
-  start.undrained = grains_.settings().undrained;
-  start.halvings = grains_.settings().halvings;
   write_strain_record_start(path_folder(folder_, k), start);
 }
 

@@ -43,7 +43,7 @@ std::string scene_text(const Options &options, const RveSettings &settings)
 void run(const Options &options)
 {
   const StrainRecord record = read_strain_record(options.record);
-  const RveSettings settings = options.changes.applied_to(record.settings);
+  const RveSettings settings = options.changes.applied_to(record.settings.rve);
   const fs::path folder = options.output.empty() ? fs::path(options.record) / "replay" : fs::path(options.output);
   const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
   check_result_folder(folder, use);

@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "coupling/element/axes.hpp"
 #include "coupling/element/rve_element.hpp"
-#include "coupling/in_situ/in_situ.hpp"
 #include "dem/measure/summary.hpp"
 
 #include <cmath>
@@ -97,8 +97,9 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
                     std::size_t every, const std::function<void(std::size_t)> &tell)
 {
   const Stopwatch watch;
-  RveElement element(Rve::unpack(record.packing, changes.applied_to(record.settings)), record.undrained,
-                     record.halvings);
+  ElementSettings settings = record.settings;
+  settings.rve = changes.applied_to(settings.rve);
+  RveElement element(Rve::unpack(record.packing, settings.rve), settings);
   Files files(folder);
   ReplayResult result;
   const Stress start = to_stress(element.rve().stress());

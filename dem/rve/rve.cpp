@@ -2,13 +2,13 @@
 #include "dem/rve/rve.hpp"
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace
 constexpr double rate_interval = 50;
 constexpr std::uint64_t servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
-constexpr int settled = 3;                          ///< looks in a row with stresses on target
+constexpr int settled = 3;                          ///< checks in a row with stresses on target
 constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
@@ -36,7 +36,7 @@ double strain_measure(const Mat3 &gradient)
 const Snapshot &periodic(const Snapshot &specimen)
 {
   if (!specimen.cell)
-    throw InputError("a representative volume element wants a periodic packing, but this one stands in a box. Prepare "
+    throw InputError("a representative volume element needs a periodic packing, but this one is in a box. Prepare "
                      "it with specimen.domain = \"periodic-cell\".");
   return specimen;
 }
@@ -157,7 +157,7 @@ void Rve::roll_back()
   const std::vector<Mat3> done = std::move(since_safe_);
   restore(safe);
   for (const Mat3 &own_gradient : done)
-    run_strain(own_gradient); // as before, to the bit
+    run_strain(own_gradient); // bitwise as before
   since_safe_ = done;
 }
 
@@ -167,11 +167,11 @@ RveResponse Rve::guarded(double size, const Run &run)
   RveResponse response;
   const double before = assembly_.stress().trace() / 3;
   const std::uint64_t steps = cost_.steps;
-  const auto begin = std::chrono::steady_clock::now();
+  const TimedScope timed(cost_.seconds);
   try
     {
       if (!std::isfinite(size))
-        response.reason = "the increment asked for is not a number";
+        response.reason = "the increment is not a number";
       else if (!(size <= settings_.max_increment))
         response.reason =
             fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
@@ -189,7 +189,6 @@ RveResponse Rve::guarded(double size, const Run &run)
       response.outcome = RveOutcome::rejected;
       cost_.steps = steps;
     }
-  cost_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ++cost_.advances;
   response.steps = cost_.steps - steps;
   response.stress = stress();
@@ -219,12 +218,12 @@ RveResponse Rve::advance(const MixedIncrement &increment)
 {
   return guarded(increment.gradient.norm(), [&] {
     if (increment.controlled != increment.controlled.transpose())
-      throw RunFailure("stress control must be asked for symmetrically: controlled(i,j) = controlled(j,i)");
+      throw RunFailure("stress control must be symmetric: controlled(i,j) = controlled(j,i)");
     if (!(increment.stress.allFinite() && increment.tolerance > 0))
-      throw RunFailure("the stress asked for is not a number, or its tolerance is not positive");
+      throw RunFailure("the target stress is not a number, or its tolerance is not positive");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
-          "mixed control works along the axes of the specimen: it wants an element whose frame is identity");
+          "mixed control works along the axes of the specimen: it needs an element whose frame is identity");
     run_mixed(increment);
     keep_safe();
   });
