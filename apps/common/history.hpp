@@ -2,7 +2,7 @@
 // tested: tests/regression/regression_test.py
 #pragma once
 #include "base/record/recorder.hpp"
-#include "dem/drive/programme.hpp"
+#include "dem/scene/scene.hpp"
 #include "dem/measure/summary.hpp"
 
 namespace isostat

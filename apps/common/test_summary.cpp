@@ -36,10 +36,13 @@ CsvTable read_history(const std::filesystem::path &folder, bool energy)
 
 double liquefaction_ratio(const Scene &scene)
 {
-  for (const Stage &s : scene.stages)
-    if (is_shear(s.kind))
-      return s.liquefaction_ratio;
-  return 0.01;
+  for (const Stage &stage : scene.stages)
+    if (behaviour(stage).shears())
+      {
+        const auto *undrained = as<ConstantVolume>(stage);
+        return undrained ? undrained->liquefaction_ratio : UndrainedMonotonic{}.liquefaction_ratio;
+      }
+  return UndrainedMonotonic{}.liquefaction_ratio;
 }
 
 /// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the
@@ -74,7 +77,7 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
   summary.min_p = summary.p0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
-      if (!is_shear(scene.stages[static_cast<std::size_t>(history(row, stage))].kind))
+      if (!behaviour(scene.stages[static_cast<std::size_t>(history(row, stage))]).shears())
         continue;
       if (!started)
         {
@@ -96,14 +99,19 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
     }
 }
 
-bool any_stage(const Scene &scene, bool (*is)(StageKind))
+bool is_cyclic(const Stage &stage) { return as<CyclicConstantVolume>(stage); }
+
+bool shears_in(const Stage &stage, const ShearMode &mode)
 {
-  return std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage &s) { return is(s.kind); });
+  const auto *shear = as<ShearStage>(stage);
+  return shear && shear->mode() == mode;
 }
+bool is_axial(const Stage &stage) { return shears_in(stage, triaxial_mode); }
+bool is_simple_shear(const Stage &stage) { return shears_in(stage, simple_shear_mode); }
 
 std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
 {
-  if (!any_stage(scene, is_simple_shear))
+  if (std::none_of(scene.stages.begin(), scene.stages.end(), is_simple_shear))
     return std::nullopt;
   enum
   {
@@ -115,11 +123,11 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
   const CsvTable history(folder / "history.csv", {"stage (-)", "gamma_xy (-)", "tau_xy (Pa)", "sigma_y (Pa)"});
   ShearExtremes shear;
   for (const Stage &s : scene.stages)
-    if (is_simple_shear(s.kind) && is_cyclic(s.kind))
-      shear.requested_ratio = std::max(shear.requested_ratio, s.stress_ratio);
+    if (const auto *cyclic = as<UndrainedCyclicSimpleShear>(s))
+      shear.requested_ratio = std::max(shear.requested_ratio, cyclic->stress_ratio);
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
-      if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))].kind))
+      if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))]))
         continue;
       if (shear.sigma_v0 == 0)
         shear.sigma_v0 = history(row, sigma_y);
@@ -187,18 +195,18 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.void_ratio = number("void_ratio", 0);
   summary.relative_density = number("relative_density", 0);
   summary.preparation_friction = number("preparation_friction_deg", -1);
-  summary.p0 = state.p0;
+  summary.p0 = state.path.p0();
   summary.seconds = seconds;
-  summary.reversals = state.reversals;
-  summary.worst_overshoot = state.worst_overshoot;
-  summary.cyclic = any_stage(scene, is_cyclic);
-  summary.axial = any_stage(scene, [](StageKind kind) { return is_shear(kind) && !is_simple_shear(kind); });
+  summary.reversals = static_cast<double>(state.undrained.reversals);
+  summary.worst_overshoot = state.undrained.worst_overshoot;
+  summary.cyclic = std::any_of(scene.stages.begin(), scene.stages.end(), is_cyclic);
+  summary.axial = std::any_of(scene.stages.begin(), scene.stages.end(), is_axial);
   summary.shear = shear_extremes(folder, scene);
-  summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
-  summary.strain_before = state.max_strain_before;
+  summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
+  summary.strain_before = state.undrained.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
   add_path(history, scene, summary);
-  add_recoveries(history, liquefaction_ratio(scene) * state.p0, summary);
+  add_recoveries(history, liquefaction_ratio(scene) * state.path.p0(), summary);
   if (scene.output.energy)
     summary.energy_residual = energy_residual(history);
   return summary;

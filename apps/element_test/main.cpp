@@ -48,8 +48,9 @@ Run resume(const Scene &scene, const fs::path &folder)
                     "of --validate). Resume with the scene and --set values of the first run.",
                     folder.string(), (folder / "scene.toml").string()));
   run.assembly = std::make_unique<Assembly>(run.resumed->state);
-  restore(*run.resumed, *run.assembly, run.state);
-  run.specimen = specimen_numbers(*run.resumed);
+  restore(*run.resumed, *run.assembly);
+  run.state = run.resumed->drive;
+  run.specimen = run.resumed->specimen;
   return run;
 }
 
@@ -90,8 +91,7 @@ void run_test(const SceneOptions &options)
   RunOutcome outcome = RunOutcome::finished;
   try
     {
-      outcome =
-          run_programme(scene.motion, scene.specimen, scene.output, scene.stages, *run.assembly, run.state, output);
+      outcome = run_programme(scene.programme(), *run.assembly, run.state, output);
     }
   catch (const RunFailure &failure)
     {

@@ -83,12 +83,12 @@ std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const st
 {
   const Scene &scene = campaign.shared();
   const std::vector<RunResult> results = campaign.results();
-  std::string text = fmt::format(
-      "\n{}\n  CSR                      {}\n  liquefied                p'/p0' < {:g}; at most {} cycles\n  cycles      "
-      "  "
-      "           half the reversals; means over seeds are geometric, - if a run has none\n",
-      scene.title, campaign.simple_shear() ? "tau_amp / sigma'_v0, simple shear" : "q_amp / (2 p0'), triaxial",
-      scene.stages[campaign.stage()].liquefaction_ratio, plan.cycles);
+  std::string text = fmt::format("\n{}\n  CSR                      {}, {}\n  liquefied                p'/p0' < {:g}; "
+                                 "at most {} cycles\n  cycles      "
+                                 "  "
+                                 "           half the reversals; means over seeds are geometric, - if a run has none\n",
+                                 scene.title, campaign.cyclic().stress_ratio_text(), campaign.cyclic().mode().name,
+                                 campaign.cyclic().liquefaction_ratio, plan.cycles);
   text += table(results, plan.ratios) + "\n" + fit_text(law);
   double seconds = 0;
   std::vector<double> e;
@@ -121,8 +121,7 @@ std::string to_json(const Campaign &campaign, const CampaignPlan &plan, const st
   return fmt::format(
       "{{\n  \"title\": \"{}\",\n  \"test\": \"{}\",\n  \"liquefaction_ratio\": {:g},\n  \"cycles\": {},\n  "
       "\"fit\": {}\n}}\n",
-      title, campaign.simple_shear() ? "simple shear" : "triaxial",
-      campaign.shared().stages[campaign.stage()].liquefaction_ratio, plan.cycles, fit);
+      title, campaign.cyclic().mode().name, campaign.cyclic().liquefaction_ratio, plan.cycles, fit);
 }
 } // namespace
 

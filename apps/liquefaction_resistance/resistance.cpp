@@ -81,10 +81,9 @@ std::string cell(const std::optional<double> &value, const char *format)
 RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage)
 {
   RunResult result;
-  const Stage &cyclic = scene.stages[stage];
-  const bool simple_shear = is_simple_shear(cyclic.kind);
+  const auto &cyclic = *as<CyclicConstantVolume>(scene.stages[stage]);
   const CsvTable history(folder / "history.csv",
-                         {"stage (-)", "reversals (-)", "liquefied (-)", simple_shear ? "gamma_xy (-)" : "eps_y (-)"});
+                         {"stage (-)", "reversals (-)", "liquefied (-)", cyclic.mode().strain_column});
   Criteria criteria(result);
   double maximum = 0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
@@ -92,7 +91,7 @@ RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std:
       {
         maximum = std::max(maximum, std::abs(history(row, strain)));
         criteria.look(history(row, reversals), history(row, liquefied) != 0,
-                      strain_factor(cyclic.kind) * history(row, strain));
+                      cyclic.mode().gamma_factor * history(row, strain));
       }
   result.status = result.to_liquefaction         ? RunStatus::liquefied
                   : maximum >= cyclic.max_strain ? RunStatus::strain

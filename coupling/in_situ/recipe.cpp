@@ -9,7 +9,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t recipe_version = 1;
+constexpr std::uint64_t recipe_version = 2;
 
 std::uint64_t hash_of(const Snapshot &s)
 {
@@ -42,13 +42,10 @@ std::uint64_t hash_of(const Snapshot &s)
 
 std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &target, const InSituSettings &s)
 {
-  const MotionSpec &m = s.motion;
-  const auto optional = [](const std::optional<double> &x) { return x ? fmt::format("{:.17g}", *x) : "no"; };
   return fmt::format("in situ {}; specimen {:016x}; stress {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}; path {}; "
-                     "tolerance {:.17g}; steps {}; motion {:.17g} {} {} {:.17g} {:.17g} {:.17g} {:.17g} {}",
+                     "tolerance {:.17g}; steps {}; motion {}",
                      recipe_version, hash_of(specimen), target(0, 0), target(1, 1), target(2, 2), target(1, 2),
-                     target(0, 2), target(0, 1), static_cast<int>(s.path), s.tolerance, s.max_steps, m.damping,
-                     optional(m.strain_rate), optional(m.inertial_number), m.quasi_static_tolerance, m.rate_floor,
-                     m.rate_ceiling, m.time_step_safety, optional(m.time_step));
+                     target(0, 2), target(0, 1), static_cast<int>(s.path), s.tolerance, s.max_steps,
+                     recipe_text(s.motion));
 }
 } // namespace isostat

@@ -16,8 +16,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double rate_interval = 50;
-constexpr std::uint64_t servo_interval = 20;
+constexpr std::uint64_t rate_interval = 50, servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
 constexpr int settled = 3;                          ///< checks in a row with stresses on target
 constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
@@ -61,8 +60,8 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   settings_.check();
   assembly_.damping = settings_.motion.damping;
   assembly_.threads = 1; // a host runs elements side by side
-  drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
-  update_time_step(settings_.motion, true, assembly_, drive_);
+  drive_.pace.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
+  update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
   keep_safe();
@@ -92,15 +91,15 @@ double Rve::saturated_density(double water) const
 
 void Rve::review()
 {
-  if (std::fmod(drive_.steps_in_stage, rate_interval) == 0)
-    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_);
-  update_time_step(settings_.motion, true, assembly_, drive_);
+  if (drive_.steps % rate_interval == 0)
+    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_.p0, drive_.pace);
+  update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
 }
 
 void Rve::step(const Mat3 &own_gradient)
 {
   assembly_.deform(own_gradient);
-  drive_.steps_in_stage += 1;
+  ++drive_.steps;
   ++cost_.steps;
   assembly_.compute_forces();
 }
@@ -112,10 +111,10 @@ void Rve::run_strain(const Mat3 &own_gradient)
   for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
       review();
-      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), minimum);
+      const double whole = std::max(left * size / (drive_.pace.rate * assembly_.time_step), minimum);
       if (!(whole < static_cast<double>(settings_.max_steps)))
         throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
-                                     drive_.rate, whole));
+                                     drive_.pace.rate, whole));
       const double part = left / std::max(1.0, std::ceil(whole));
       last = part == left;
       left -= part;
@@ -130,8 +129,8 @@ void Rve::run_mixed(const MixedIncrement &own)
   const Mat3 prescribed = own.gradient - Mat3(symmetric.array() * free);
   const double size = strain_measure(prescribed);
   double left = prescribed.isZero(0) ? 0 : 1;
-  drive_.servo_step.setZero();
-  drive_.servo_shear.setZero();
+  drive_.servo.step.setZero();
+  drive_.servo.shear.setZero();
   int on_target = 0;
   for (std::uint64_t n = 0;; ++n)
     {
@@ -145,9 +144,10 @@ void Rve::run_mixed(const MixedIncrement &own)
       if (n >= settings_.max_steps)
         throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
       const double part =
-          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.rate * assembly_.time_step)));
+          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.time_step)));
       left = part == left ? 0 : left - part;
-      step(part * prescribed + stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.rate, drive_));
+      step(part * prescribed +
+           stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.pace.rate, drive_.steps, drive_.servo));
     }
 }
 
@@ -193,7 +193,7 @@ RveResponse Rve::guarded(double size, const Run &run)
   response.steps = cost_.steps - steps;
   response.stress = stress();
   response.mean_stress_change = assembly_.stress().trace() / 3 - before;
-  response.indicator = drive_.indicator;
+  response.indicator = drive_.pace.indicator;
   return response;
 }
 

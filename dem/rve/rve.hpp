@@ -2,8 +2,8 @@
 #pragma once
 #include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
+#include "dem/drive/motion_spec.hpp"
 #include "dem/measure/stiffness.hpp"
-#include "dem/scene/scene.hpp"
 
 #include <span>
 #include <string>
@@ -60,12 +60,28 @@ struct RveCost
   double seconds = 0; ///< wall clock in advance() and undrained()
 };
 
+/// What the rate control and the servo of an element remember.
+struct RveDrive
+{
+  Pace pace;
+  ServoState servo;
+  double p0 = 0;           ///< mean effective stress it was made with, Pa
+  std::uint64_t steps = 0; ///< time steps since then: what the intervals of control and servo count from
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[pace_, servo_, p0_, steps_] = self;
+    f("pace", pace_), f("servo", servo_), f("p0", p0_), f("steps", steps_);
+  }
+};
+
 /// The complete state of an element. Of the size of 15 numbers a grain and 13 a contact.
 struct RveState
 {
   AssemblyState grains;
-  DriveState drive;
-  std::size_t bytes() const { return grains.bytes() + sizeof(DriveState); }
+  RveDrive drive;
+  std::size_t bytes() const { return grains.bytes() + sizeof(RveDrive); }
 };
 
 /// Representative volume element: a periodic packing as a material point, the only door through which others (finite
@@ -135,7 +151,7 @@ private:
 
   RveSettings settings_;
   Assembly assembly_;
-  DriveState drive_;
+  RveDrive drive_;
   RveCost cost_;
   /// State before a failed increment: a copy made every 500 steps, and the strains since, which are run again.
   RveState safe_;

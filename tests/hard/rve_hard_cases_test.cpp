@@ -2,6 +2,7 @@
 // The states and inputs in which representative volume elements break. Each test asserts what must come out: which
 // increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
 #include "base/error.hpp"
+#include "base/fields.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/periodic.hpp"
@@ -87,15 +88,22 @@ bool same(const RveState &a, const RveState &b)
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) == 0;
   };
   const AssemblyState &g = a.grains, &h = b.grains;
-  std::vector<double> drive_a, drive_b;
-  DriveState da = a.drive, db = b.drive;
-  da.for_each([&](const std::string &, double &value) { drive_a.push_back(value); });
-  db.for_each([&](const std::string &, double &value) { drive_b.push_back(value); });
-  return bits(g.grains, h.grains) && g.pairs == h.pairs && bits(g.history, h.history) && bits(drive_a, drive_b) &&
-         g.cell.edges == h.cell.edges && g.cell.deformation == h.cell.deformation &&
-         g.cell.rotation == h.cell.rotation && g.cell.strain_step == h.cell.strain_step &&
-         g.cell.volume_strain == h.cell.volume_strain && g.virial == h.virial && g.time == h.time &&
-         g.time_step == h.time_step && g.step == h.step;
+  const auto drive = [](const RveDrive &state) {
+    std::vector<double> numbers;
+    const auto note = [&](const auto &field) {
+      if constexpr (std::is_same_v<decltype(field), const Vec3 &>)
+        numbers.insert(numbers.end(), field.begin(), field.end());
+      else
+        numbers.push_back(static_cast<double>(field));
+    };
+    for_each_leaf(state, note);
+    return numbers;
+  };
+  return bits(g.grains, h.grains) && g.pairs == h.pairs && bits(g.history, h.history) &&
+         bits(drive(a.drive), drive(b.drive)) && g.cell.edges == h.cell.edges &&
+         g.cell.deformation == h.cell.deformation && g.cell.rotation == h.cell.rotation &&
+         g.cell.strain_step == h.cell.strain_step && g.cell.volume_strain == h.cell.volume_strain &&
+         g.virial == h.virial && g.time == h.time && g.time_step == h.time_step && g.step == h.step;
 }
 
 /// A refused increment: says why, changes nothing, and the element goes on as one that was never asked.

@@ -52,8 +52,8 @@ void expect_same_bits(const RveState &a, const RveState &b)
   EXPECT_EQ(a.grains.cell.rotation, b.grains.cell.rotation);
   EXPECT_EQ(a.grains.step, b.grains.step);
   EXPECT_EQ(a.grains.time, b.grains.time);
-  EXPECT_EQ(a.drive.rate, b.drive.rate);
-  EXPECT_EQ(a.drive.steps_in_stage, b.drive.steps_in_stage);
+  EXPECT_EQ(a.drive.pace.rate, b.drive.pace.rate);
+  EXPECT_EQ(a.drive.steps, b.drive.steps);
 }
 } // namespace
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ranges and reasons that many keys share.
+#pragma once
+#include "base/scene/schema.hpp"
+
+namespace isostat::ranges
+{
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr Range positive{0, infinity, true};
+inline constexpr Range fraction{0, 1, true, true};      ///< (0, 1)
+inline constexpr Range to_one{0, 1, true, false};       ///< (0, 1]
+inline constexpr Range to_ten{0, 10, true, false};      ///< (0, 10]
+inline constexpr Range right_angle{0, 90, false, true}; ///< degrees
+inline constexpr const char *because_tan = "because tan() is used";
+} // namespace isostat::ranges
