@@ -72,6 +72,7 @@ INNER = {
         "in_situ": set(),
         "element": {"in_situ"},
         "batch": {"placement", "in_situ", "element"},
+        "scene": {"batch", "in_situ"},
     },
     "apps": {
         "common": set(),

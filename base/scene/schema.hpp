@@ -44,6 +44,24 @@ struct Range
   bool operator==(const Range &) const = default;
 };
 
+/// The ranges that most keys have.
+namespace ranges
+{
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr Range positive{0, infinity, true};
+inline constexpr Range not_negative{0, infinity};
+inline constexpr Range fraction{0, 1, true, true}; ///< (0, 1)
+inline constexpr Range to_one{0, 1, true, false};  ///< (0, 1]
+inline constexpr Range counts{1, 1e6};
+} // namespace ranges
+
+/// Of Key::kinds.
+template <class Kind>
+constexpr unsigned kind_bit(Kind kind)
+{
+  return 1u << static_cast<unsigned>(kind);
+}
+
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
 struct Key
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "coupling/batch/exchange.hpp"
+#include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/element/rve_element.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 #include "fem/material/material.hpp"
@@ -12,25 +13,6 @@
 
 namespace isostat
 {
-/// How a material of grains is run.
-struct RveMaterialSettings
-{
-  std::filesystem::path library; ///< specimens of the sand, made by the program specimen_library
-  std::filesystem::path cache;   ///< in-situ states, kept for the next start; empty: none are kept
-  InSituSettings in_situ;
-  MotionSpec motion;            ///< of the elements, as in the element tests
-  bool undrained = true;        ///< volume strain is stripped (Rve::undrained); false: it is live
-  std::size_t realisations = 1; ///< elements of a point; its stress is their mean
-  std::uint64_t min_steps = 20; ///< time steps that an increment takes at least, see RveSettings
-  unsigned halvings = 6;        ///< a rejected increment is taken in up to 2^halvings parts
-  int threads = 1;              ///< that share the elements of a rank; 0: as many as the process may use
-  BalanceRule balance;
-  std::uint64_t balance_interval = 100;    ///< commits between two looks at the balance
-  double refresh_rise = 0.25;              ///< wave moduli are found anew when p' has risen by this part since [-] ...
-  std::uint64_t refresh_interval = 10'000; ///< ... or, unless p' is lower, after so many commits
-  void check() const;                      ///< @throws InputError
-};
-
 /// Where the time went; the same on all ranks but for `batch_seconds` and `wave_seconds`.
 struct RveMaterialCost
 {

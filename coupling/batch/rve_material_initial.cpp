@@ -87,7 +87,8 @@ RveMaterial::Jobs RveMaterial::jobs_for(std::span<const Stress> effective) const
         jobs.starts[start] = {requests_.empty() ? elements_[id]->rve().assembly().snapshot()
                                                 : read_library_entry(settings_.library, start).state,
                               source};
-      const std::string recipe = in_situ_recipe(jobs.starts[start].specimen, wanted, settings_.in_situ);
+      const std::string recipe =
+          in_situ_recipe(jobs.starts[start].specimen, wanted, settings_.motion, settings_.in_situ);
       jobs.start_of[id] = start;
       jobs.recipe_of[id] = recipe;
       jobs.wanted[id] = wanted;
@@ -142,8 +143,8 @@ void RveMaterial::set_initial_stress(std::span<const Stress> effective)
   exchange_.stop_together(for_mine([&](std::size_t id) {
     const auto job = jobs.prepared.find(id);
     if (job != jobs.prepared.end())
-      job->second =
-          bring_to_stress(jobs.starts.at(jobs.start_of.at(id)).specimen, jobs.wanted.at(id), settings_.in_situ);
+      job->second = bring_to_stress(jobs.starts.at(jobs.start_of.at(id)).specimen, jobs.wanted.at(id), settings_.motion,
+                                    settings_.in_situ);
   }));
   together([&] {
     keep(jobs);

@@ -121,9 +121,9 @@ Stress to_stress(const Mat3 &m) { return {m(0, 0), m(1, 1), m(2, 2), m(1, 2), m(
 const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
                                   double vertical, double horizontal)
 {
-  const bool any = std::isnan(request.relative_density);
+  const bool any = !request.relative_density;
   const auto offset = [&](const LibraryEntry &e) {
-    return any ? 0.0 : std::abs(e.number("relative_density") - request.relative_density);
+    return any ? 0.0 : std::abs(e.number("relative_density") - *request.relative_density);
   };
   std::vector<const LibraryEntry *> fits;
   std::vector<double> seeds;
@@ -138,7 +138,7 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   if (request.realisation >= seeds.size())
     throw InputError(fmt::format(
         "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append. It has:\n{}",
-        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, request.relative_density),
+        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, *request.relative_density),
         request.realisation + 1, library_table(entries, lines_in_message)));
   const auto distance = [&](const LibraryEntry *e) {
     const double v = e->number("vertical_stress_Pa"), h = v * e->number("K0");
@@ -148,11 +148,12 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   return **std::min_element(fits.begin(), fits.end(), [&](auto *a, auto *b) { return distance(a) < distance(b); });
 }
 
-std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wanted, const InSituSettings &settings)
+std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wanted, const MotionSpec &motion,
+                                       const InSituSettings &settings)
 {
   check_wanted(wanted, settings);
   RveSettings own;
-  own.motion = settings.motion;
+  own.motion = motion;
   own.max_steps = settings.max_steps;
   Rve rve(specimen, own);
   const Mat3 from = rve.stress();
@@ -182,9 +183,8 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wan
 
 Snapshot specimen_of(std::span<const std::byte> packed) { return Rve::unpack(packed, {}).assembly().snapshot(); }
 
-std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &w, const InSituSettings &s)
+std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &w, const MotionSpec &m, const InSituSettings &s)
 {
-  const MotionSpec &m = s.motion;
   const auto optional = [](const std::optional<double> &x) { return x ? fmt::format("{:.17g}", *x) : "no"; };
   return fmt::format("in situ {}; specimen {:016x}; stress {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}; path {}; "
                      "tolerance {:.17g}; steps {}; motion {:.17g} {} {} {:.17g} {:.17g} {:.17g} {:.17g} {}",

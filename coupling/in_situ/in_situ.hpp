@@ -4,7 +4,7 @@
 #include "dem/rve/rve.hpp"
 #include "fem/material/material.hpp"
 
-#include <limits>
+#include <optional>
 
 namespace isostat
 {
@@ -20,9 +20,11 @@ Stress to_stress(const Mat3 &stress);
 /// Which specimens of a library a point is made of.
 struct SpecimenRequest
 {
-  /// D_r of the soil [-]; not-a-number: the library holds one density only. The library's nearest one is taken.
-  double relative_density = std::numeric_limits<double>::quiet_NaN();
+  /// D_r of the soil [-]; left out: the library holds one density only. The library's nearest one is taken.
+  std::optional<double> relative_density;
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
+
+  bool operator==(const SpecimenRequest &) const = default;
 };
 
 /// The library entry of that density and seed with the nearest stress: smallest |ln(sigma_v/wanted)| +
@@ -43,25 +45,29 @@ enum class InSituPath
 struct InSituSettings
 {
   InSituPath path = InSituPath::all_stresses;
-  MotionSpec motion;
   double tolerance = 1e-3;           ///< |stress - wanted| / p' at the end, of all that is controlled [-]
   double min_pressure = 500;         ///< p' below which no packing is asked to go, Pa
   std::uint64_t max_steps = 500'000; ///< of one of the steps in which the stress is changed (factor 2 at most)
+
+  bool operator==(const InSituSettings &) const = default;
 };
 
 /// A specimen at a stress in situ, in its own axes. Goes there by the element's mixed control in steps of stress of a
 /// factor 2 at most, geometric in normal stresses, until no stress moves by more than twice the tolerance in 2,000
 /// time steps without strain: a packing at a few kPa has soft modes that need so many.
 /// @param wanted  Cauchy effective stress in the specimen's axes (y vertical), Pa, tension positive
+/// @param motion  of the grains on their way
 /// @throws InputError  not compressive, p' < min_pressure    @throws RunFailure  not reached: says how near it came
 /// @return the packed element (Rve::pack)     cost of the order of 10,000 time steps; deterministic
 /// tested: tests/coupling/in_situ/in_situ_test.cpp
-std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wanted, const InSituSettings &settings);
+std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &wanted, const MotionSpec &motion,
+                                       const InSituSettings &settings);
 
 /// The specimen in a packed element, in its own axes.
 Snapshot specimen_of(std::span<const std::byte> packed);
 
 /// All that the result depends on, as text: hash of the specimen (law, cell, grains, contacts to the bit), stress,
 /// settings.
-std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &wanted, const InSituSettings &settings);
+std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &wanted, const MotionSpec &motion,
+                           const InSituSettings &settings);
 } // namespace isostat

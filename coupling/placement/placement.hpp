@@ -31,6 +31,8 @@ struct BalanceRule
 {
   double threshold = 1.1; ///< imbalance above which elements are placed anew [-]
   double min_gain = 0.05; ///< ... if the largest load falls by at least this part [-]
+
+  bool operator==(const BalanceRule &) const = default;
 };
 
 /// Where elements should be from now on: `present` unless the rule asks for a move and longest_first is a gain.
