@@ -73,6 +73,7 @@ INNER = {
         "element": set(),
         "in_situ": set(),
         "batch": {"element", "in_situ", "placement"},
+        "scene": {"batch", "in_situ"},
     },
     "apps": {
         "common": set(),

@@ -18,7 +18,8 @@ std::filesystem::path path_folder(const std::filesystem::path &folder, std::size
 
 GrainPaths::GrainPaths(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
                        const std::vector<double> &depths)
-    : folder_(std::move(folder)), grains_(*soil.grains), points_(nearest_grains(soil, depths, scene.grains.path_depths))
+    : folder_(std::move(folder)), grains_(*soil.grains),
+      points_(nearest_grains(soil, depths, scene.grain_output.path_depths))
 {
   for (std::size_t point : points_)
     depths_.push_back(depths[soil.grains_places[point]]);

@@ -82,7 +82,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
                         "{:.4f} m/s2{}\n  peak surface             {:.4f} m/s2\n",
                         scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
-                        scene.base.kind == BaseKind::compliant ? " (outcrop)" : "", p.surface);
+                        scene.base.compliant() ? " (outcrop)" : "", p.surface);
   else
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
   if (p.input > 0)
@@ -135,7 +135,7 @@ std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
       fmt::format("{{\n  \"title\": {},\n  \"analysis\": \"{}\",\n  \"drainage\": \"{}\",\n  \"base\": "
                   "\"{}\",\n  \"layers\": {}",
                   quoted(scene.title), shaken(scene) ? "dynamic" : "consolidation", name_of(scene.water.drainage),
-                  scene.base.kind == BaseKind::compliant ? "compliant" : "rigid", layers_json(scene));
+                  scene.base.compliant() ? "compliant" : "rigid", layers_json(scene));
   const auto add = [&](const char *name, const std::string &value) {
     text += fmt::format(",\n  \"{}\": {}", name, value);
   };

@@ -7,6 +7,8 @@ namespace isostat::ranges
 {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr Range positive{0, infinity, true};
+inline constexpr Range not_negative{0, infinity};
+inline constexpr Range counts{1, 1e6};
 inline constexpr Range fraction{0, 1, true, true};      ///< (0, 1)
 inline constexpr Range to_one{0, 1, true, false};       ///< (0, 1]
 inline constexpr Range to_ten{0, 10, true, false};      ///< (0, 10]

@@ -78,7 +78,7 @@ void RveMaterial::make(const std::function<Rve(std::size_t)> &maker)
 
 InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const
 {
-  InSituStart start(settings_.in_situ, cache);
+  InSituStart start(settings_.motion, settings_.in_situ, cache);
   std::optional<NearestSpecimens> library;
   if (!requests_.empty())
     library.emplace(settings_.library);

@@ -5,16 +5,16 @@
 #include "coupling/in_situ/in_situ.hpp"
 #include "coupling/placement/placement.hpp"
 
-#include <filesystem>
+#include <string>
 
 namespace isostat
 {
-/// How a material of grains is run.
+/// How a material of grains is run. What users choose of it has its keys in coupling/scene/packings.hpp.
 /// tested: tests/coupling/batch/rve_material_test.cpp
 struct RveMaterialSettings
 {
-  std::filesystem::path library; ///< specimens of the sand, made by the program specimen_library
-  std::filesystem::path cache;   ///< in-situ states, kept for the next start; empty: none are kept
+  std::string library; ///< specimens of the sand, made by the program specimen_library
+  std::string cache;   ///< in-situ states, kept for the next start; empty: none are kept
   InSituSettings in_situ;
   MotionSpec motion;            ///< of the elements, as in the element tests
   bool undrained = true;        ///< volume strain is stripped (Rve::undrained); false: it is live
@@ -28,5 +28,7 @@ struct RveMaterialSettings
   void check() const; ///< @throws InputError
   /// Of every element: the specimen's axes are those of column_frame().
   ElementSettings element() const;
+
+  bool operator==(const RveMaterialSettings &) const = default;
 };
 } // namespace isostat

@@ -11,6 +11,8 @@ struct RefreshRule
   double rise = 0.25;              ///< p' has risen by this part since [-], or ...
   std::uint64_t interval = 10'000; ///< ... so many commits ago, unless p' is lower than it was
   void check() const;              ///< @throws InputError
+
+  bool operator==(const RefreshRule &) const = default;
 };
 
 /// Wave moduli of elements, and the p' at which each was computed. They fall with p' and hardly rise with it, so that an old value is

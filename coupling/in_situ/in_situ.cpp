@@ -64,11 +64,12 @@ void check_target(const Mat3 &target, const InSituSettings &settings)
 }
 } // namespace
 
-std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &target, const InSituSettings &settings)
+std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &target, const MotionSpec &motion,
+                                       const InSituSettings &settings)
 {
   check_target(target, settings);
   RveSettings own;
-  own.motion = settings.motion;
+  own.motion = motion;
   own.max_steps = settings.max_steps;
   Rve rve(specimen, own);
   const Mat3 from = rve.stress();

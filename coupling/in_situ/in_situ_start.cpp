@@ -9,7 +9,7 @@ namespace isostat
 {
 void InSituStart::add(std::size_t id, std::shared_ptr<const StartingSpecimen> start, const Mat3 &target)
 {
-  std::string recipe = in_situ_recipe(start->state, target, settings_);
+  std::string recipe = in_situ_recipe(start->state, target, motion_, settings_);
   if (const auto [result, is_new] = results_.try_emplace(recipe, Result{id, {}, {}}); is_new)
     result->second.specimen = cache_.find(recipe);
   jobs_[id] = {std::move(start), target, std::move(recipe)};
@@ -21,7 +21,7 @@ void InSituStart::prepare(std::size_t id)
   Result &result = results_.at(job.recipe);
   if (result.first != id || result.specimen)
     return;
-  result.packed = bring_to_stress(job.start->state, job.target, settings_);
+  result.packed = bring_to_stress(job.start->state, job.target, motion_, settings_);
   result.specimen = specimen_of(result.packed);
 }
 

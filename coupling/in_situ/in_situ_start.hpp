@@ -20,7 +20,9 @@ class InSituStart
 {
 public:
   /// @param cache  stays valid as long as this
-  InSituStart(const InSituSettings &settings, const InSituCache &cache) : settings_(settings), cache_(cache) {}
+  InSituStart(const MotionSpec &motion, const InSituSettings &settings, const InSituCache &cache)
+      : motion_(motion), settings_(settings), cache_(cache)
+  {}
 
   /// @param id  number of the element     @param target  in the specimen's axes, Pa, tension positive
   void add(std::size_t id, std::shared_ptr<const StartingSpecimen> start, const Mat3 &target);
@@ -49,6 +51,7 @@ private:
     std::vector<std::byte> packed; ///< empty: it came from the cache
   };
 
+  MotionSpec motion_;
   InSituSettings settings_;
   const InSituCache &cache_;
   std::map<std::size_t, Job> jobs_;       ///< by number of the element

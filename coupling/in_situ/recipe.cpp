@@ -9,7 +9,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t recipe_version = 2;
+constexpr std::uint64_t recipe_version = 1;
 
 std::uint64_t hash_of(const Snapshot &s)
 {
@@ -40,12 +40,13 @@ std::uint64_t hash_of(const Snapshot &s)
 }
 } // namespace
 
-std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &target, const InSituSettings &s)
+std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &target, const MotionSpec &motion,
+                           const InSituSettings &s)
 {
   return fmt::format("in situ {}; specimen {:016x}; stress {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}; path {}; "
                      "tolerance {:.17g}; steps {}; motion {}",
                      recipe_version, hash_of(specimen), target(0, 0), target(1, 1), target(2, 2), target(1, 2),
                      target(0, 2), target(0, 1), static_cast<int>(s.path), s.tolerance, s.max_steps,
-                     recipe_text(s.motion));
+                     recipe_text(motion));
 }
 } // namespace isostat

@@ -19,9 +19,9 @@ constexpr std::size_t lines_in_message = 40;
 const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
                                   double vertical, double horizontal)
 {
-  const bool any = std::isnan(request.relative_density);
+  const bool any = !request.relative_density;
   const auto offset = [&](const LibraryEntry &e) {
-    return any ? 0.0 : std::abs(e.number("relative_density") - request.relative_density);
+    return any ? 0.0 : std::abs(e.number("relative_density") - *request.relative_density);
   };
   std::vector<const LibraryEntry *> fits;
   std::vector<double> seeds;
@@ -36,7 +36,7 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   if (request.realisation >= seeds.size())
     throw InputError(fmt::format(
         "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append. It has:\n{}",
-        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, request.relative_density),
+        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, *request.relative_density),
         request.realisation + 1, library_table(entries, lines_in_message)));
   const auto distance = [&](const LibraryEntry *e) {
     const double v = e->number("vertical_stress_Pa"), h = v * e->number("K0");

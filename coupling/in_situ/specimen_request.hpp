@@ -2,18 +2,20 @@
 #pragma once
 #include "dem/io/specimen_library.hpp"
 
-#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace isostat
 {
 /// Which specimens of a library a point is made of.
 struct SpecimenRequest
 {
-  /// D_r of the soil [-]; not-a-number: the library holds one density only. The library's nearest one is taken.
-  double relative_density = std::numeric_limits<double>::quiet_NaN();
+  /// D_r of the soil [-]; left out: the library holds one density only. The library's nearest one is taken.
+  std::optional<double> relative_density;
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
+
+  bool operator==(const SpecimenRequest &) const = default;
 };
 
 /// The library entry of that density and seed with the nearest stress: smallest |ln(sigma_v/vertical)| +

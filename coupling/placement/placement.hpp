@@ -37,6 +37,8 @@ struct BalanceRule
   double min_gain = 0.05;       ///< ... if the largest load falls by at least this part [-]
   std::uint64_t interval = 100; ///< commits between two checks
   void check() const;           ///< @throws InputError
+
+  bool operator==(const BalanceRule &) const = default;
 };
 
 /// Where elements should be from now on: `present` unless the imbalance is above the threshold and longest_first lowers it enough.

@@ -77,12 +77,12 @@ template <int dim>
 void Dynamics<dim>::make_coefficients()
 {
   const std::size_t n = u_.locally_owned_size();
-  if (settings_.base.compliant)
+  if (settings_.base.compliant())
     {
       dashpot_ = space_.face_area(Face::base);
       for (std::size_t i = 0; i < n; ++i)
         dashpot_.local_element(i) *=
-            settings_.base.density * (i % 3 == 2 ? settings_.base.p_velocity : settings_.base.shear_velocity);
+            settings_.base.density * (i % 3 == 2 ? settings_.base.rock_p_velocity() : settings_.base.shear_velocity);
     }
   if (settings_.surface_traction)
     surface_ = space_.face_area(Face::surface);
@@ -119,13 +119,13 @@ void Dynamics<dim>::find_loads()
   const Base &base = settings_.base;
   frame_ = {};
   for (int axis = 0; axis < 3; ++axis)
-    if (!base.compliant)
-      frame_[axis] = -base.motion[axis].acceleration(t);
+    if (!base.compliant())
+      frame_[axis] = -settings_.motion[axis].acceleration(t);
   for (unsigned i : loaded_)
     load_.local_element(i) = 0;
-  if (base.compliant)
+  if (base.compliant())
     for (unsigned i : loaded_)
-      load_.local_element(i) += dashpot_.local_element(i) * base.motion[i % 3].velocity(t);
+      load_.local_element(i) += dashpot_.local_element(i) * settings_.motion[i % 3].velocity(t);
   if (settings_.surface_traction)
     {
       const std::array<double, 3> traction = settings_.surface_traction(t);

@@ -87,7 +87,7 @@ public:
   std::vector<double> nodal_share;             ///< [cell][node] Gauss-Lobatto volume of a node, m3
   std::vector<std::array<double, 3>> position; ///< of a point, m
   std::vector<std::size_t> point_id;           ///< number of a point in the whole mesh, for any partition
-  std::vector<unsigned> cell_layer;            ///< layer of a cell, counted from the base
+  std::vector<unsigned> cell_layer;            ///< number of a cell's layer in mesh().soil, from the surface down
   std::vector<unsigned> fixed_dofs;            ///< local unknowns of Supports::fixed, owned or not
   std::vector<unsigned> drained_pressures;     ///< local unknowns of Supports::drained, owned or not
 

@@ -93,7 +93,7 @@ TEST(RveColumn, OneElementIsThePackingAloneToTheBit)
   RveMaterial packing({specimen}, {}, MPI_COMM_SELF);
   Recording material(packing);
   DynamicsSettings settings{.safety = 0.5, .drainage = Drainage::undrained};
-  settings.base.motion[0] = harmonic_motion(45, 4, 2, 0.2, 1e-3);
+  settings.motion[0] = harmonic_motion(45, 4, 2, 0.2, 1e-3);
   Dynamics<1> run(space, material, settings);
   RveSettings same; // in its own axes, as an element test
   same.min_steps = RveMaterialSettings{}.min_steps;
@@ -119,7 +119,7 @@ std::vector<std::complex<double>> transfer(const Discretisation<1> &space, Mater
                                            double time_step, const std::vector<double> &frequencies, double &strain)
 {
   DynamicsSettings settings{.time_step = time_step, .mass_damping = 20, .drainage = Drainage::undrained};
-  settings.base.motion[0] = ricker_motion(amplitude, 12, 0.12, 5e-4);
+  settings.motion[0] = ricker_motion(amplitude, 12, 0.12, 5e-4);
   Recording record(material);
   Dynamics<1> run(space, record, settings);
   const auto top = static_cast<unsigned>(space.find_dof({0, 0, space.mesh().soil.height()}, 0));
@@ -127,7 +127,7 @@ std::vector<std::complex<double>> transfer(const Discretisation<1> &space, Mater
   std::vector<double> gamma(space.n_points(), 0.0);
   for (int k = 0; static_cast<double>(k) * time_step < 0.7; ++k)
     {
-      const double t = run.time(), input = settings.base.motion[0].acceleration(t);
+      const double t = run.time(), input = settings.motion[0].acceleration(t);
       run.step();
       const double output = input + run.acceleration().local_element(top);
       for (std::size_t j = 0; j < frequencies.size(); ++j)

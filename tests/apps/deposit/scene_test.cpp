@@ -3,7 +3,6 @@
 #include "apps/deposit/scene.hpp"
 
 #include "apps/deposit/schema.hpp"
-#include "fem/material/iwan.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
 
 #include <cmath>
@@ -135,31 +134,15 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
   EXPECT_EQ(ColumnScene().analysis.steps, parse_column_scene(consolidation, "s").analysis.steps);
 }
 
-TEST(ColumnScene, DefaultSandIsThatOfTheMaterial)
-{
-  const IwanSpec ours;
-  const IwanParameters theirs;
-  EXPECT_EQ(ours.reference_pressure, theirs.reference_pressure);
-  EXPECT_EQ(ours.exponent, theirs.exponent);
-  EXPECT_EQ(ours.strength_ratio, theirs.strength_ratio);
-  EXPECT_EQ(ours.phase_transformation_ratio, theirs.phase_transformation_ratio);
-  EXPECT_EQ(ours.contraction, theirs.contraction);
-  EXPECT_EQ(ours.dilation, theirs.dilation);
-  EXPECT_EQ(ours.fabric_limit, theirs.fabric_limit);
-  EXPECT_EQ(ours.fabric_rate, theirs.fabric_rate);
-  EXPECT_EQ(ours.critical_pressure, theirs.critical_pressure);
-  EXPECT_EQ(ours.elements, theirs.elements);
-}
-
-TEST(ColumnScene, ProfileCountsFromTheBase)
+TEST(ColumnScene, ProfileHasTheLayersOfTheScene)
 {
   const ColumnScene scene = parse_column_scene(several, "s");
   const SoilProfile profile = soil_profile(scene);
   ASSERT_EQ(profile.layers.size(), 2u);
-  EXPECT_EQ(profile.layers[0].name, "sand");
-  EXPECT_EQ(profile.layers[0].cells, 12u);
-  EXPECT_EQ(profile.layers[1].name, "crust");
-  EXPECT_EQ(profile.layers[1].cells, 7u);
+  EXPECT_EQ(profile.layers[0].name, "crust");
+  EXPECT_EQ(profile.layers[0].n_cells(), 7u);
+  EXPECT_EQ(profile.layers[1].name, "sand");
+  EXPECT_EQ(profile.layers[1].n_cells(), 12u);
   EXPECT_EQ(profile.height(), scene.height());
   EXPECT_EQ(profile.water.bulk_modulus, 200e6);
   EXPECT_NEAR(profile.vertical_effective_stress(0), (2 * 1000 + 6 * 900) * 9.81, 1e-9);
@@ -251,7 +234,7 @@ TEST(ColumnScene, RoundTripToTheBit)
         for (ColumnLayer &item : scene.layers) // what rules bind, and what is not written
           {
             item.density = scene.water.density + 1 / 3.0;
-            item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanSpec{};
+            item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanParameters{};
             if (item.material == LayerMaterial::iwan)
               item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;
           }

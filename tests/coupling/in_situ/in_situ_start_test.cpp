@@ -20,7 +20,7 @@ protected:
   /// Elements 3 and 7 under the same stress, 5 under another.
   InSituStart start(const InSituCache &cache) const
   {
-    InSituStart all({}, cache);
+    InSituStart all({}, {}, cache);
     for (std::size_t id : {3, 5, 7})
       all.add(id, specimen, id == 5 ? Mat3(1.1 * target) : target);
     for (std::size_t id : {7, 5, 3})

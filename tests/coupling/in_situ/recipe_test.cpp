@@ -9,7 +9,10 @@ namespace
 {
 const Mat3 target = Vec3(-1e3, -2e3, -1e3).asDiagonal();
 
-std::string recipe(const InSituSettings &settings) { return in_situ_recipe({}, target, settings); }
+std::string recipe(const MotionSpec &motion, const InSituSettings &settings = {})
+{
+  return in_situ_recipe({}, target, motion, settings);
+}
 } // namespace
 
 // Caches of earlier runs are found by it.
@@ -23,19 +26,21 @@ TEST(InSituRecipe, ItsTextIsForGood)
 
 TEST(InSituRecipe, AllThatTheResultDependsOnIsInIt)
 {
-  const InSituSettings settings;
-  std::vector<InSituSettings> others(6);
-  others[0].path = InSituPath::no_lateral_strain;
-  others[1].tolerance = 2e-3;
-  others[2].max_steps = 7;
-  others[3].motion.damping = 0.3;
-  others[4].motion.time_step = 1e-6;
-  others[5].motion.inertial_number = 1e-4;
-  for (const InSituSettings &other : others)
-    EXPECT_NE(recipe(other), recipe(settings));
+  std::vector<InSituSettings> settings(3);
+  settings[0].path = InSituPath::no_lateral_strain;
+  settings[1].tolerance = 2e-3;
+  settings[2].max_steps = 7;
+  for (const InSituSettings &other : settings)
+    EXPECT_NE(recipe({}, other), recipe({}));
+  std::vector<MotionSpec> motions(3);
+  motions[0].damping = 0.3;
+  motions[1].time_step = 1e-6;
+  motions[2].inertial_number = 1e-4;
+  for (const MotionSpec &other : motions)
+    EXPECT_NE(recipe(other), recipe({}));
   Snapshot softer;
   softer.law->young /= 2;
-  EXPECT_NE(in_situ_recipe(softer, target, settings), recipe(settings));
-  EXPECT_NE(in_situ_recipe({}, 2 * target, settings), recipe(settings));
+  EXPECT_NE(in_situ_recipe(softer, target, {}, {}), recipe({}));
+  EXPECT_NE(in_situ_recipe({}, 2 * target, {}, {}), recipe({}));
 }
 } // namespace isostat
