@@ -54,7 +54,8 @@ Stage servo_stage(double pressure, double balance)
 
 Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer)
 {
-  law->friction = friction;
+  if (law->friction > 0)
+    law->friction = friction;
   Snapshot start;
   start.grains = cloud.packing;
   start.box = cloud.box;

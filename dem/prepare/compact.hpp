@@ -9,7 +9,7 @@ namespace isostat
 /// Isotropic compression of a resting cloud to specimen.pressure with the given friction (DESIGN 5): walls close in
 /// under servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
 /// A specimen with K0 consolidation is compressed to 0.1 of its vertical stress here; the rest follows in rebalance().
-/// @param law       of the contacts; its friction is replaced
+/// @param law       of the contacts; its friction is replaced, unless it has none: then there is none here either
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force
 /// cost: some 60,000 steps at 10,000 grains

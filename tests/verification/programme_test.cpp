@@ -146,6 +146,18 @@ TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
     EXPECT_EQ(kept.contacts[c].history.shear_force, whole.end.contacts[c].history.shear_force);
 }
 
+TEST(Compaction, OfALawWithoutFrictionHasNone)
+{
+  const Cloud cloud = make_cloud(test::small_grading(100));
+  test::Unobserved nobody;
+  LinearRolling frictionless = test::paper_law();
+  frictionless.friction = 0;
+  const Snapshot with_angle = compact(cloud, frictionless, 0.2, {}, nobody),
+                 without = compact(cloud, frictionless, 0, {}, nobody);
+  EXPECT_EQ(with_angle.grains.position, without.grains.position);
+  EXPECT_NE(with_angle.grains.position, compact(cloud, test::paper_law(), 0.2, {}, nobody).grains.position);
+}
+
 TEST(RelativeDensity, IsFoundWithinTheTolerance)
 {
   const Cloud cloud = make_cloud(test::small_grading(400));
