@@ -8,13 +8,13 @@ namespace isostat
 /// against it, keys of caches are made from it.
 struct MotionSpec
 {
-  double damping = 0.2;                      ///< local (non-viscous) damping coefficient [-]
-  std::optional<double> strain_rate = {};       ///< fixed axial rate, 1/s; instead of the tolerance
-  std::optional<double> inertial_number = {};   ///< fixed I, the rate follows p'; instead of the tolerance
-  double quasi_static_tolerance = 0.01;      ///< error indicator to be kept, see dem/drive/rate_control.hpp
-  double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s, bounds of the controlled rate
-  double time_step_safety = 0.8;             ///< fraction of the critical step
-  std::optional<double> time_step = {};         ///< fixed, s; checked against the critical step
+  double damping = 0.2;                       ///< local (non-viscous) damping coefficient [-]
+  std::optional<double> strain_rate = {};     ///< fixed axial rate, 1/s; instead of the tolerance
+  std::optional<double> inertial_number = {}; ///< fixed I, the rate follows p'; instead of the tolerance
+  double quasi_static_tolerance = 0.01;       ///< error indicator to be kept, see dem/drive/rate_control.hpp
+  double rate_floor = 0.2, rate_ceiling = 2;  ///< 1/s, bounds of the controlled rate
+  double time_step_safety = 0.8;              ///< fraction of the critical step
+  std::optional<double> time_step = {};       ///< fixed, s; checked against the critical step
 
   bool operator==(const MotionSpec &) const = default;
 

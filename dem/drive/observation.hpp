@@ -18,7 +18,7 @@ struct Observation
 struct Verdict
 {
   bool finished = false;
-  bool notable = false; ///< record a row and, if wanted, a snapshot
+  bool notable = false;   ///< record a row and, if wanted, a snapshot
   std::string event = {}; ///< one line for the log; empty: nothing happened
 };
 } // namespace isostat
