@@ -71,9 +71,9 @@ void measure(const Options &options)
   if (!options.exported.empty())
     return export_text(initial, options.exported);
   Assembly assembly(initial);
-  assembly.time_step = options.time_step;
-  assembly.threads = options.threads;
-  assembly.damping = options.damping;
+  assembly.settings.time_step = options.time_step;
+  assembly.settings.threads = options.threads;
+  assembly.settings.damping = options.damping;
   const StrainPath path{assembly.box()};
   double axial = 0, stress = 0;
   const auto run = [&](int steps) {

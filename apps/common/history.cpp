@@ -56,7 +56,7 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
                              state.loading.signed_rate,
                              static_cast<double>(state.undrained.reversals),
                              state.undrained.liquefaction ? 1.0 : 0.0,
-                             assembly.time_step,
+                             assembly.settings.time_step,
                              state.pace.indicator,
                              inertia};
   const std::vector<double> measured = micromechanics.row();

@@ -26,13 +26,6 @@ std::string in_words(const Assembly &assembly, const Observation &seen, double r
   return path + fmt::format("  e {:.4f}", e) + (redundancy > 0 ? fmt::format("  I_R {:.3f}", redundancy) : "");
 }
 
-/// visit(name in a checkpoint, J) for the sums of the energy balance.
-template <typename Balance, typename Visit>
-void for_each_tally(Balance &balance, const Visit &visit)
-{
-  int k = 0;
-  EnergyBalance::for_each(balance, [&](const char *, auto &energy) { visit(fmt::format("tally_{}", k++), energy); });
-}
 } // namespace
 
 bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &, const Observation &seen)
@@ -106,21 +99,16 @@ void RunOutput::save_checkpoint(const Assembly &assembly, const DriveState &stat
   recorder_.flush();
   written_.rows = recorder_.n_rows();
   Checkpoint checkpoint{assembly.checkpoint(), state, written_, {}, specimen_, scene_text_};
-  for_each_tally(assembly.tally, [&](const std::string &name, double energy) { checkpoint.assembly[name] = energy; });
-  const auto memory = assembly.boundary_memory();
-  for (std::size_t k = 0; k < memory.size(); ++k)
-    checkpoint.assembly[fmt::format("boundary_{:02d}", k)] = memory[k];
+  EnergyMemory::for_each(assembly.energy_memory(),
+                         [&](const std::string &name, double value) { checkpoint.assembly[name] = value; });
   write_checkpoint(folder_ / "checkpoint", checkpoint);
   since_checkpoint_.restart();
 }
 
 void restore(const Checkpoint &checkpoint, Assembly &assembly)
 {
-  for_each_tally(assembly.tally,
-                 [&](const std::string &name, double &energy) { energy = checkpoint.assembly.at(name); });
-  auto memory = assembly.boundary_memory();
-  for (std::size_t k = 0; k < memory.size(); ++k)
-    memory[k] = checkpoint.assembly.at(fmt::format("boundary_{:02d}", k));
-  assembly.set_boundary_memory(memory);
+  EnergyMemory memory;
+  EnergyMemory::for_each(memory, [&](const std::string &name, auto &value) { value = checkpoint.assembly.at(name); });
+  assembly.set_energy_memory(memory);
 }
 } // namespace isostat

@@ -53,7 +53,7 @@ Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
   const Stopwatch watch;
   Dense dense;
-  dense.state = compact(cloud, scene.contact, 0, scene.specimen, observer);
+  dense.state = compact(cloud, scene.contact, 0, {scene.specimen, observer});
   dense.void_ratio = void_ratio(dense.state.volume(), dense.state.grains.solid_volume());
   const double margin = 2 * dense.state.grains.d50();
   RigidBox inside = dense.state.box;

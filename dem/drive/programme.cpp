@@ -25,7 +25,7 @@ public:
       begin();
     if (!stage_.takes_steps())
       return RunOutcome::finished;
-    assembly_.time_step = state_.pace.time_step;
+    assembly_.settings.time_step = state_.pace.time_step;
     for (bool finished = false; !finished;)
       {
         update_time_step(programme_.motion, stage_.shears(), state_.place.steps, assembly_, state_.pace);
@@ -107,7 +107,7 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
 {
   while (state.place.stage < programme.stages.size())
     {
-      assembly.damping = programme.motion.damping;
+      assembly.settings.damping = programme.motion.damping;
       StageRun run(programme, behaviour(programme.stages[state.place.stage]), assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)
         return RunOutcome::interrupted;

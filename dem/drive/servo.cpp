@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/servo.hpp"
 
+#include "dem/measure/stiffness.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +21,7 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
   for (int axis = 0; axis < 3; ++axis)
     if (controlled[axis])
       {
-        const double cap = 0.5 * rate_cap * edges[axis] * assembly.time_step;
+        const double cap = 0.5 * rate_cap * edges[axis] * assembly.settings.time_step;
         const double missing_force = (target[axis] - stress[axis]) * assembly.box().area(axis);
         const double stiffness = 0.5 * assembly.wall_stiffness_sum(axis);
         const double wanted = stiffness > 0 ? missing_force / stiffness : cap;
@@ -34,9 +36,9 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Mat
                   double rate_cap, std::uint64_t step_number, ServoState &state)
 {
   if (step_number % modulus_interval == 0)
-    state.modulus = assembly.affine_moduli();
+    state.modulus = affine_moduli(assembly.live_contacts(), assembly.volume());
   const Mat3 missing = wanted - assembly.stress();
-  const double cap = rate_cap * assembly.time_step;
+  const double cap = rate_cap * assembly.settings.time_step;
   Mat3 strain = Mat3::Zero();
   const auto follow = [&](int i, int j, double modulus, double &step) {
     if (!controlled(i, j))

@@ -39,6 +39,6 @@ void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t ste
                        ? *motion.time_step
                        : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
                                                                        assembly.walls(), assembly.contacts());
-  assembly.time_step = pace.time_step;
+  assembly.settings.time_step = pace.time_step;
 }
 } // namespace isostat

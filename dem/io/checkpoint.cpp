@@ -10,7 +10,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-checkpoint";
-constexpr std::uint64_t schema_version = 2; // 1: every number of the drivers as double
+constexpr std::uint64_t schema_version = 2; // 1: every number as double, those of the energy balance without names
 
 void write_numbers(hdf5::Group group, const std::map<std::string, double> &numbers)
 {

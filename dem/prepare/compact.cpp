@@ -15,14 +15,13 @@ constexpr int rest_attempts = 5; // a packing on the verge can collapse while it
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
 /// Runs a stage on a state and returns what it ends with.
-Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const SpecimenSpec &specimen,
-                   RunObserver &observer)
+Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const Preparation &how)
 {
   const Programme programme{
-      .motion = {.damping = damping}, .servo = specimen, .record = {.snapshots = "none"}, .stages = {stage}};
-  Assembly assembly(initial);
+      .motion = {.damping = damping}, .servo = how.specimen, .record = {.snapshots = "none"}, .stages = {stage}};
+  Assembly assembly(initial, {.threads = how.threads});
   DriveState state;
-  if (run_programme(programme, assembly, state, observer) == RunOutcome::interrupted)
+  if (run_programme(programme, assembly, state, how.observer) == RunOutcome::interrupted)
     throw Interrupted("interrupted while the specimen was prepared; nothing is kept of it");
   assembly.compute_forces();
   Snapshot end = assembly.snapshot();
@@ -52,8 +51,9 @@ Stage servo_stage(double pressure, double balance)
 }
 } // namespace
 
-Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer)
+Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation &how)
 {
+  const SpecimenSpec &specimen = how.specimen;
   if (law->friction > 0)
     law->friction = friction;
   Snapshot start;
@@ -63,11 +63,12 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpe
     start.cell = PeriodicCell::with_edges(cloud.box.edges());
   start.law = law;
   const double pressure = specimen.consolidation == "k0" ? k0_start * specimen.pressure : specimen.pressure;
-  return run_stage(start, servo_stage<Compress>(pressure, compressed_balance), specimen.damping, specimen, observer);
+  return run_stage(start, servo_stage<Compress>(pressure, compressed_balance), specimen.damping, how);
 }
 
-Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen, RunObserver &observer)
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how)
 {
+  const SpecimenSpec &specimen = how.specimen;
   Snapshot start = compacted;
   start.law = law;
   const Stage consolidate = specimen.consolidation == "k0" ? servo_stage<K0Compress>(specimen.pressure, rebalanced)
@@ -77,8 +78,8 @@ Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec
   Snapshot rest;
   for (int attempt = 0; attempt < rest_attempts; ++attempt)
     {
-      const Snapshot balanced = run_stage(start, consolidate, specimen.damping, specimen, observer);
-      rest = run_stage(balanced, hold, 0.5, specimen, observer);
+      const Snapshot balanced = run_stage(start, consolidate, specimen.damping, how);
+      rest = run_stage(balanced, hold, 0.5, how);
       if (-contact_stress(rest)(1, 1) > 0.95 * specimen.pressure)
         break;
       if (attempt + 1 == rest_attempts)

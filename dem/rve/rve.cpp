@@ -55,11 +55,10 @@ void RveSettings::check() const
                                  min_steps, max_steps));
 }
 
-Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
+Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
+    : settings_(settings), assembly_(periodic(specimen), {.damping = settings.motion.damping})
 {
   settings_.check();
-  assembly_.damping = settings_.motion.damping;
-  assembly_.threads = 1; // a host runs elements side by side
   drive_.pace.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
@@ -111,7 +110,7 @@ void Rve::run_strain(const Mat3 &own_gradient)
   for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
       review();
-      const double whole = std::max(left * size / (drive_.pace.rate * assembly_.time_step), minimum);
+      const double whole = std::max(left * size / (drive_.pace.rate * assembly_.settings.time_step), minimum);
       if (!(whole < static_cast<double>(settings_.max_steps)))
         throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
                                      drive_.pace.rate, whole));
@@ -144,7 +143,7 @@ void Rve::run_mixed(const MixedIncrement &own)
       if (n >= settings_.max_steps)
         throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
       const double part =
-          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.time_step)));
+          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.settings.time_step)));
       left = part == left ? 0 : left - part;
       step(part * prescribed +
            stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.pace.rate, drive_.steps, drive_.servo));

@@ -204,7 +204,7 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
   };
   Rve stiff = element(1e11), normal = element(1e10);
   EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, prepared);
-  EXPECT_NEAR_BECAUSE(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05,
+  EXPECT_NEAR_BECAUSE(stiff.assembly().settings.time_step / normal.assembly().settings.time_step, std::sqrt(0.1), 0.05,
                       "the root of the stiffness; the stiffer packing has fewer contacts");
   const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
   std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
@@ -364,7 +364,7 @@ TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
 {
   RveSettings settings;
   Rve reference(test::periodic_specimen(grains, 10), settings);
-  settings.motion.time_step = 20 * reference.assembly().time_step;
+  settings.motion.time_step = 20 * reference.assembly().settings.time_step;
   EXPECT_THROW(Rve(test::periodic_specimen(grains, 10), settings), RunFailure);
   Rve rve(rattlers(3e-3), settings);
   const Mat3 squeeze = -2e-3 * Mat3::Identity();
@@ -386,7 +386,7 @@ TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
 TEST(RveHardCases, AGrainThatSnapsOffIsTaken)
 {
   Snapshot s = rattlers(0.1);
-  const double time_step = Rve(s, {}).assembly().time_step;
+  const double time_step = Rve(s, {}).assembly().settings.time_step;
   s.grains.set_linear_velocity(7, Vec3(0.02 * s.grains.min_radius() / time_step, 0, 0));
   Rve rve(s, {});
   const RveResponse r = rve.advance(simple_shear(1e-5));

@@ -70,7 +70,7 @@ const Snapshot &medium() { return test::periodic_specimen(500, 8); }
 TEST(CellSpecimen, IsAtItsPressureAndInBalance)
 {
   Assembly assembly(medium());
-  assembly.time_step = 1e-9;
+  assembly.settings.time_step = 1e-9;
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   for (int k = 0; k < 3; ++k)
@@ -88,7 +88,7 @@ TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
   recipe.consolidation = "k0";
   const Snapshot specimen = test::prepare_in_cell(recipe);
   Assembly assembly(specimen);
-  assembly.time_step = 1e-9;
+  assembly.settings.time_step = 1e-9;
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   const double k0 = 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1);

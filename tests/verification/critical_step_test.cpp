@@ -83,8 +83,8 @@ Snapshot lattice()
 double speed_growth(double time_step)
 {
   Assembly a(lattice());
-  a.damping = 0;
-  a.time_step = time_step;
+  a.settings.damping = 0;
+  a.settings.time_step = time_step;
   double maximum = 0;
   try
     {

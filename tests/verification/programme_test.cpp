@@ -152,10 +152,10 @@ TEST(Compaction, OfALawWithoutFrictionHasNone)
   test::Unobserved nobody;
   LinearRolling frictionless = test::paper_law();
   frictionless.friction = 0;
-  const Snapshot with_angle = compact(cloud, frictionless, 0.2, {}, nobody),
-                 without = compact(cloud, frictionless, 0, {}, nobody);
+  const Snapshot with_angle = compact(cloud, frictionless, 0.2, {{}, nobody}),
+                 without = compact(cloud, frictionless, 0, {{}, nobody});
   EXPECT_EQ(with_angle.grains.position, without.grains.position);
-  EXPECT_NE(with_angle.grains.position, compact(cloud, test::paper_law(), 0.2, {}, nobody).grains.position);
+  EXPECT_NE(with_angle.grains.position, compact(cloud, test::paper_law(), 0.2, {{}, nobody}).grains.position);
 }
 
 TEST(RelativeDensity, IsFoundWithinTheTolerance)
@@ -163,7 +163,7 @@ TEST(RelativeDensity, IsFoundWithinTheTolerance)
   const Cloud cloud = make_cloud(test::small_grading(400));
   test::Unobserved nobody;
   const double tolerance = 0.01 * 0.273;
-  const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {}, nobody);
+  const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {{}, nobody});
   EXPECT_NEAR_BECAUSE(loose.void_ratio, 0.78, tolerance, "that is what was asked for");
   EXPECT_NEAR_BECAUSE(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12,
                       "round-off of two ways to the same ratio");
@@ -178,7 +178,7 @@ TEST(RelativeDensity, SaysWhenItCannotBeReached)
   for (const double impossible : {0.30, 1.60})
     try
       {
-        find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {}, watcher);
+        find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {{}, watcher});
         FAIL() << "void ratio " << impossible << " was reached";
       }
     catch (const InputError &error)

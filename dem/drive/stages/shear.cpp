@@ -70,7 +70,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
   if (state.place.steps % rate_interval == 0)
     RateControl(c.motion, strain_rate).update(c.assembly, seen.p, state.path.p0(), state.pace);
   Loading &loading = state.loading;
-  const double present = load(seen), dt = c.assembly.time_step;
+  const double present = load(seen), dt = c.assembly.settings.time_step;
   update_slope(loading, present, state.place.steps);
   loading.signed_rate =
       next_rate(loading, state.pace.rate, present, load_limit(state), ramp_steps(c.assembly) * dt, dt);

@@ -29,8 +29,8 @@ Snapshot packing_at_pressure()
 Assembly make_assembly(const Snapshot &start, bool measure_energy = false)
 {
   Assembly assembly(start);
-  assembly.time_step = dt;
-  assembly.measure_energy = measure_energy;
+  assembly.settings.time_step = dt;
+  assembly.settings.measure_energy = measure_energy;
   return assembly;
 }
 
@@ -96,10 +96,9 @@ void expect_same_energy(const EnergyBalance &a, const EnergyBalance &b)
 /// The run that stopped, taken up from what a checkpoint keeps.
 Assembly resumed(const Assembly &stopped)
 {
-  Assembly next = make_assembly(stopped.checkpoint(), stopped.measure_energy);
-  next.damping = stopped.damping;
-  next.tally = stopped.tally;
-  next.set_boundary_memory(stopped.boundary_memory());
+  Assembly next = make_assembly(stopped.checkpoint(), stopped.settings.measure_energy);
+  next.settings.damping = stopped.settings.damping;
+  next.set_energy_memory(stopped.energy_memory());
   return next;
 }
 
@@ -245,8 +244,8 @@ TEST(Assembly, GravityAcceleratesAFreeGrain)
   s.grains = make_packing({Vec3(0.5, 0.5, 0.5)}, {1e-3}, 2650);
   s.box.upper = Vec3::Ones();
   Assembly assembly = make_assembly(s);
-  assembly.damping = 0;
-  assembly.gravity = Vec3(0, 0, -9.81);
+  assembly.settings.damping = 0;
+  assembly.settings.gravity = Vec3(0, 0, -9.81);
   shear(assembly, 100);
   EXPECT_NEAR(assembly.packing().linear_velocity(0).z(), -9.81 * 100 * dt, 1e-15);
 }

@@ -53,7 +53,7 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
 TEST(RateControl, FixedRateStays)
 {
   Assembly assembly(test::specimen(500, 10));
-  assembly.time_step = dt;
+  assembly.settings.time_step = dt;
   assembly.compute_forces();
   MotionSpec motion;
   motion.strain_rate = 0.7;
@@ -70,7 +70,7 @@ TEST(RateControl, FixedRateStays)
 TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
 {
   Assembly assembly(test::specimen(500, 10));
-  assembly.time_step = dt;
+  assembly.settings.time_step = dt;
   assembly.compute_forces(); // at rest: the indicator is far below any tolerance
   MotionSpec motion;
   motion.rate_floor = 0.1;
@@ -90,7 +90,7 @@ TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
 TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
 {
   Assembly assembly(test::specimen(500, 10));
-  assembly.time_step = dt;
+  assembly.settings.time_step = dt;
   assembly.compute_forces();
   const double d50 = assembly.d50(), density = assembly.packing().density, p0 = 200e3;
   MotionSpec motion;
@@ -121,7 +121,7 @@ TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)
 {
   Assembly assembly(test::specimen(500, 10));
-  assembly.time_step = dt;
+  assembly.settings.time_step = dt;
   assembly.compute_forces();
   for (const double p : {0.01 * 200e3, 0.05 * 200e3})
     {
