@@ -6,6 +6,7 @@ namespace isostat
 {
 /// A struct that lists its fields once: static for_each(self, f) calls f(name, field) for each of them, self const or
 /// not. Files, bytes and cache keys go by that list.
+/// tested: tests/dem/io/checkpoint_test.cpp
 template <class T>
 concept Listed = requires(T &value)
 {

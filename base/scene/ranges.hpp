@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranges and reasons that many keys share.
+// Ranges and reasons that many keys share.   tested: tests/dem/scene/scene_error_test.cpp
 #pragma once
 #include "base/scene/schema.hpp"
 

@@ -14,6 +14,7 @@ struct MemoryUse
 
 /// What the next step of a periodic assembly depends on, besides sizes, masses and law: 15 numbers a grain, 12 and a
 /// pair of indices for each closed contact.
+/// tested: tests/dem/rve/rve_test.cpp
 struct AssemblyState
 {
   std::vector<double> grains; ///< x (3), v (3), spin (3), force (3), torque (3) of each grain; SI

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For files of dem/assembly alone, which are compiled with OpenMP.
+// tested: tests/verification/threads_test.cpp
 #pragma once
 #include "dem/assembly/contact_forces.hpp"
 

@@ -6,6 +6,7 @@
 namespace isostat
 {
 /// What a driver sees of the specimen between force evaluation and motion. Soil convention, compression positive.
+/// tested: tests/verification/programme_test.cpp
 struct Observation
 {
   double p, q;  ///< of the walls or of the cell, Pa

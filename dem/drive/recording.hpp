@@ -7,6 +7,7 @@
 namespace isostat
 {
 /// How often a row of the history, and a stored snapshot, is due.
+/// tested: tests/verification/programme_test.cpp
 struct RecordSpec
 {
   double record_stress = 1e3;          ///< a history row whenever p' or the driven load has moved by this much, Pa

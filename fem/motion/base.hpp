@@ -10,7 +10,7 @@ enum class BaseKind
   compliant ///< elastic rock behind a dashpot, the motion is that of its outcrop
 };
 
-/// What lies under a block of soil.   tested: tests/fem/solve/shear_layer_test.cpp
+/// What lies under a block of soil.   tested: tests/verification/shear_layer_test.cpp
 struct Base
 {
   BaseKind kind = BaseKind::rigid;

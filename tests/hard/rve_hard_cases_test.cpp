@@ -3,9 +3,8 @@
 // increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
 #include "base/error.hpp"
 #include "base/fields.hpp"
-#include "dem/rve/rve.hpp"
 #include "tests/support/near.hpp"
-#include "tests/support/periodic.hpp"
+#include "tests/support/rve_paths.hpp"
 
 #include <cstring>
 
@@ -13,17 +12,11 @@ namespace isostat
 {
 namespace
 {
+using test::simple_shear;
 using testing::HasSubstr;
 
 constexpr std::uint64_t grains = 400;
 constexpr double p0 = 200e3;
-
-Mat3 simple_shear(double gamma)
-{
-  Mat3 gradient = Mat3::Zero();
-  gradient(0, 1) = gamma;
-  return gradient;
-}
 
 double mean_stress(const Rve &rve) { return -rve.stress().trace() / 3; } // compression positive
 

@@ -101,6 +101,37 @@ TEST(ConstantP, MeanStressStays)
   EXPECT_GT(result.watcher.rows.back().q, 50e3);
 }
 
+/// Friction alone takes no step; a pressure, a rest and a hold follow on one specimen.
+TEST(ServoStages, SetFrictionReachTheirPressureAndComeToRest)
+{
+  Friction friction;
+  friction.friction = 0.4;
+  Compress compress;
+  compress.pressure = 220e3;
+  Assembly assembly(test::specimen(1000, 10));
+  DriveState state;
+  Watcher watcher;
+  run_programme({.record = {}, .stages = {friction, compress, Rebalance()}}, assembly, state, watcher);
+  assembly.compute_forces();
+  EXPECT_EQ(assembly.law()->friction, 0.4);
+  const Vec3 stress = -assembly.wall_stress();
+  for (int k = 0; k < 3; ++k)
+    EXPECT_CLOSE_BECAUSE(stress[k], 200e3, 3e-3, "rebalance goes back to the specimen's own pressure within 0.2 %");
+  double highest = 0;
+  for (const auto &row : watcher.rows)
+    highest = std::max(highest, row.p);
+  EXPECT_NEAR_BECAUSE(highest, 220e3, 5e3, "compress ends within 1 %, and the servo may overshoot by as much");
+}
+
+TEST(Hold, EndsAtRestWithTheBoxUnchanged)
+{
+  const Snapshot &start = test::specimen(1000, 10);
+  const Result result = run(Hold(), start);
+  EXPECT_EQ(result.end.box.upper, start.box.upper);
+  EXPECT_EQ(result.end.box.lower, start.box.lower);
+  EXPECT_GT(result.end.step, start.step);
+}
+
 TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
 {
   const Result result = run(cycles(3), test::specimen(1000, 10), 20);

@@ -22,6 +22,7 @@ protected:
 
 /// A balanced stage that brings the specimen to a pressure by the stress servo (dem/drive/servo.hpp). In a cell shear
 /// stresses are brought to zero as well.
+/// tested: tests/verification/programme_test.cpp
 class ServoStage : public BalancedStage
 {
 public:

@@ -89,6 +89,7 @@ protected:
 template <auto setting>
 struct InStage;
 template <class Part, class T, T Part::*setting>
+/// tested: tests/verification/programme_test.cpp
 struct InStage<setting>
 {
   Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Isotropic compression to `pressure` by the servo, from a loose cloud if need be.
+/// tested: tests/verification/programme_test.cpp
 class Compress : public ServoStage
 {
 public:

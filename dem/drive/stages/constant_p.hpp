@@ -6,6 +6,7 @@ namespace isostat
 {
 /// Axial strain with the mean stress kept at what it is when the stage begins: the lateral stresses give way as the
 /// axial one rises, sigma_x = sigma_z = (3 p0 - sigma_y)/2 >= 0.
+/// tested: tests/verification/programme_test.cpp
 class ConstantP : public ServoedShear
 {
 public:

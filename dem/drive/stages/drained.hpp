@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Axial strain with lateral stresses kept at what they are when the stage begins.
+/// tested: tests/verification/programme_test.cpp
 class Drained : public ServoedShear
 {
 public:

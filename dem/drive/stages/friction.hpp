@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Sets the friction between grains and takes no step.
+/// tested: tests/verification/programme_test.cpp
 class Friction : public StageBehaviour
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Boundaries at rest until the forces are in balance.
+/// tested: tests/verification/programme_test.cpp
 class Hold : public BalancedStage
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Brings the vertical (y) stress to `pressure` without lateral strain; in a periodic cell only.
+/// tested: tests/verification/cell_programme_test.cpp
 class K0Compress : public ServoStage
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Keeps the isotropic pressure until the forces are in balance.
+/// tested: tests/verification/programme_test.cpp
 class Rebalance : public ServoStage
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Triaxial shear to a strain with lateral stresses that a servo keeps on a target.
+/// tested: tests/verification/programme_test.cpp
 class ServoedShear : public ShearStage
 {
 public:

@@ -20,6 +20,7 @@ extern const ShearMode triaxial_mode;     ///< q against axial (y) strain; later
 extern const ShearMode simple_shear_mode; ///< tau = sigma_xy against gamma_xy; nothing else moves
 
 /// A stage that drives a strain at the rate of the rate control (dem/drive/rate_control.hpp), with ramps.
+/// tested: tests/dem/drive/stages/constant_volume_test.cpp
 class ShearStage : public SteppedStage
 {
 public:

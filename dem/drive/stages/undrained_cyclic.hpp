@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Axial loading between +-q_amp at constant volume.
+/// tested: tests/dem/drive/stages/constant_volume_test.cpp
 class UndrainedCyclic : public CyclicConstantVolume
 {
 public:

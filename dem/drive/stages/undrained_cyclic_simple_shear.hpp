@@ -6,6 +6,7 @@ namespace isostat
 {
 /// Simple shear between +-CSR sigma'_v0 at constant volume, sigma'_v0 the vertical stress when the stage begins; in a
 /// periodic cell only.
+/// tested: tests/verification/cell_programme_test.cpp
 class UndrainedCyclicSimpleShear : public CyclicConstantVolume
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Axial strain at constant volume.
+/// tested: tests/verification/programme_test.cpp
 class UndrainedMonotonic : public MonotonicConstantVolume
 {
 public:

@@ -5,6 +5,7 @@
 namespace isostat
 {
 /// Shear strain gamma_xy at constant volume and shape otherwise; in a periodic cell only.
+/// tested: tests/verification/cell_programme_test.cpp
 class UndrainedSimpleShear : public MonotonicConstantVolume
 {
 public:

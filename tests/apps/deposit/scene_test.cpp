@@ -4,6 +4,7 @@
 
 #include "apps/deposit/schema.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
+#include "tests/support/near.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -145,9 +146,11 @@ TEST(ColumnScene, ProfileHasTheLayersOfTheScene)
   EXPECT_EQ(profile.layers[1].n_cells(), 12u);
   EXPECT_EQ(profile.height(), scene.height());
   EXPECT_EQ(profile.water.bulk_modulus, 200e6);
-  EXPECT_NEAR(profile.vertical_effective_stress(0), (2 * 1000 + 6 * 900) * 9.81, 1e-9);
+  EXPECT_NEAR_BECAUSE(profile.vertical_effective_stress(0), (2 * 1000 + 6 * 900) * 9.81, 1e-9,
+                      "round-off of sums of 1e5 Pa");
   // all weight is effective without water
-  EXPECT_NEAR(soil_profile(parse_column_scene(smallest, "s")).vertical_effective_stress(0), 5 * 2000 * 9.81, 1e-9);
+  EXPECT_NEAR_BECAUSE(soil_profile(parse_column_scene(smallest, "s")).vertical_effective_stress(0), 5 * 2000 * 9.81,
+                      1e-9, "round-off of sums of 1e5 Pa");
 }
 
 TEST(ColumnScene, CellsFromTheirSize)
@@ -169,8 +172,10 @@ TEST(ColumnScene, TractionAndTimes)
   EXPECT_EQ(step.load.traction(-1), 0);
   EXPECT_EQ(step.load.traction(0), -100e3);
   EXPECT_EQ(parse_column_scene(consolidation, "s", {"load.direction=x"}).load.traction(3), 100e3);
-  EXPECT_NEAR(parse_column_scene(consolidation, "s", {"load.ramp=2 s"}).load.traction(1), -50e3, 1e-9);
-  EXPECT_NEAR(parse_column_scene(several, "s").load.traction(0.25), -2e3, 1e-9);
+  EXPECT_NEAR_BECAUSE(parse_column_scene(consolidation, "s", {"load.ramp=2 s"}).load.traction(1), -50e3, 1e-9,
+                      "round-off of an interpolation of 1e5 Pa");
+  EXPECT_NEAR_BECAUSE(parse_column_scene(several, "s").load.traction(0.25), -2e3, 1e-9,
+                      "round-off of an interpolation of 1e5 Pa");
   EXPECT_EQ(ColumnLoad().traction(1), 0);
 
   const std::vector<double> times = step.analysis.times();
@@ -178,7 +183,7 @@ TEST(ColumnScene, TractionAndTimes)
   EXPECT_EQ(times.front(), 1);
   EXPECT_EQ(times.back(), 7200);
   for (std::size_t i = 2; i < times.size(); ++i)
-    EXPECT_NEAR(times[i] / times[i - 1], times[1] / times[0], 1e-12);
+    EXPECT_NEAR_BECAUSE(times[i] / times[i - 1], times[1] / times[0], 1e-12, "round-off of powers of one ratio");
 }
 
 TEST(ColumnScene, OverridesReachLayersAndMotions)

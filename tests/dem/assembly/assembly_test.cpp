@@ -6,6 +6,7 @@
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/unbalanced.hpp"
+#include "tests/support/near.hpp"
 
 #include <gmock/gmock.h>
 
@@ -134,8 +135,8 @@ TEST(Assembly, StressesAreThoseOfTheMeasures)
       const double wall_error = (assembly.wall_stress() - wall).norm() / wall.norm();
       const double contact_error = (assembly.contact_stress() - contact).norm() / contact.norm();
       std::printf("after %d steps: wall stress %.1e, contact stress %.1e\n", steps, wall_error, contact_error);
-      EXPECT_LE(wall_error, 1e-12);
-      EXPECT_LE(contact_error, 1e-12);
+      EXPECT_BELOW_BECAUSE(wall_error, 1e-12, "round-off of sums in another order");
+      EXPECT_BELOW_BECAUSE(contact_error, 1e-12, "round-off of sums in another order");
       assembly.move(next_box(assembly.box()));
     }
 }
@@ -148,8 +149,9 @@ TEST(Assembly, UnbalancedForceIsThatOfTheMeasure)
       shear(assembly, steps);
       assembly.compute_forces();
       const double measured = unbalanced_force(assembly.snapshot());
-      // at rest it is a difference of nearly equal forces: round-off counts against 1
-      EXPECT_NEAR(assembly.unbalanced_force_ratio(), measured, 1e-12) << "after " << steps << " steps";
+      EXPECT_NEAR_BECAUSE(assembly.unbalanced_force_ratio(), measured, 1e-12,
+                          "at rest it is a difference of nearly equal forces: round-off counts against 1")
+          << "after " << steps << " steps";
       assembly.move(next_box(assembly.box()));
     }
 }
@@ -171,7 +173,7 @@ TEST(Assembly, SnapshotHoldsEveryTouchingPair)
   double walls = 0;
   for (double force : assembly.wall_forces())
     walls += force;
-  EXPECT_NEAR(push, walls, 1e-12 * walls);
+  EXPECT_NEAR_BECAUSE(push, walls, 1e-12 * walls, "round-off of a sum over the grains at the walls");
 }
 
 TEST(Assembly, TwoRunsAreEqualToTheBit)
@@ -247,7 +249,7 @@ TEST(Assembly, GravityAcceleratesAFreeGrain)
   assembly.settings.damping = 0;
   assembly.settings.gravity = Vec3(0, 0, -9.81);
   shear(assembly, 100);
-  EXPECT_NEAR(assembly.packing().linear_velocity(0).z(), -9.81 * 100 * dt, 1e-15);
+  EXPECT_NEAR_BECAUSE(assembly.packing().linear_velocity(0).z(), -9.81 * 100 * dt, 1e-15, "round-off of 100 additions");
 }
 
 TEST(Assembly, FailureNamesStepAndGrain)

@@ -2,6 +2,7 @@
 #include "dem/drive/rate_control.hpp"
 
 #include "dem/measure/unbalanced.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ TEST(NextRate, RampsToTheRateInTheRampTime)
     {
       const double before = loading.signed_rate;
       loading.signed_rate = next_rate(loading, rate, 0, 60e3, ramp_time, dt);
-      EXPECT_NEAR(loading.signed_rate - before, 2.0 / 200, 1e-12);
+      EXPECT_NEAR_BECAUSE(loading.signed_rate - before, 2.0 / 200, 1e-12, "round-off of 200 additions");
       ++steps;
     }
   EXPECT_EQ(steps, 200);
@@ -101,18 +102,20 @@ TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
   for (const double p : {200e3, 350e3, 20e3, 10e3, 200e3}) // up and down, at once: no memory, no floor or ceiling
     {
       control.update(assembly, p, p0, pace);
-      EXPECT_NEAR(inertial_number(pace.rate, d50, density, p), 1e-4, 1e-16);
+      EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, p), 1e-4, 1e-16,
+                          "round-off of a root and its square");
       EXPECT_GT(pace.indicator, 0);
     }
   for (const double p : {5e3, 100.0, 0.0, -1e3}) // below 5 % of p0 the rate is that of 5 %
     {
       control.update(assembly, p, p0, pace);
-      EXPECT_NEAR(inertial_number(pace.rate, d50, density, 0.05 * p0), 1e-4, 1e-16);
+      EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, 0.05 * p0), 1e-4, 1e-16,
+                          "round-off of a root and its square");
     }
   motion.inertial_number = 1e-2;
   RateControl(motion, {}).update(assembly, p0, p0, pace);
   EXPECT_GT(pace.rate, motion.rate_ceiling);
-  EXPECT_NEAR(pace.rate, 1e-2 * std::sqrt(p0 / density) / d50, 1e-9 * pace.rate);
+  EXPECT_CLOSE_BECAUSE(pace.rate, 1e-2 * std::sqrt(p0 / density) / d50, 1e-9, "round-off of a root");
   const RateControl stage_rate(motion, 0.3); // the stage's own rate goes before
   stage_rate.update(assembly, p0, p0, pace);
   EXPECT_EQ(pace.rate, 0.3);
@@ -127,7 +130,7 @@ TEST(QuasiStaticIndicator, IsContinuousInThePressure)
     {
       const double below = quasi_static_indicator(assembly, p * (1 - 1e-9), 200e3, 2),
                    above = quasi_static_indicator(assembly, p * (1 + 1e-9), 200e3, 2);
-      EXPECT_NEAR(below / above, 1.0, 1e-6);
+      EXPECT_NEAR_BECAUSE(below / above, 1.0, 1e-6, "a slope times a change of pressure of 2e-9");
     }
 }
 } // namespace
