@@ -16,6 +16,7 @@
 #include "base/record/progress.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {

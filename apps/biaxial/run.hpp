@@ -29,5 +29,5 @@ struct BiaxialSummary
 BiaxialSummary run_biaxial(const BiaxialRequest &request);
 
 std::string to_text(const BiaxialSummary &summary, const BiaxialScene &scene);
-std::string to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
+Json to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
 } // namespace isostat

@@ -2,10 +2,13 @@
 #include "apps/common/test_summary.hpp"
 
 #include "base/files/csv_table.hpp"
+#include "base/files/json.hpp"
 #include "dem/drive/programme.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -171,14 +174,25 @@ std::string shear_text(const TestSummary &s)
 }
 
 /// Members of summary.json that only simple shear has.
-std::string shear_json(const TestSummary &s)
+Json shear_json(const ShearExtremes &shear)
 {
-  if (!s.shear)
-    return "";
-  return fmt::format("  \"gamma_max_reached\": {:.10g},\n  \"tau_max_reached\": {:.10g},\n  \"sigma_v0\": {:.10g},\n  "
-                     "\"stress_ratio_max\": {:.10g},\n  \"CSR\": {},\n",
-                     s.shear->gamma, s.shear->tau, s.shear->sigma_v0, s.shear->max_ratio,
-                     s.shear->requested_ratio > 0 ? fmt::format("{:.10g}", s.shear->requested_ratio) : "null");
+  return {{"gamma_max_reached", shear.gamma},
+          {"tau_max_reached", shear.tau},
+          {"sigma_v0", shear.sigma_v0},
+          {"stress_ratio_max", shear.max_ratio},
+          {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};
+}
+
+Json liquefaction_json(const TestSummary &s)
+{
+  if (!s.liquefied)
+    return nullptr;
+  return {{"row", s.onset_row},
+          {"cycle", s.cycles_to_liquefaction},
+          {"strain_before", s.strain_before},
+          {"IR_at_onset", s.redundancy_at_onset},
+          {"IR_min", s.redundancy_min},
+          {"IR_recovered", s.redundancy_recovered}};
 }
 } // namespace
 
@@ -249,24 +263,23 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   return text + "\n";
 }
 
-std::string to_json(const TestSummary &s)
+void write_json(const std::filesystem::path &path, const TestSummary &s)
 {
-  std::string title;
-  for (char c : s.title)
-    title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  const std::string liquefaction =
-      s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
-                                "\"IR_min\": {:.10g}, \"IR_recovered\": {:.10g}}}",
-                                s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
-                                s.redundancy_min, s.redundancy_recovered)
-                  : "null";
-  return fmt::format(
-      "{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
-      "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
-      "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n{}  "
-      "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
-      title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds, s.first_row,
-      s.reversals, s.worst_overshoot, shear_json(s),
-      s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null", liquefaction);
+  Json json{{"title", s.title},
+            {"grains", s.grains},
+            {"void_ratio", s.void_ratio},
+            {"relative_density", s.relative_density},
+            {"preparation_friction_deg", s.preparation_friction},
+            {"p0", s.p0},
+            {"steps", std::llround(s.steps)},
+            {"seconds", s.seconds},
+            {"shear_stage_first_row", s.first_row},
+            {"reversals", std::llround(s.reversals)},
+            {"worst_overshoot", s.worst_overshoot}};
+  if (s.shear)
+    json.update(shear_json(*s.shear));
+  json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
+  json["liquefaction"] = liquefaction_json(s);
+  write_json(path, json);
 }
 } // namespace isostat

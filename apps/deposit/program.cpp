@@ -4,6 +4,7 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "base/error.hpp"
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <deal.II/base/mpi.h>
@@ -55,10 +56,10 @@ int run_program(const GroundProgram &program, int argc, char **argv)
   return ready ? run_on_ranks(program, options) : code;
 }
 
-void leave_summary(const std::filesystem::path &folder, const std::string &json, const std::string &text,
+void leave_summary(const std::filesystem::path &folder, const Json &summary, const std::string &text,
                    const std::string &times, const char *figures, bool no_figures)
 {
-  write_replacing(folder / "summary.json", json);
+  write_json(folder / "summary.json", summary);
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}{}", text, times);
   if (!no_figures)

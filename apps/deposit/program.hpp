@@ -4,6 +4,7 @@
 #pragma once
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_options.hpp"
+#include "base/files/json.hpp"
 
 #include <functional>
 
@@ -43,6 +44,6 @@ struct GroundProgram
 int run_program(const GroundProgram &program, int argc, char **argv);
 
 /// Leaves summary.json and summary.txt, prints the text and `times`, and draws the figures.
-void leave_summary(const std::filesystem::path &folder, const std::string &json, const std::string &text,
+void leave_summary(const std::filesystem::path &folder, const Json &summary, const std::string &text,
                    const std::string &times, const char *figures, bool no_figures);
 } // namespace isostat

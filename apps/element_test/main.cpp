@@ -106,7 +106,7 @@ void run_test(const SceneOptions &options)
 
   TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
-  write_replacing(folder / "summary.json", to_json(summary));
+  write_json(folder / "summary.json", summary);
   const std::string text = to_text(summary, scene);
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}", text);

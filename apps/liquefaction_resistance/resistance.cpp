@@ -2,10 +2,12 @@
 #include "apps/liquefaction_resistance/resistance.hpp"
 
 #include "base/files/csv_table.hpp"
+#include "base/files/json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -19,18 +21,11 @@ enum Column
   strain
 };
 
-/// The number behind "name" in a summary.json; nothing if it is not there.
-std::optional<double> json_number(const std::string &text, const std::string &name)
+/// A member of an object; nothing if it is not there or is no number.
+std::optional<double> number(const Json &object, const char *name)
 {
-  const std::string key = "\"" + name + "\": ";
-  const std::size_t found = text.find(key);
-  if (found == std::string::npos)
-    return std::nullopt;
-  const std::size_t begin = found + key.size(), end = text.find_first_of(",\n}", begin);
-  double value = 0;
-  if (!parse(std::string_view(text).substr(begin, end - begin), value))
-    return std::nullopt;
-  return value;
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
 }
 
 double cycles_of(double n_reversals) { return std::max(0.25, 0.5 * n_reversals); }
@@ -96,9 +91,9 @@ RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std:
   result.status = result.to_liquefaction         ? RunStatus::liquefied
                   : maximum >= cyclic.max_strain ? RunStatus::strain
                                                  : RunStatus::censored;
-  const std::string summary = read_text(folder / "summary.json");
-  result.void_ratio = json_number(summary, "void_ratio");
-  result.wall_seconds = json_number(summary, "seconds");
+  const Json summary = read_json(folder / "summary.json");
+  result.void_ratio = number(summary, "void_ratio");
+  result.wall_seconds = number(summary, "seconds");
   return result;
 }
 

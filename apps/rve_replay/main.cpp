@@ -18,6 +18,7 @@
 #include "base/record/progress.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -58,7 +59,7 @@ void run(const Options &options)
       throw Interrupted(fmt::format("interrupted at increment {}", done));
   });
   const std::string text = to_text(result, record, options.changes);
-  write_replacing(folder / "summary.json", to_json(result, record));
+  write_json(folder / "summary.json", to_json(result, record));
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}  wall time                {:.2f} s\n", text, result.seconds);
   if (!options.no_figures)

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -161,13 +162,17 @@ std::string to_text(const ReplayResult &r, const StrainRecord &record, const Rep
   return text;
 }
 
-std::string to_json(const ReplayResult &r, const StrainRecord &record)
+Json to_json(const ReplayResult &r, const StrainRecord &record)
 {
-  return fmt::format(
-      "{{\n  \"depth\": {:.17g},\n  \"increments\": {},\n  \"equal\": {},\n  \"steps\": {},\n"
-      "  \"shear_error\": {:.17g},\n  \"pressure_error\": {:.17g},\n  \"largest_error\": {:.17g},\n"
-      "  \"largest_strain\": {:.17g},\n  \"min_pressure\": {:.17g},\n  \"min_redundancy\": {:.17g}\n}}\n",
-      record.depth, r.increments, r.equal, r.steps, r.shear_error, r.pressure_error, r.largest_error, r.largest_strain,
-      r.min_pressure, r.min_redundancy);
+  return {{"depth", record.depth},
+          {"increments", r.increments},
+          {"equal", r.equal},
+          {"steps", r.steps},
+          {"shear_error", r.shear_error},
+          {"pressure_error", r.pressure_error},
+          {"largest_error", r.largest_error},
+          {"largest_strain", r.largest_strain},
+          {"min_pressure", r.min_pressure},
+          {"min_redundancy", r.min_redundancy}};
 }
 } // namespace isostat

@@ -16,6 +16,7 @@
 #include "apps/soil_column/run.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -50,9 +51,11 @@ void run_scene(const SceneOptions &options)
                                  request.folder.string()));
   on_first_rank([&] { check_result_folder(request.folder, request.use); });
   const RunResult result = run_dimension(request);
-  if (ranks().first())
-    leave_summary(request.folder, to_json(result.summary, request.scene), to_text(result.summary, request.scene),
-                  to_text(result.times), "plots_soil_column.py", options.no_figures);
+  if (!ranks().first())
+    return;
+  write_json(request.folder / "times.json", to_json(result.times));
+  leave_summary(request.folder, to_json(result.summary, request.scene), to_text(result.summary, request.scene),
+                to_text(result.times), "plots_soil_column.py", options.no_figures);
 }
 
 constexpr GroundProgram soil_column{
