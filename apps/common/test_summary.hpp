@@ -49,6 +49,6 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
 
 /// For the terminal.
 std::string to_text(const TestSummary &summary, const Scene &scene);
-/// For summary.json: read by scripts/plots.py.
+/// For summary.json: read by apps/figures/element_test.py.
 std::string to_json(const TestSummary &summary);
 } // namespace isostat

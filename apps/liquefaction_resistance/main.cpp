@@ -173,7 +173,7 @@ void find_resistance(Options options)
   const std::string text = write_report(campaign, options.plan);
   fmt::print("{}", text);
   if (!options.no_figures && fit_power_law(campaign.results()))
-    fmt::print("  {}\n", draw_figures(campaign.folder(), "plots_resistance.py"));
+    fmt::print("  {}\n", draw_figures(campaign.folder(), "liquefaction_resistance"));
   if (!complete)
     throw Interrupted("interrupted; finished runs are kept, the same command goes on");
   for (const RunResult &result : campaign.results())

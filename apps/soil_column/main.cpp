@@ -52,7 +52,7 @@ void run_scene(const SceneOptions &options)
   const RunResult result = run_dimension(request);
   if (ranks().first())
     leave_summary(request.folder, to_json(result.summary, request.scene), to_text(result.summary, request.scene),
-                  to_text(result.times), "plots_soil_column.py", options.no_figures);
+                  to_text(result.times), "soil_column", options.no_figures);
 }
 
 constexpr GroundProgram soil_column{

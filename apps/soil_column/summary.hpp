@@ -41,6 +41,6 @@ struct RunTimes
 /// For the terminal and summary.txt.
 std::string to_text(const ColumnSummary &summary, const ColumnScene &scene);
 std::string to_text(const RunTimes &times);
-/// For summary.json: read by scripts/plots_soil_column.py. No number is ever nan.
+/// For summary.json: read by apps/figures/soil_column.py. No number is ever nan.
 std::string to_json(const ColumnSummary &summary, const ColumnScene &scene);
 } // namespace isostat
