@@ -11,11 +11,4 @@ fs::path shared_folder()
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
   return program.parent_path().parent_path() / "share" / "isostat";
 }
-
-std::string find_scene(const std::string &path)
-{
-  std::error_code failure;
-  const fs::path shared = shared_folder() / "scenes" / path;
-  return !path.empty() && !fs::exists(path, failure) && fs::exists(shared, failure) ? shared.string() : path;
-}
 } // namespace isostat

@@ -9,11 +9,7 @@ namespace isostat
 std::string version();
 
 /// The folder with figures and scenes that belongs to the running program: ../share/isostat beside the folder the
-/// program is in. An installation has it, and a build tree has links there, so that no path is compiled in.
-/// Tested: tests/examples/installed_test.py.
+/// program is in. A build tree has links there, so that no path of the source is compiled in.
+/// Tested: tests/apps/micromechanics_test.py, which lets a program draw.
 std::filesystem::path shared_folder();
-
-/// A scene as the user names it: the path itself or, if there is none, the scene of that name that came with the
-/// program ("quick_cyclic_liquefies.toml", "column/uniform_layer.toml"). A path that is neither is returned as it is.
-std::string find_scene(const std::string &path);
 } // namespace isostat
