@@ -186,6 +186,7 @@ int run_command(int argc, char **argv)
   CommandLine line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction", argc, argv);
   Options options;
   line.option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
+      .shipped_in("scenes")
       .required();
   line.option("--ratios", options.ratios,
               "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
