@@ -143,7 +143,8 @@ void Rve::run_mixed(const MixedIncrement &own)
       if (n >= settings_.max_steps)
         throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
       const double part =
-          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.settings.time_step)));
+          left == 0 ? 0
+                    : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.settings.time_step)));
       left = part == left ? 0 : left - part;
       step(part * prescribed +
            stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.pace.rate, drive_.steps, drive_.servo));
