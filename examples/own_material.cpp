@@ -41,7 +41,7 @@ double peak_displacement(double peak_acceleration)
   Hyperbolic material({.shear_modulus = density * velocity * velocity, .poisson_ratio = 0.3}, 1e-3, space.n_points());
   material.set_initial_stress(std::vector<Stress>(space.n_points(), Stress{}));
   DynamicsSettings settings;
-  settings.base.motion[0] = ricker_motion(peak_acceleration, 2.5, 0.6, 1e-3);
+  settings.motion[0] = ricker_motion(peak_acceleration, 2.5, 0.6, 1e-3);
   Dynamics<1> run(space, material, settings);
   double peak = 0;
   for (const long top = space.find_dof({0, 0, height}, 0); run.time() < 3; run.step())
