@@ -18,8 +18,9 @@
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/progress.hpp"
+#include "fem/libraries.hpp"
 
-#include <deal.II/base/mpi.h>
+#include <mpi.h>
 
 #include <fmt/format.h>
 
@@ -52,12 +53,12 @@ int run_scene(const SceneOptions &options)
 
 int run_with_mpi(const SceneOptions &options)
 {
-  char name[] = "biaxial", *only_name[] = {name, nullptr}, **arguments = only_name;
-  int n = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n, arguments, 1);
+  const Libraries libraries;
   catch_signals(); // after PETSc, which has handlers of its own
   return guarded([&] {
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    int n_ranks = 1;
+    MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+    if (n_ranks > 1)
       throw InputError("a biaxial block runs on one rank only. Give it --threads.");
     run_scene(options);
   });

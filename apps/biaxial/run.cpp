@@ -154,7 +154,7 @@ StaticsEffort BiaxialRun::solve()
       sum.trials += effort.trials;
       if (done)
         break;
-      const StaticsState state = solver->save();
+      const SolverState state = solver->save();
       solver = looser_[failures].get();
       solver->restore(state);
     }

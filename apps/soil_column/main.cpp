@@ -19,8 +19,7 @@
 #include "apps/soil_column/run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-
-#include <deal.II/base/mpi.h>
+#include "fem/libraries.hpp"
 
 #include <fmt/format.h>
 
@@ -88,9 +87,7 @@ void run_scene(const SceneOptions &options)
 /// With MPI up. No PETSc option is read from our command line.
 int run_on_ranks(const SceneOptions &options)
 {
-  char name[] = "soil_column", *only_name[] = {name, nullptr}, **arguments = only_name;
-  int n = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n, arguments, 1);
+  const Libraries libraries;
   catch_signals(); // after PETSc, which has handlers of its own
   return guarded([&] {
     silence_others();
