@@ -189,8 +189,6 @@ def run(arguments, case):
     folder.mkdir(parents=True, exist_ok=True)
     if done.returncode:
         print(f"<!-- {case.name}: {done.stderr.strip()} -->", flush=True)
-    else:
-        (folder / "times.txt").write_text(done.stdout, encoding="utf-8")
     for bulky in ("checkpoint", "grains", "paraview"):
         shutil.rmtree(folder / bulky, ignore_errors=True)
     mark.write_text(made_with, encoding="utf-8")
@@ -214,7 +212,7 @@ def main():
                 run(arguments, case)
     cases = [case for level in LEVELS for case in plan(level)]
     there = [(case, arguments.folder / "runs" / case.name) for case in cases
-             if (arguments.folder / "runs" / case.name / "times.txt").exists()]
+             if (arguments.folder / "runs" / case.name / "times.json").exists()]
     figures = arguments.docs / "figures" if arguments.docs else arguments.folder
     report.write(there, arguments.folder / "runs.csv", figures / "column_error.png")
 

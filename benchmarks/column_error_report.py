@@ -3,7 +3,7 @@
 import csv
 import functools
 import itertools
-import re
+import json
 
 import h5py
 import matplotlib
@@ -47,11 +47,10 @@ def read(folder):
     with h5py.File(folder / "profiles.h5", "r") as file:
         order = np.argsort(file["depth"])
         data.update(time=np.array(file["time"]), depth=np.array(file["depth"])[order], ru=np.array(file["ru"])[:, order])
-    text = (folder / "times.txt").read_text(encoding="utf-8")
-    calls, steps = re.search(r"(\d+) calls, ([\d.]+) time steps each", text).groups()
-    data["steps"] = float(calls) * float(steps)
-    data["per_call"] = float(steps)
-    data["seconds"] = float(re.search(r"([\d.]+) s on all", text).group(1))
+    times = json.loads((folder / "times.json").read_text(encoding="utf-8"))
+    data["steps"] = times["packing_steps"]
+    data["per_call"] = times["packing_steps"] / times["packing_calls"]
+    data["seconds"] = times["all_packings"]
     return data
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of one step of a soil column beside its material: what the finite elements cost, per step and 200 elements.
 // Settings take turns, seven rounds; median and range. The error that goes with it is that of the shear layer's
-// transfer function (tests/fem/solve/shear_layer_test.cpp).
+// transfer function (tests/verification/shear_layer_test.cpp).
 //
 //   column_step [elements]
 #include "fem/libraries.hpp"
@@ -62,7 +62,7 @@ std::pair<double, double> step_cost(const Case &which, unsigned elements)
   const Discretisation<1> space({.soil = soil, .degree = which.degree}, shaken_supports<1>(false));
   Timed material(ElasticParameters{}, space.n_points());
   DynamicsSettings settings{.drainage = which.drainage};
-  settings.base.motion[0] = harmonic_motion(1, 2, 60, 1, 0.01);
+  settings.motion[0] = harmonic_motion(1, 2, 60, 1, 0.01);
   Dynamics<1> run(space, material, settings);
   for (int k = 0; k < 1000; ++k)
     run.step();

@@ -5,13 +5,13 @@
     rank_efficiency.py BIN SCENE LIBRARY [--rounds 5] [--set key=value ...]
 
 The last case is the machine's own limit: two programs that share nothing but caches and memory. Times are the
-wall clock that soil_column prints, with the reading of packings that were brought to their stress before. Prints medians and ranges; efficiency is
+wall clock that soil_column measures, with the reading of packings that were brought to their stress before. Prints medians and ranges; efficiency is
 T(1)/(2 T), the limit T(1)/T(side by side). A quiet machine with two cores, please.
 """
 import argparse
+import json
 import os
 import pathlib
-import re
 import statistics
 import subprocess
 import tempfile
@@ -25,14 +25,14 @@ def start(arguments, ranks, folder, threads=1):
                folder, "-q", "--no-figures", "--threads", str(threads), "--set", f"grains.library={arguments.library.resolve()}"]
     for setting in arguments.set:
         command += ["--set", setting]
-    return subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+    return folder, subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
 
 
-def seconds(process):
-    text = process.communicate()[0]
-    if process.returncode:
+def seconds(run):
+    folder, process = run
+    if process.wait():
         raise SystemExit("soil_column failed")
-    return float(re.search(r"wall time +([\d.]+) s", text).group(1))
+    return json.loads((pathlib.Path(folder) / "times.json").read_text(encoding="utf-8"))["wall"]
 
 
 def measure(arguments, cache):
@@ -43,7 +43,7 @@ def measure(arguments, cache):
             with tempfile.TemporaryDirectory() as folder:
                 arguments.set[0] = f"grains.cache={cache}"
                 running = [start(arguments, ranks, f"{folder}/{k}", threads) for k in range(copies)]
-                times[name].append(max(seconds(process) for process in running))
+                times[name].append(max(seconds(run) for run in running))
                 print(f"  {name}: {times[name][-1]:.2f} s", flush=True)
     return times
 

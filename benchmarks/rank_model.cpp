@@ -19,6 +19,7 @@
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
+#include "coupling/placement/cost_meter.hpp"
 #include "coupling/placement/placement.hpp"
 
 #include <algorithm>
@@ -130,7 +131,7 @@ double makespan(const std::vector<double> &seconds, const std::vector<std::size_
   return last;
 }
 
-/// Packings of each rank, dearest first.
+/// Packings of each rank by falling cost.
 std::vector<std::vector<std::size_t>> orders_of(const std::vector<double> &mean, const Owners &owners, int ranks)
 {
   std::vector<std::size_t> all(mean.size());
@@ -144,10 +145,11 @@ std::vector<std::vector<std::size_t>> orders_of(const std::vector<double> &mean,
 
 Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const Options &o)
 {
-  constexpr double forget = 0.1; // as RveMaterial
-  constexpr std::size_t row_bytes = 9 * sizeof(double);
+  constexpr std::size_t row_bytes = 9 * sizeof(double); // ElementRow: stress, seconds, time steps, failed
   const std::size_t n = block.n_packings();
-  std::vector<double> seconds(n), mean(n, 1.0);
+  std::vector<double> seconds(n);
+  CostMeter meter(n);
+  const std::vector<double> &mean = meter.means();
   Owners owners = longest_first(mean, ranks);
   if (!shared)
     for (std::size_t id = 0; id < n; ++id)
@@ -157,11 +159,9 @@ Model run(const Block &block, std::size_t n_steps, int ranks, bool shared, const
   for (std::size_t step = 0; step < n_steps; ++step)
     {
       block.costs(step, seconds);
-      for (std::size_t id = 0; id < n; ++id)
-        {
-          mean[id] = step == 0 ? seconds[id] : (1 - forget) * mean[id] + forget * seconds[id];
-          model.packings += seconds[id];
-        }
+      meter.add_trial(seconds);
+      for (double s : seconds)
+        model.packings += s;
       double longest = 0;
       for (const auto &order : orders)
         longest = std::max(longest, makespan(seconds, order, o.threads));

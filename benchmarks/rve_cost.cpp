@@ -40,7 +40,7 @@ class Sheared
 public:
   explicit Sheared(const Snapshot &specimen) : assembly(specimen), path_{specimen.box}
   {
-    assembly.time_step =
+    assembly.settings.time_step =
         0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
   }
   void run(int steps)
@@ -49,7 +49,7 @@ public:
       {
         assembly.compute_forces();
         stress += assembly.stress()(1, 1);
-        const double step = 0.5 * assembly.time_step;
+        const double step = 0.5 * assembly.settings.time_step;
         axial_ += step;
         if (assembly.cell())
           assembly.deform(Mat3(isochoric(step).asDiagonal()));

@@ -112,7 +112,7 @@ Row shear_with(Snapshot specimen, double twisting)
   test::Unobserved nobody;
   SpecimenSpec spec;
   spec.domain = "periodic-cell";
-  SimpleShear shear(rebalance(specimen, law, spec, nobody));
+  SimpleShear shear(rebalance(specimen, law, {spec, nobody}));
   free_of_shear(shear.rve, false);
   Row row{};
   const Mat6 c = shear.rve.stiffness();

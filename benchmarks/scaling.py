@@ -10,10 +10,12 @@ scaling.png. Prints one line `scaling <packing> <grains> <threads> <ms per step>
 per case. Pin it to as many cores as threads, on a quiet machine. Exit code 2: bad input.
 """
 import argparse
+import json
 import pathlib
 import statistics
 import subprocess
 import sys
+import tempfile
 
 import matplotlib
 
@@ -27,12 +29,12 @@ STORED = ROOT / "tests" / "reference" / "n1000" / "medium"
 def measure(program, packing, copies, threads, steps):
     command = [str(program), str(packing), "--copies", str(copies), "--threads", str(threads), "--rate", "1",
                "--warm-up", str(max(50, steps // 5)), "--steps", str(steps)]
-    out = subprocess.run(command, capture_output=True, text=True)
-    lines = [line for line in out.stdout.splitlines() if line.startswith("isostat ")]
-    if not lines:
-        sys.exit(f"{' '.join(command)} printed no figures:\n{out.stdout[-1000:]}{out.stderr[-1000:]}")
-    words = lines[-1].split()[1:]
-    return {key: value for key, value in zip(words[0::2], words[1::2])}
+    with tempfile.TemporaryDirectory() as folder:
+        times = pathlib.Path(folder) / "times.json"
+        out = subprocess.run([*command, "--times", str(times)], capture_output=True, text=True)
+        if out.returncode:
+            sys.exit(f"{' '.join(command)} failed:\n{out.stdout[-1000:]}{out.stderr[-1000:]}")
+        return json.loads(times.read_text(encoding="utf-8"))[-1]
 
 
 def integers(text):
@@ -51,15 +53,15 @@ def table(results, threads):
     lines = [head, "|" + "---|" * (head.count("|") - 1)]
     for (name, _), by_threads in results.items():
         first = by_threads[threads[0]]
-        ms = [statistics.median(float(r["ms_per_step"]) for r in by_threads[t]) for t in threads]
-        ns = statistics.median(float(r["ns_per_contact_step"]) for r in first)
+        ms = [statistics.median(r["ms_per_step"] for r in by_threads[t]) for t in threads]
+        ns = statistics.median(r["ns_per_contact_step"] for r in first)
         last = first[-1]
-        lines.append(f"| {name} | {float(last['grains']):,.0f} | {int(last['contacts']):,} | "
+        lines.append(f"| {name} | {last['grains']:,} | {last['contacts']:,} | "
                      + " | ".join(f"{m:.4f}" for m in ms)
-                     + f" | {ns:.1f} | {ms[0] / ms[-1]:.2f} | {last['state_bytes_per_grain']}, "
-                       f"{last['working_bytes_per_grain']} |")
+                     + f" | {ns:.1f} | {ms[0] / ms[-1]:.2f} | {last['state_bytes_per_grain']:.0f}, "
+                       f"{last['working_bytes_per_grain']:.0f} |")
         for t, m in zip(threads, ms):
-            print(f"scaling {name.replace(' ', '-')} {float(last['grains']):.0f} {t} {m:.4f} {ns * m / ms[0]:.1f} "
+            print(f"scaling {name.replace(' ', '-')} {last['grains']} {t} {m:.4f} {ns * m / ms[0]:.1f} "
                   f"{ms[0] / m:.2f}")
     return "\n".join(lines)
 
@@ -67,10 +69,10 @@ def table(results, threads):
 def figure(results, threads, path):
     fig, ax = plt.subplots(figsize=(6, 4))
     for t in threads:
-        rows = sorted((float(r[t][-1]["grains"]), statistics.median(float(x["ns_per_contact_step"]) for x in r[t]))
+        rows = sorted((r[t][-1]["grains"], statistics.median(x["ns_per_contact_step"] for x in r[t]))
                       for (name, _), r in results.items() if name == "row of copies")
         ax.plot(*zip(*rows), "o-", label=f"{t} thread{'s' if t > 1 else ''}, row of copies")
-        cubes = [(float(r[t][-1]["grains"]), statistics.median(float(x["ns_per_contact_step"]) for x in r[t]))
+        cubes = [(r[t][-1]["grains"], statistics.median(x["ns_per_contact_step"] for x in r[t]))
                  for (name, _), r in results.items() if name != "row of copies"]
         if cubes:
             ax.plot(*zip(*cubes), "s", label=f"{t} thread{'s' if t > 1 else ''}, specimen")

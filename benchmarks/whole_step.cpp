@@ -6,7 +6,9 @@
 //   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
 //   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
 //   whole_step specimen.h5 --copies 10           ten copies in a row in one box
+//   whole_step specimen.h5 --times times.json    the figures as a list, one object for each repeat, for scripts
 #include "apps/common/command_line.hpp"
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
@@ -19,6 +21,7 @@
 
 #include <chrono>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -27,7 +30,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-  std::string packing, exported;
+  std::string packing, exported, times;
   double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2;
   std::size_t copies = 1;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
@@ -65,15 +68,23 @@ std::size_t n_contacts(const Assembly &assembly)
   return s.contacts.size() + s.wall_contacts.size();
 }
 
+/// For the terminal.
+std::string text(const Json &value)
+{
+  return value.is_string()         ? value.get<std::string>()
+         : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
+                                   : value.dump();
+}
+
 void measure(const Options &options)
 {
   const Snapshot initial = options.copies > 1 ? test::row_of_copies(load(options), options.copies) : load(options);
   if (!options.exported.empty())
     return export_text(initial, options.exported);
   Assembly assembly(initial);
-  assembly.time_step = options.time_step;
-  assembly.threads = options.threads;
-  assembly.damping = options.damping;
+  assembly.settings.time_step = options.time_step;
+  assembly.settings.threads = options.threads;
+  assembly.settings.damping = options.damping;
   const StrainPath path{assembly.box()};
   double axial = 0, stress = 0;
   const auto run = [&](int steps) {
@@ -86,6 +97,7 @@ void measure(const Options &options)
       }
   };
   run(options.warm_up);
+  Json times;
   for (int r = 0; r < options.repeats; ++r)
     {
       const auto begin = std::chrono::steady_clock::now();
@@ -97,14 +109,25 @@ void measure(const Options &options)
       const MemoryUse memory = assembly.memory();
       const StressInvariants s = invariants(assembly.wall_stress());
       assembly.move(assembly.box());
-      fmt::print(
-          "isostat steps_per_s {:.1f} ms_per_step {:.4f} contacts {} ns_per_contact_step {:.2f} p_kPa {:.2f} q_kPa "
-          "{:.2f} grains {} threads {} state_bytes_per_grain {:.0f} working_bytes_per_grain {:.0f} list_rebuilds {} "
-          "instruction_set {}\n",
-          options.steps / seconds, 1e3 * seconds / options.steps, contacts,
-          1e9 * seconds / options.steps / static_cast<double>(contacts), s.p / 1e3, s.q / 1e3, grains, options.threads,
-          memory.state / grains, memory.working / grains, assembly.verlet_list().n_rebuilds(), instruction_set());
+      times.push_back({{"steps_per_s", options.steps / seconds},
+                       {"ms_per_step", 1e3 * seconds / options.steps},
+                       {"contacts", contacts},
+                       {"ns_per_contact_step", 1e9 * seconds / options.steps / static_cast<double>(contacts)},
+                       {"p_kPa", s.p / 1e3},
+                       {"q_kPa", s.q / 1e3},
+                       {"grains", assembly.packing().n_grains()},
+                       {"threads", options.threads},
+                       {"state_bytes_per_grain", memory.state / grains},
+                       {"working_bytes_per_grain", memory.working / grains},
+                       {"list_rebuilds", assembly.verlet_list().n_rebuilds()},
+                       {"instruction_set", instruction_set()}});
+      fmt::print("isostat");
+      for (const auto &[name, value] : times.back().items())
+        fmt::print(" {} {}", name, text(value));
+      fmt::print("\n");
     }
+  if (!options.times.empty())
+    write_json(options.times, times);
 }
 } // namespace
 
@@ -124,5 +147,6 @@ int main(int argc, char **argv)
   line.option("--warm-up", options.warm_up, "steps before");
   line.option("--threads", options.threads, "threads that share a step");
   line.option("--repeats", options.repeats, "timed blocks");
+  line.option("--times", options.times, "write the figures of each timed block to this file, as JSON");
   return line.run([&] { measure(options); });
 }

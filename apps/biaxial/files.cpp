@@ -15,17 +15,17 @@ namespace
 {
 namespace fs = std::filesystem;
 
-struct Quantity
+struct MapQuantity
 {
   const char *name, *unit;
   double PointState::*value;
 };
-constexpr Quantity quantities[] = {{"shear_strain", "-", &PointState::shear},
-                                   {"volumetric_strain", "-", &PointState::volumetric},
-                                   {"p", "Pa", &PointState::p},
-                                   {"q", "Pa", &PointState::q},
-                                   {"void_ratio", "-", &PointState::void_ratio},
-                                   {"redundancy", "-", &PointState::redundancy}};
+constexpr MapQuantity quantities[] = {{"shear_strain", "-", &PointState::shear},
+                                      {"volumetric_strain", "-", &PointState::volumetric},
+                                      {"p", "Pa", &PointState::p},
+                                      {"q", "Pa", &PointState::q},
+                                      {"void_ratio", "-", &PointState::void_ratio},
+                                      {"redundancy", "-", &PointState::redundancy}};
 
 void add_array(pugi::xml_node parent, const char *type, const std::string &name, int components,
                const std::string &text)
@@ -140,7 +140,7 @@ void BlockFiles::write_vtu(const fs::path &path, const Vector &displacement,
   add_array(piece.append_child("PointData"), "Float64", "displacement", 3, displacements);
   pugi::xml_node data = piece.append_child("CellData");
   const std::size_t n = space_.points_per_cell();
-  for (const Quantity &quantity : quantities)
+  for (const MapQuantity &quantity : quantities)
     {
       std::string text;
       for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)

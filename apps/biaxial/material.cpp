@@ -11,21 +11,6 @@ namespace isostat
 {
 namespace
 {
-RveMaterialSettings grains_settings(const ColumnGrains &spec, int threads)
-{
-  RveMaterialSettings settings;
-  settings.library = spec.library;
-  settings.cache = spec.cache;
-  settings.motion.damping = spec.damping;
-  settings.motion.quasi_static_tolerance = spec.quasi_static_tolerance;
-  settings.motion.rate_floor = spec.rate_floor;
-  settings.motion.rate_ceiling = spec.rate_ceiling;
-  settings.in_situ.motion = settings.motion;
-  settings.undrained = false;
-  settings.threads = threads;
-  return settings;
-}
-
 /// Specimen of every point. The lot is the same on every machine: no distribution of the standard library is used.
 std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretisation<2> &space)
 {
@@ -35,12 +20,11 @@ std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretis
     {
       const std::uint64_t drawn = lot() % scene.mixed_realisations;
       const bool weak = in_weak_zone(scene, place);
-      SpecimenRequest &request = all.emplace_back();
-      const auto density =
-          weak && scene.weak.relative_density ? scene.weak.relative_density : scene.soil.grains.relative_density;
-      if (density)
-        request.relative_density = *density;
-      request.realisation = weak ? scene.weak.realisation : scene.soil.grains.realisation + drawn;
+      SpecimenRequest &request = all.emplace_back(weak ? scene.weak.grains : scene.soil.grains);
+      if (!request.relative_density)
+        request.relative_density = scene.soil.grains.relative_density;
+      if (!weak)
+        request.realisation += drawn;
     }
   return all;
 }
@@ -104,8 +88,10 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
   BlockMaterial block;
   if (scene.has_grains())
     {
-      auto grains =
-          std::make_unique<RveMaterial>(requests(scene, space), grains_settings(scene.grains, threads), MPI_COMM_SELF);
+      RveMaterialSettings settings = scene.grains;
+      settings.undrained = false;
+      settings.threads = threads;
+      auto grains = std::make_unique<RveMaterial>(requests(scene, space), settings, MPI_COMM_SELF);
       block.grains = grains.get();
       block.material = std::move(grains);
     }

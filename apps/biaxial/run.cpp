@@ -18,16 +18,13 @@ namespace isostat
 namespace
 {
 
-StaticsSettings settings_of(const BiaxialScene &scene, double tolerance)
+StaticsSettings settings_of(const BiaxialScene &scene)
 {
   StaticsSettings settings;
   const double way = scene.test.axial_strain * scene.mesh.height;
   settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
-  settings.tolerance = tolerance;
+  settings.newton = scene.newton;
   settings.min_force = scene.test.confinement * scene.mesh.width;
-  settings.max_iterations = scene.newton.max_iterations;
-  settings.iterations_per_tangent = scene.newton.iterations_per_tangent;
-  settings.max_halvings = scene.newton.max_halvings;
   return settings;
 }
 
@@ -43,12 +40,9 @@ public:
   explicit BiaxialRun(const BiaxialRequest &request)
       : request_(request), scene_(request.scene), space_(scene_),
         material_(block_material(scene_, space_, request.threads)),
-        statics_(space_, *material_.material, settings_of(scene_, scene_.newton.tolerance))
+        statics_(space_, *material_.material, settings_of(scene_))
   {
     summary_.points = space_.n_points();
-    const double last = scene_.newton.last_tolerance.value_or(0);
-    for (double tolerance = 2 * scene_.newton.tolerance; tolerance <= last * (1 + 1e-9); tolerance *= 2)
-      looser_.push_back(std::make_unique<Statics<2>>(space_, *material_.material, settings_of(scene_, tolerance)));
   }
 
   BiaxialSummary go();
@@ -57,7 +51,6 @@ private:
   void open();
   void record();
   void step();
-  StaticsEffort solve();
   void back_to_committed();
   void say(const std::string &line) const
   {
@@ -71,9 +64,6 @@ private:
   BlockMesh space_;
   BlockMaterial material_;
   Statics<2> statics_;
-  std::vector<std::unique_ptr<Statics<2>>> looser_; ///< for steps that fail; double the tolerance each
-  StaticsEffort effort_;
-  double residual_ = 0;
   BiaxialSummary summary_;
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;
@@ -81,7 +71,7 @@ private:
 
 void BiaxialRun::open()
 {
-  open_result_folder(request_.folder, request_.overwrite ? FolderUse::overwrite : FolderUse::fresh);
+  open_result_folder(request_.folder, request_.use);
   write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                    {{"threads", std::to_string(request_.threads)}});
   history_ = std::make_unique<Recorder>(request_.folder, columns);
@@ -106,11 +96,11 @@ void BiaxialRun::record()
     }
   std::sort(shear.begin(), shear.end());
   const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
-  const StaticsEffort &effort = effort_;
+  const StaticsEffort &effort = statics_.effort();
   const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
   history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
                                        1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
-                                       1.0 * effort.rejected, residual_, mean, quantile, shear.back()});
+                                       1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
   history_->flush();
   summary_.axial_strain = vertical;
   summary_.volumetric_strain = volume;
@@ -123,52 +113,11 @@ void BiaxialRun::record()
     }
 }
 
-/// One step; what is left of it after a failure with looser tolerances in turn. The next step starts with the first one
-/// again, and as residuals are those of the whole load, it makes up for what was let through.
-StaticsEffort BiaxialRun::solve()
-{
-  const double end = (summary_.steps + 1.0) / scene_.test.steps;
-  Statics<2> *solver = &statics_;
-  StaticsEffort sum;
-  for (std::size_t failures = 0;; ++failures)
-    {
-      bool done = true;
-      try
-        {
-          solver->step(end - solver->time());
-        }
-      catch (const RunFailure &)
-        {
-          if (failures == looser_.size())
-            {
-              if (solver != &statics_)
-                statics_.restore(solver->save());
-              throw;
-            }
-          done = false;
-        }
-      const StaticsEffort &effort = solver->effort();
-      sum.substeps += effort.substeps;
-      sum.rejected += effort.rejected;
-      sum.iterations += effort.iterations;
-      sum.trials += effort.trials;
-      if (done)
-        break;
-      const SolverState state = solver->save();
-      solver = looser_[failures].get();
-      solver->restore(state);
-    }
-  residual_ = solver->residual();
-  if (solver != &statics_)
-    statics_.restore(solver->save());
-  return sum;
-}
-
 void BiaxialRun::step()
 {
-  effort_ = solve();
+  statics_.step((summary_.steps + 1.0) / scene_.test.steps - statics_.time());
   ++summary_.steps;
-  const StaticsEffort &effort = effort_;
+  const StaticsEffort &effort = statics_.effort();
   summary_.iterations += effort.iterations;
   summary_.trials += effort.trials;
   summary_.substeps += effort.substeps;
@@ -180,7 +129,7 @@ void BiaxialRun::step()
                   "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
                   summary_.steps, scene_.test.steps, duration_text(since_start_.seconds()), summary_.axial_strain,
                   summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
-                  effort.substeps, effort.rejected, residual_));
+                  effort.substeps, effort.rejected, statics_.residual()));
 }
 
 /// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.

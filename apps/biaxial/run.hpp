@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/biaxial/scene.hpp"
-
-#include <filesystem>
+#include "apps/deposit/program.hpp"
 
 namespace isostat
 {
-struct BiaxialRequest
-{
-  BiaxialScene scene;
-  std::filesystem::path folder;
-  std::string command_line;
-  bool overwrite = false, quiet = false;
-  int threads = 1;
-};
+using BiaxialRequest = RunRequest<BiaxialScene>;
 
 /// What came out.
 struct BiaxialSummary
@@ -37,5 +29,5 @@ struct BiaxialSummary
 BiaxialSummary run_biaxial(const BiaxialRequest &request);
 
 std::string to_text(const BiaxialSummary &summary, const BiaxialScene &scene);
-std::string to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
+Json to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
 } // namespace isostat

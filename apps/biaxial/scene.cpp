@@ -1,34 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/biaxial/scene.hpp"
 
+#include "base/scene/ranges.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
+#include "coupling/scene/packings.hpp"
+#include "fem/material/iwan_scene.hpp"
 
-#include <filesystem>
 #include <fmt/format.h>
 
 namespace isostat
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
 
-template <class Kind>
-constexpr unsigned bit(Kind kind)
-{
-  return 1u << static_cast<unsigned>(kind);
-}
-constexpr unsigned iwan = bit(LayerMaterial::iwan);
-constexpr unsigned formula = bit(LayerMaterial::elastic) | iwan;
-constexpr unsigned grains = bit(LayerMaterial::grains);
+using namespace ranges;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Range positive{0, infinity, true};
-constexpr Range not_negative{0, infinity};
-constexpr Range fraction{0, 1, true, true};
-constexpr Range counts{1, 1e6};
+constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 
 // clang-format off
 constexpr Section sections[] = {
@@ -40,7 +31,7 @@ constexpr Section sections[] = {
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
 
-constexpr Key keys[] = {
+constexpr Key block_keys[] = {
   {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
    .field = [](BiaxialScene &s) -> Field { return &s.title; }},
 
@@ -68,44 +59,12 @@ constexpr Key keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
   {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
    .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
-  {.path = "soil.strength_ratio", .value = "0.55", .range = positive, .kinds = iwan,
-   .text = "Shear strength, as sqrt(J2), over p'.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.strength_ratio; }},
-  {.path = "soil.phase_transformation_ratio", .value = "0.4", .range = positive, .kinds = iwan,
-   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.phase_transformation_ratio; }},
-  {.path = "soil.contraction", .value = "0.5", .range = not_negative, .kinds = iwan,
-   .text = "Rate of contraction per plastic shear strain.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.contraction; }},
-  {.path = "soil.dilation", .value = "0.3", .range = {0, 1}, .kinds = iwan,
-   .text = "Rate of dilation per plastic shear strain.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.iwan.dilation; }},
-  {.path = "soil.library", .kind = Kind::text, .presence = Presence::required, .value = "library.h5", .kinds = grains,
-   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file.",
-   .field = [](BiaxialScene &s) -> Field { return &s.grains.library; }},
-  {.path = "soil.cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
-   .kinds = grains, .text = "File in which packings at the confinement are kept for the next start.",
-   .field = [](BiaxialScene &s) -> Field { return &s.grains.cache; }},
-  {.path = "soil.relative_density", .presence = Presence::optional, .value = "0.7", .range = {-1, 2}, .kinds = grains,
-   .text = "D_r of the packings; left out: the library has one density only.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.grains.relative_density; }},
-  {.path = "soil.realisation", .kind = Kind::integer, .value = "0", .kinds = grains,
-   .text = "Which seed of the library, counted from 0.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.grains.realisation; }},
+};
+
+constexpr Key test_keys[] = {
   {.path = "soil.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
    .text = "Each point has one of so many seeds, from `realisation` on, by lot; 1: all points have the same.",
    .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
-  {.path = "soil.quasi_static_tolerance", .value = "0.01", .range = fraction, .kinds = grains,
-   .text = "Error that inertia of grains may add, as in element tests.",
-   .field = [](BiaxialScene &s) -> Field { return &s.grains.quasi_static_tolerance; }},
-  {.path = "soil.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
-   .range = positive, .kinds = grains, .text = "Smallest strain rate inside a packing.",
-   .field = [](BiaxialScene &s) -> Field { return &s.grains.rate_floor; }},
-  {.path = "soil.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
-   .range = positive, .kinds = grains, .text = "Largest strain rate inside a packing.",
-   .field = [](BiaxialScene &s) -> Field { return &s.grains.rate_ceiling; }},
-  {.path = "soil.damping", .value = "0.2", .range = {0, 1, false, true}, .kinds = grains,
-   .text = "Local damping of the grains.", .field = [](BiaxialScene &s) -> Field { return &s.grains.damping; }},
 
   {.path = "weak.cells", .kind = Kind::integer, .value = "0",
    .text = "Elements along each side of the square; 0: there is none.",
@@ -119,9 +78,9 @@ constexpr Key keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .text = "D_r of its packings; left out: that of the soil.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.relative_density; }},
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.relative_density; }},
   {.path = "weak.realisation", .kind = Kind::integer, .value = "0", .text = "Seed of its packings.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.realisation; }},
+   .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
 
   {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive, .text = "Isotropic effective stress at the start, on the sides throughout.",
@@ -136,10 +95,6 @@ constexpr Key keys[] = {
    .text = "Of the residual over the force scale, which is confinement times width or more. Grains need one above their "
            "noise, some 1e-2.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.tolerance; }},
-  {.path = "newton.last_tolerance", .presence = Presence::optional, .value = "0.08", .range = fraction,
-   .text = "What is left of a step without equilibrium is tried again with the tolerance doubled, up to this; the next "
-           "step has the first one again. Left out: the run ends there.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.last_tolerance; }},
   {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25", .range = counts,
    .text = "Of a sub-step; then it is halved.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.max_iterations; }},
@@ -159,21 +114,31 @@ constexpr Key keys[] = {
 };
 
 constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate};
-
-constexpr SceneSchema schema{.keys = keys, .sections = sections, .groups = {}, .dimensions = dimensions,
-                             .set_example = "test.steps=100",
-                             .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = value\" "
-                                              "is a key without default, with an example."};
 // clang-format on
+
+const SceneSchema &schema()
+{
+  static const KeyTable keys{
+      block_keys, splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
+      splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
+      test_keys};
+  static const SceneSchema schema{.keys = keys.keys(),
+                                  .sections = sections,
+                                  .groups = {},
+                                  .dimensions = dimensions,
+                                  .set_example = "test.steps=100",
+                                  .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = "
+                                                   "value\" is a key without default, with an example."};
+  return schema;
+}
 
 void check(const SceneDocument &document, const BiaxialScene &scene)
 {
-  if (scene.grains.rate_floor > scene.grains.rate_ceiling)
-    document.refuse("soil.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
-  if (scene.soil.iwan.phase_transformation_ratio > scene.soil.iwan.strength_ratio)
-    document.refuse("soil.phase_transformation_ratio", "must not exceed strength_ratio. Correct one of them.");
-  if (scene.newton.last_tolerance && *scene.newton.last_tolerance < scene.newton.tolerance)
-    document.refuse("newton.last_tolerance", "must not be below newton.tolerance. Correct one of them.");
+  if (scene.has_grains())
+    check_packings(document, "soil", scene.grains);
+  if (scene.soil.material == LayerMaterial::iwan)
+    check_iwan(document, "soil", scene.soil.iwan);
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",
@@ -186,26 +151,18 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
 
 BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
-  const SceneDocument document(schema, read_scene_text(path), path, overrides);
+  const SceneDocument document(schema(), read_scene_text(path), path, overrides);
   BiaxialScene scene;
   fill_scene(document, &scene);
   check(document, scene);
   if (scene.has_grains())
-    {
-      const fs::path library = fs::absolute(fs::path(path).parent_path() / scene.grains.library).lexically_normal();
-      std::error_code ignored;
-      if (!fs::is_regular_file(library, ignored))
-        document.refuse("soil.library", fmt::format("is not there ({}). A relative path counts from the folder of the "
-                                                    "scene file; correct it.",
-                                                    library.string()));
-      scene.grains.library = library.string();
-    }
+    scene.grains.library = found_file(document, "soil.library", path, scene.grains.library);
   if (scene.output.folder.empty())
-    scene.output.folder = "results/" + fs::path(path).stem().string();
+    scene.output.folder = results_folder(path);
   return scene;
 }
 
-std::string to_toml(const BiaxialScene &scene) { return write_scene(schema, &scene); }
+std::string to_toml(const BiaxialScene &scene) { return write_scene(schema(), &scene); }
 
-std::string default_biaxial_scene() { return write_defaults(schema); }
+std::string default_biaxial_scene() { return write_defaults(schema()); }
 } // namespace isostat

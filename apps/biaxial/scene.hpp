@@ -2,6 +2,7 @@
 // What a run of the biaxial block consists of. Lengths m, stresses Pa.
 #pragma once
 #include "apps/deposit/scene.hpp"
+#include "fem/solve/newton_settings.hpp"
 
 namespace isostat
 {
@@ -19,11 +20,10 @@ struct BiaxialMesh
 /// A square of elements that differs from the rest.
 struct WeakZone
 {
-  unsigned cells = 0;                     ///< along each side; 0: there is none
-  unsigned column = 0, row = 0;           ///< of its lower left element, from the lower left corner of the block
-  double factor = 0.8;                    ///< of stiffness and strength, of a material from a formula
-  std::optional<double> relative_density; ///< of packings; left out: that of the soil
-  std::uint64_t realisation = 0;          ///< of packings
+  unsigned cells = 0;           ///< along each side; 0: there is none
+  unsigned column = 0, row = 0; ///< of its lower left element, from the lower left corner of the block
+  double factor = 0.8;          ///< of stiffness and strength, of a material from a formula
+  SpecimenRequest grains;       ///< of packings; a density left out is that of the soil
 
   bool operator==(const WeakZone &) const = default;
 };
@@ -36,16 +36,6 @@ struct BiaxialTest
   unsigned steps = 50;
 
   bool operator==(const BiaxialTest &) const = default;
-};
-
-/// Of StaticsSettings; the smallest force scale is confinement times width.
-struct BiaxialNewton
-{
-  double tolerance = 1e-6;
-  unsigned max_iterations = 25, iterations_per_tangent = 1, max_halvings = 8;
-  std::optional<double> last_tolerance; ///< the largest with which a step that failed is tried again
-
-  bool operator==(const BiaxialNewton &) const = default;
 };
 
 struct BiaxialOutput
@@ -62,11 +52,11 @@ struct BiaxialScene
   std::string title;
   BiaxialMesh mesh;
   ColumnLayer soil; ///< its material; no thickness or weight
-  ColumnGrains grains;
+  RveMaterialSettings grains;
   std::uint64_t mixed_realisations = 1; ///< seeds of which each point has one by lot
   WeakZone weak;
   BiaxialTest test;
-  BiaxialNewton newton;
+  NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8}; ///< the smallest force scale is confinement times width
   BiaxialOutput output;
 
   bool has_grains() const { return soil.material == LayerMaterial::grains; }

@@ -2,26 +2,15 @@
 #include "apps/biaxial/run.hpp"
 #include "base/record/progress.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
 namespace
 {
 constexpr const char *material_names[] = {"elastic", "iwan", "grains"};
-
-/// Text in quotes for JSON.
-std::string quoted(const std::string &text)
-{
-  std::string out = "\"";
-  for (char c : text)
-    {
-      if (c == '"' || c == '\\')
-        out += '\\';
-      out += c == '\n' ? ' ' : c;
-    }
-  return out + "\"";
-}
 } // namespace
 
 std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
@@ -43,32 +32,29 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
   return text;
 }
 
-std::string to_json(const BiaxialSummary &s, const BiaxialScene &scene)
+Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
 {
-  std::string text = "{\n";
-  text += fmt::format("  \"title\": {},\n  \"complete\": {},\n  \"failure\": {},\n", quoted(scene.title), s.complete,
-                      quoted(s.failure));
-  const std::pair<const char *, double> numbers[] = {{"steps", s.steps},
-                                                     {"points", s.points},
-                                                     {"width_m", scene.mesh.width},
-                                                     {"height_m", scene.mesh.height},
-                                                     {"cells_across", scene.mesh.cells_across},
-                                                     {"cells_up", scene.mesh.cells_up},
-                                                     {"confinement_Pa", scene.test.confinement},
-                                                     {"axial_strain", s.axial_strain},
-                                                     {"peak_stress_Pa", s.peak_stress},
-                                                     {"peak_strain", s.peak_strain},
-                                                     {"last_stress_Pa", s.last_stress},
-                                                     {"volumetric_strain", s.volumetric_strain},
-                                                     {"localisation", s.localisation},
-                                                     {"iterations", s.iterations},
-                                                     {"trials", s.trials},
-                                                     {"substeps", s.substeps},
-                                                     {"rejected", s.rejected},
-                                                     {"tangents", s.tangents},
-                                                     {"rve_steps", s.rve_steps}};
-  for (const auto &[name, value] : numbers)
-    text += fmt::format("  \"{}\": {:.9g}{}\n", name, value, std::string_view(name) == "rve_steps" ? "" : ",");
-  return text + "}\n";
+  return {{"title", scene.title},
+          {"complete", s.complete},
+          {"failure", s.failure},
+          {"steps", s.steps},
+          {"points", s.points},
+          {"width_m", scene.mesh.width},
+          {"height_m", scene.mesh.height},
+          {"cells_across", scene.mesh.cells_across},
+          {"cells_up", scene.mesh.cells_up},
+          {"confinement_Pa", scene.test.confinement},
+          {"axial_strain", s.axial_strain},
+          {"peak_stress_Pa", s.peak_stress},
+          {"peak_strain", s.peak_strain},
+          {"last_stress_Pa", s.last_stress},
+          {"volumetric_strain", s.volumetric_strain},
+          {"localisation", s.localisation},
+          {"iterations", s.iterations},
+          {"trials", s.trials},
+          {"substeps", s.substeps},
+          {"rejected", s.rejected},
+          {"tangents", s.tangents},
+          {"rve_steps", std::llround(s.rve_steps)}};
 }
 } // namespace isostat

@@ -44,20 +44,20 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
 std::vector<double> history_row(const Scene &scene, const Assembly &assembly, const DriveState &state,
                                 const Observation &seen, const Micromechanics &micromechanics)
 {
-  const Vec3 strain = -strain_since_origin(assembly, state); // compression positive
+  const Vec3 strain = -strain_since_start(assembly, state.path); // compression positive
   const double inertia =
-      inertial_number(state.signed_rate, assembly.d50(), assembly.packing().density, std::max(seen.p, 1.0));
+      inertial_number(state.loading.signed_rate, assembly.d50(), assembly.packing().density, std::max(seen.p, 1.0));
   std::vector<double> row = {static_cast<double>(assembly.step()),
                              assembly.time(),
-                             state.stage,
+                             static_cast<double>(state.place.stage),
                              strain[0],
                              strain[1],
                              strain[2],
-                             state.signed_rate,
-                             state.reversals,
-                             state.liquefied,
-                             assembly.time_step,
-                             state.indicator,
+                             state.loading.signed_rate,
+                             static_cast<double>(state.undrained.reversals),
+                             state.undrained.liquefaction ? 1.0 : 0.0,
+                             assembly.settings.time_step,
+                             state.pace.indicator,
                              inertia};
   const std::vector<double> measured = micromechanics.row();
   row.insert(row.end(), measured.begin(), measured.end());

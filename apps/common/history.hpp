@@ -2,8 +2,8 @@
 // tested: tests/regression/regression_test.py
 #pragma once
 #include "base/record/recorder.hpp"
-#include "dem/drive/programme.hpp"
 #include "dem/measure/summary.hpp"
+#include "dem/scene/scene.hpp"
 
 namespace isostat
 {

@@ -14,7 +14,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-const std::string specimen_prefix = "specimen_";
 
 /// The state of a test for the progress line.
 std::string in_words(const Assembly &assembly, const Observation &seen, double redundancy)
@@ -27,18 +26,6 @@ std::string in_words(const Assembly &assembly, const Observation &seen, double r
   return path + fmt::format("  e {:.4f}", e) + (redundancy > 0 ? fmt::format("  I_R {:.3f}", redundancy) : "");
 }
 
-/// visit(name in a checkpoint, J) for the sums of the energy balance.
-template <typename Balance, typename Visit>
-void for_each_tally(Balance &balance, const Visit &visit)
-{
-  int k = 0;
-  EnergyBalance::for_each(balance, [&](const char *, auto &energy) { visit(fmt::format("tally_{}", k++), energy); });
-}
-
-std::size_t counter(const Checkpoint *checkpoint, const char *name)
-{
-  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
-}
 } // namespace
 
 bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &, const Observation &seen)
@@ -51,13 +38,10 @@ bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &,
 RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
                      const Checkpoint *resumed)
     : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
-      recorder_(folder_, history_columns(scene), counter(resumed, "rows")),
-      grains_(folder_ / "grains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
-      chains_(folder_ / "force_chains.pvd", scene.output.paraview ? counter(resumed, "snapshots") : 0),
-      n_snapshots_(counter(resumed, "snapshots")), progress_(quiet)
+      written_(resumed ? resumed->written : WrittenSoFar{}), recorder_(folder_, history_columns(scene), written_.rows),
+      grains_(folder_ / "grains.pvd", scene.output.paraview ? written_.snapshots : 0),
+      chains_(folder_ / "force_chains.pvd", scene.output.paraview ? written_.snapshots : 0), progress_(quiet)
 {
-  if (resumed)
-    redundancy_ = resumed->numbers.at("redundancy");
   if (scene.output.snapshots != "none")
     fs::create_directories(folder_ / "snapshots");
   if (scene.output.paraview)
@@ -68,17 +52,17 @@ void RunOutput::record(const Assembly &assembly, const DriveState &state, const 
 {
   Snapshot now = assembly.snapshot();
   const Micromechanics m = micromechanics(now);
-  redundancy_ = m.redundancy;
+  written_.redundancy = m.redundancy;
   recorder_.append(history_row(scene_, assembly, state, seen, m));
   if (!snapshot)
     return;
-  now.strain = strain_since_origin(assembly, state);
+  now.strain = strain_since_start(assembly, state.path);
   store_snapshot(now);
 }
 
 void RunOutput::store_snapshot(const Snapshot &snapshot)
 {
-  const std::string name = fmt::format("{:04d}", n_snapshots_);
+  const std::string name = fmt::format("{:04d}", written_.snapshots);
   hdf5::File file = hdf5::File::create(folder_ / "snapshots" / ("snapshot_" + name + ".h5"));
   file.root().set_attribute("format", std::string("isostat-snapshot"));
   write_snapshot(file.root().create_group("snapshot"), snapshot);
@@ -90,16 +74,16 @@ void RunOutput::store_snapshot(const Snapshot &snapshot)
       grains_.append(snapshot.time, "paraview/grains_" + name + ".vtp");
       chains_.append(snapshot.time, "paraview/force_chains_" + name + ".vtp");
     }
-  ++n_snapshots_;
+  ++written_.snapshots;
 }
 
 void RunOutput::event(const std::string &line) { progress_.say(line); }
 
 bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, const Observation &seen)
 {
-  const auto stage = static_cast<std::size_t>(state.stage);
-  if (progress_.due(assembly.step(), stage_fraction(scene_.stages[stage], state)))
-    progress_.say(progress_.line(in_words(assembly, seen, redundancy_)));
+  const StageBehaviour &stage = behaviour(scene_.stages[state.place.stage]);
+  if (progress_.due(assembly.step(), stage.fraction_done(state).value_or(-1)))
+    progress_.say(progress_.line(in_words(assembly, seen, written_.redundancy)));
   if (stop_requested())
     {
       save_checkpoint(assembly, state);
@@ -110,54 +94,21 @@ bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, co
   return true;
 }
 
-void RunOutput::save_checkpoint(const Assembly &assembly, DriveState state)
+void RunOutput::save_checkpoint(const Assembly &assembly, const DriveState &state)
 {
   recorder_.flush();
-  Checkpoint checkpoint{assembly.checkpoint(), {}, scene_text_};
-  auto &numbers = checkpoint.numbers;
-  state.for_each([&](const std::string &name, double value) { numbers["drive_" + name] = value; });
-  for_each_tally(assembly.tally, [&](const std::string &name, double energy) { numbers[name] = energy; });
-  const auto memory = assembly.boundary_memory();
-  for (std::size_t k = 0; k < memory.size(); ++k)
-    numbers[fmt::format("boundary_{:02d}", k)] = memory[k];
-  numbers["rows"] = static_cast<double>(recorder_.n_rows());
-  numbers["snapshots"] = static_cast<double>(n_snapshots_);
-  numbers["redundancy"] = redundancy_;
-  for (const auto &[name, value] : specimen_)
-    numbers[specimen_prefix + name] = value;
+  written_.rows = recorder_.n_rows();
+  Checkpoint checkpoint{assembly.checkpoint(), state, written_, {}, specimen_, scene_text_};
+  EnergyMemory::for_each(assembly.energy_memory(),
+                         [&](const std::string &name, double value) { checkpoint.assembly[name] = value; });
   write_checkpoint(folder_ / "checkpoint", checkpoint);
   since_checkpoint_.restart();
 }
 
-void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state)
+void restore(const Checkpoint &checkpoint, Assembly &assembly)
 {
-  const auto &numbers = checkpoint.numbers;
-  state.for_each([&](const std::string &name, double &value) { value = numbers.at("drive_" + name); });
-  for_each_tally(assembly.tally, [&](const std::string &name, double &energy) { energy = numbers.at(name); });
-  auto memory = assembly.boundary_memory();
-  for (std::size_t k = 0; k < memory.size(); ++k)
-    memory[k] = numbers.at(fmt::format("boundary_{:02d}", k));
-  assembly.set_boundary_memory(memory);
-}
-
-std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint)
-{
-  std::map<std::string, double> specimen;
-  for (const auto &[name, value] : checkpoint.numbers)
-    if (name.starts_with(specimen_prefix))
-      specimen[name.substr(specimen_prefix.size())] = value;
-  return specimen;
-}
-
-double stage_fraction(const Stage &stage, const DriveState &state)
-{
-  if (is_cyclic(stage.kind))
-    {
-      if (state.liquefied != 0 && stage.reversals_after_liquefaction > 0)
-        return (state.reversals - state.liquefaction_reversals) /
-               static_cast<double>(stage.reversals_after_liquefaction);
-      return state.reversals / (2.0 * static_cast<double>(stage.max_cycles));
-    }
-  return is_shear(stage.kind) && stage.strain > 0 ? std::abs(state.axial) / stage.strain : -1;
+  EnergyMemory memory;
+  EnergyMemory::for_each(memory, [&](const std::string &name, auto &value) { value = checkpoint.assembly.at(name); });
+  assembly.set_energy_memory(memory);
 }
 } // namespace isostat

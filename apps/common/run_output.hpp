@@ -36,7 +36,7 @@ public:
   void event(const std::string &line) override;
   bool after_step(const Assembly &, const DriveState &, const Observation &) override;
 
-  void save_checkpoint(const Assembly &assembly, DriveState state);
+  void save_checkpoint(const Assembly &assembly, const DriveState &state);
   void finish() { recorder_.flush(); }
 
 private:
@@ -46,20 +46,13 @@ private:
   const Scene &scene_;
   std::string scene_text_;
   std::map<std::string, double> specimen_;
+  WrittenSoFar written_;
   Recorder recorder_;
   PvdCollection grains_, chains_;
-  std::uint64_t n_snapshots_ = 0;
-  double redundancy_ = 0;
   Progress progress_;
   Stopwatch since_checkpoint_;
 };
 
-/// Puts a checkpoint's numbers back into assembly and driver state.
-void restore(const Checkpoint &checkpoint, Assembly &assembly, DriveState &state);
-
-/// Figures of the specimen that a checkpoint keeps.
-std::map<std::string, double> specimen_numbers(const Checkpoint &checkpoint);
-
-/// How much of the present stage is done, 0..1; negative if it cannot be told.
-double stage_fraction(const Stage &stage, const DriveState &state);
+/// Puts the sums of a checkpoint back into the assembly.
+void restore(const Checkpoint &checkpoint, Assembly &assembly);
 } // namespace isostat

@@ -2,10 +2,13 @@
 #include "apps/common/test_summary.hpp"
 
 #include "base/files/csv_table.hpp"
+#include "base/files/json.hpp"
 #include "dem/drive/programme.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -36,10 +39,13 @@ CsvTable read_history(const std::filesystem::path &folder, bool energy)
 
 double liquefaction_ratio(const Scene &scene)
 {
-  for (const Stage &s : scene.stages)
-    if (is_shear(s.kind))
-      return s.liquefaction_ratio;
-  return 0.01;
+  for (const Stage &stage : scene.stages)
+    if (behaviour(stage).shears())
+      {
+        const auto *undrained = as<ConstantVolume>(stage);
+        return undrained ? undrained->liquefaction_ratio : UndrainedMonotonic{}.liquefaction_ratio;
+      }
+  return UndrainedMonotonic{}.liquefaction_ratio;
 }
 
 /// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the
@@ -74,7 +80,7 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
   summary.min_p = summary.p0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
-      if (!is_shear(scene.stages[static_cast<std::size_t>(history(row, stage))].kind))
+      if (!behaviour(scene.stages[static_cast<std::size_t>(history(row, stage))]).shears())
         continue;
       if (!started)
         {
@@ -96,14 +102,19 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
     }
 }
 
-bool any_stage(const Scene &scene, bool (*is)(StageKind))
+bool is_cyclic(const Stage &stage) { return as<CyclicConstantVolume>(stage); }
+
+bool shears_in(const Stage &stage, const ShearMode &mode)
 {
-  return std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage &s) { return is(s.kind); });
+  const auto *shear = as<ShearStage>(stage);
+  return shear && shear->mode() == mode;
 }
+bool is_axial(const Stage &stage) { return shears_in(stage, triaxial_mode); }
+bool is_simple_shear(const Stage &stage) { return shears_in(stage, simple_shear_mode); }
 
 std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
 {
-  if (!any_stage(scene, is_simple_shear))
+  if (std::none_of(scene.stages.begin(), scene.stages.end(), is_simple_shear))
     return std::nullopt;
   enum
   {
@@ -115,11 +126,11 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
   const CsvTable history(folder / "history.csv", {"stage (-)", "gamma_xy (-)", "tau_xy (Pa)", "sigma_y (Pa)"});
   ShearExtremes shear;
   for (const Stage &s : scene.stages)
-    if (is_simple_shear(s.kind) && is_cyclic(s.kind))
-      shear.requested_ratio = std::max(shear.requested_ratio, s.stress_ratio);
+    if (const auto *cyclic = as<UndrainedCyclicSimpleShear>(s))
+      shear.requested_ratio = std::max(shear.requested_ratio, cyclic->stress_ratio);
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     {
-      if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))].kind))
+      if (!is_simple_shear(scene.stages[static_cast<std::size_t>(history(row, at_stage))]))
         continue;
       if (shear.sigma_v0 == 0)
         shear.sigma_v0 = history(row, sigma_y);
@@ -163,14 +174,25 @@ std::string shear_text(const TestSummary &s)
 }
 
 /// Members of summary.json that only simple shear has.
-std::string shear_json(const TestSummary &s)
+Json shear_json(const ShearExtremes &shear)
 {
-  if (!s.shear)
-    return "";
-  return fmt::format("  \"gamma_max_reached\": {:.10g},\n  \"tau_max_reached\": {:.10g},\n  \"sigma_v0\": {:.10g},\n  "
-                     "\"stress_ratio_max\": {:.10g},\n  \"CSR\": {},\n",
-                     s.shear->gamma, s.shear->tau, s.shear->sigma_v0, s.shear->max_ratio,
-                     s.shear->requested_ratio > 0 ? fmt::format("{:.10g}", s.shear->requested_ratio) : "null");
+  return {{"gamma_max_reached", shear.gamma},
+          {"tau_max_reached", shear.tau},
+          {"sigma_v0", shear.sigma_v0},
+          {"stress_ratio_max", shear.max_ratio},
+          {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};
+}
+
+Json liquefaction_json(const TestSummary &s)
+{
+  if (!s.liquefied)
+    return nullptr;
+  return {{"row", s.onset_row},
+          {"cycle", s.cycles_to_liquefaction},
+          {"strain_before", s.strain_before},
+          {"IR_at_onset", s.redundancy_at_onset},
+          {"IR_min", s.redundancy_min},
+          {"IR_recovered", s.redundancy_recovered}};
 }
 } // namespace
 
@@ -187,18 +209,18 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.void_ratio = number("void_ratio", 0);
   summary.relative_density = number("relative_density", 0);
   summary.preparation_friction = number("preparation_friction_deg", -1);
-  summary.p0 = state.p0;
+  summary.p0 = state.path.p0();
   summary.seconds = seconds;
-  summary.reversals = state.reversals;
-  summary.worst_overshoot = state.worst_overshoot;
-  summary.cyclic = any_stage(scene, is_cyclic);
-  summary.axial = any_stage(scene, [](StageKind kind) { return is_shear(kind) && !is_simple_shear(kind); });
+  summary.reversals = static_cast<double>(state.undrained.reversals);
+  summary.worst_overshoot = state.undrained.worst_overshoot;
+  summary.cyclic = std::any_of(scene.stages.begin(), scene.stages.end(), is_cyclic);
+  summary.axial = std::any_of(scene.stages.begin(), scene.stages.end(), is_axial);
   summary.shear = shear_extremes(folder, scene);
-  summary.cycles_to_liquefaction = state.liquefaction_reversals / 2;
-  summary.strain_before = state.max_strain_before;
+  summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
+  summary.strain_before = state.undrained.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
   add_path(history, scene, summary);
-  add_recoveries(history, liquefaction_ratio(scene) * state.p0, summary);
+  add_recoveries(history, liquefaction_ratio(scene) * state.path.p0(), summary);
   if (scene.output.energy)
     summary.energy_residual = energy_residual(history);
   return summary;
@@ -241,24 +263,23 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   return text + "\n";
 }
 
-std::string to_json(const TestSummary &s)
+void write_json(const std::filesystem::path &path, const TestSummary &s)
 {
-  std::string title;
-  for (char c : s.title)
-    title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  const std::string liquefaction =
-      s.liquefied ? fmt::format("{{\"row\": {}, \"cycle\": {}, \"strain_before\": {:.10g}, \"IR_at_onset\": {:.10g}, "
-                                "\"IR_min\": {:.10g}, \"IR_recovered\": {:.10g}}}",
-                                s.onset_row, s.cycles_to_liquefaction, s.strain_before, s.redundancy_at_onset,
-                                s.redundancy_min, s.redundancy_recovered)
-                  : "null";
-  return fmt::format(
-      "{{\n  \"title\": \"{}\",\n  \"grains\": {},\n  \"void_ratio\": {:.10g},\n  \"relative_density\": {:.10g},\n  "
-      "\"preparation_friction_deg\": {:.10g},\n  \"p0\": {:.10g},\n  \"steps\": {:.0f},\n  \"seconds\": {:.3f},\n  "
-      "\"shear_stage_first_row\": {},\n  \"reversals\": {:.0f},\n  \"worst_overshoot\": {:.10g},\n{}  "
-      "\"energy_residual\": {},\n  \"liquefaction\": {}\n}}\n",
-      title, s.grains, s.void_ratio, s.relative_density, s.preparation_friction, s.p0, s.steps, s.seconds, s.first_row,
-      s.reversals, s.worst_overshoot, shear_json(s),
-      s.energy_residual >= 0 ? fmt::format("{:.6g}", s.energy_residual) : "null", liquefaction);
+  Json json{{"title", s.title},
+            {"grains", s.grains},
+            {"void_ratio", s.void_ratio},
+            {"relative_density", s.relative_density},
+            {"preparation_friction_deg", s.preparation_friction},
+            {"p0", s.p0},
+            {"steps", std::llround(s.steps)},
+            {"seconds", s.seconds},
+            {"shear_stage_first_row", s.first_row},
+            {"reversals", std::llround(s.reversals)},
+            {"worst_overshoot", s.worst_overshoot}};
+  if (s.shear)
+    json.update(shear_json(*s.shear));
+  json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
+  json["liquefaction"] = liquefaction_json(s);
+  write_json(path, json);
 }
 } // namespace isostat

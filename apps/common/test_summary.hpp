@@ -49,6 +49,6 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
 
 /// For the terminal.
 std::string to_text(const TestSummary &summary, const Scene &scene);
-/// For summary.json: read by scripts/plots.py.
-std::string to_json(const TestSummary &summary);
+/// summary.json, which the figures read.
+void write_json(const std::filesystem::path &path, const TestSummary &summary);
 } // namespace isostat

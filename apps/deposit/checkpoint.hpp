@@ -13,6 +13,18 @@ struct ColumnCheckpoint
   std::map<std::string, double> numbers;              ///< rows written, largest values ...
   std::map<std::string, std::vector<double>> vectors; ///< largest values over the depth
   std::string scene;                                  ///< the resolved scene; a resumed run must have the same
+
+  /// Stores and takes back what State::for_each(state, visit) visits with name and number.
+  template <class State>
+  void put(const State &state)
+  {
+    State::for_each(state, [&](const char *name, double value) { numbers[name] = value; });
+  }
+  template <class State>
+  void get(State &state) const
+  {
+    State::for_each(state, [&](const char *name, double &value) { value = numbers.at(name); });
+  }
 };
 
 /// As folder/last.h5 with folder/previous.h5 (base/record/checkpoint_folder.hpp).

@@ -2,6 +2,8 @@
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/schema.hpp"
 #include "base/scene/reader.hpp"
+#include "coupling/scene/packings.hpp"
+#include "fem/material/iwan_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -38,17 +40,16 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water shall move.");
-  if (layer.material == LayerMaterial::iwan && layer.iwan.phase_transformation_ratio > layer.iwan.strength_ratio)
-    document.refuse(prefix + ".phase_transformation_ratio",
-                    "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
+  if (layer.material == LayerMaterial::iwan)
+    check_iwan(document, prefix, layer.iwan);
   constexpr unsigned most = 1000000;
   if (layer.cells == 0 && !(layer.thickness / layer.cell_size <= most))
     document.refuse(prefix + ".cell_size", fmt::format("would give more than {} cells. Give a larger one.", most));
 }
 
-void check_base(const SceneDocument &document, const ColumnBase &base)
+void check_base(const SceneDocument &document, const Base &base)
 {
-  if (base.kind == BaseKind::compliant &&
+  if (base.compliant() &&
       base.rock_p_velocity() * base.rock_p_velocity() <= 4.0 / 3.0 * base.shear_velocity * base.shear_velocity)
     document.refuse("base.p_velocity", "must be more than 1.155 times shear_velocity, or the rock has no bulk modulus. "
                                        "Leave it out for twice.");
@@ -84,7 +85,7 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
                                  "\"step\" and an amplitude.");
   if (!scene.motions.empty())
     document.refuse("motion", "has no effect in a consolidation, where nothing shakes. Remove [[motion]].");
-  if (scene.base.kind == BaseKind::compliant)
+  if (scene.base.compliant())
     document.refuse("base.kind", "must be \"rigid\" in a consolidation, where no waves have to leave.");
   if (scene.analysis.last_time <= scene.analysis.first_time)
     document.refuse("analysis.last_time", fmt::format("must be after first_time, {} s. Correct one of them.",
@@ -107,13 +108,9 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
   if (scene.analysis.kind == AnalysisKind::consolidation)
     document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
                               "\"dynamic\", or layers another material.");
-  if (scene.grains.library.empty())
-    document.refuse("grains.library", "is missing; layers of grains are made of its specimens. Give library = "
-                                      "\"library.h5\", made by specimen_library.");
-  if (scene.grains.rate_floor > scene.grains.rate_ceiling)
-    document.refuse("grains.rate_floor", "must not exceed rate_ceiling. Correct one of them.");
-  check_depths(document, scene, "grains.path_depths", scene.grains.path_depths);
-  check_depths(document, scene, "grains.snapshot_depths", scene.grains.snapshot_depths);
+  check_packings(document, "grains", scene.grains);
+  check_depths(document, scene, "grains.path_depths", scene.grain_output.path_depths);
+  check_depths(document, scene, "grains.snapshot_depths", scene.grain_output.snapshot_depths);
 }
 
 void check_output(const SceneDocument &document, const ColumnScene &scene)

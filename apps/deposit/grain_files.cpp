@@ -48,7 +48,7 @@ GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMate
   std::stable_sort(from_above_.begin(), from_above_.end(),
                    [&](std::size_t a, std::size_t b) { return depths_[a] < depths_[b]; });
   chosen_ = nearest_grains(soil, depths, scene.output.depths);
-  pictured_ = nearest_grains(soil, depths, scene.grains.snapshot_depths);
+  pictured_ = nearest_grains(soil, depths, scene.grain_output.snapshot_depths);
 }
 
 void GrainFiles::open(const ColumnCheckpoint *resumed)

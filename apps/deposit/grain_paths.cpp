@@ -18,7 +18,8 @@ std::filesystem::path path_folder(const std::filesystem::path &folder, std::size
 
 GrainPaths::GrainPaths(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
                        const std::vector<double> &depths)
-    : folder_(std::move(folder)), grains_(*soil.grains), points_(nearest_grains(soil, depths, scene.grains.path_depths))
+    : folder_(std::move(folder)), grains_(*soil.grains),
+      points_(nearest_grains(soil, depths, scene.grain_output.path_depths))
 {
   for (std::size_t point : points_)
     depths_.push_back(depths[soil.grains_places[point]]);
@@ -33,8 +34,6 @@ void GrainPaths::write_start(std::size_t k) const
   start.depth = depths_[k];
   start.packing = element->pack();
   start.settings = grains_.element_settings();
-  start.undrained = grains_.settings().undrained;
-  start.halvings = grains_.settings().halvings;
   write_strain_record_start(path_folder(folder_, k), start);
 }
 

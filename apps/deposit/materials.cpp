@@ -10,37 +10,12 @@
 
 namespace isostat
 {
-namespace
-{
-IwanParameters sand_of(const ColumnLayer &layer)
-{
-  const IwanSpec &spec = layer.iwan;
-  IwanParameters sand;
-  sand.shear_modulus = layer.small_strain_modulus();
-  sand.poisson_ratio = layer.poisson_ratio;
-  sand.exponent = spec.exponent;
-  sand.reference_pressure = spec.reference_pressure;
-  sand.strength_ratio = spec.strength_ratio;
-  sand.phase_transformation_ratio = spec.phase_transformation_ratio;
-  sand.contraction = spec.contraction;
-  sand.dilation = spec.dilation;
-  sand.fabric_limit = spec.fabric_limit;
-  sand.fabric_rate = spec.fabric_rate;
-  sand.critical_pressure = spec.critical_pressure;
-  sand.elements = spec.elements;
-  return sand;
-}
-
-} // namespace
-
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
 {
   if (layer.material == LayerMaterial::iwan)
-    return std::make_unique<Iwan>(sand_of(layer), n_points);
+    return std::make_unique<Iwan>(layer.sand(), n_points);
   return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
 }
-
-std::size_t number_in_scene(const ColumnScene &scene, std::size_t layer) { return scene.layers.size() - 1 - layer; }
 
 template <int dim>
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const Discretisation<dim> &space)
@@ -66,7 +41,7 @@ std::unique_ptr<Material> column_material(const ColumnScene &scene, const Discre
     {
       for (end = cell; end < space.n_cells() && space.cell_layer[end] == space.cell_layer[cell]; ++end)
         ;
-      const std::size_t k = number_in_scene(scene, space.cell_layer[cell]);
+      const std::size_t k = space.cell_layer[cell];
       try
         {
           parts.push_back(formula_material(scene.layers[k], (end - cell) * n_q));

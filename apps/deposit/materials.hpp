@@ -17,8 +17,6 @@ std::unique_ptr<Material> column_material(const ColumnScene &scene, const Discre
 
 /// The material of one layer from a formula, without stress.   @pre layer.material is not grains
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
-/// The scene's number (from the surface down) of a layer counted from the base.
-std::size_t number_in_scene(const ColumnScene &scene, std::size_t layer);
 
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
 /// K0 times as much.

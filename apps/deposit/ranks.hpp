@@ -6,6 +6,7 @@
 namespace isostat
 {
 /// The ranks of MPI_COMM_WORLD in a program of which only the first one writes files and prints.
+/// tested: tests/apps/grain_column_test.py
 struct Ranks
 {
   int rank = 0, size = 1;

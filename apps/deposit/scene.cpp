@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -15,8 +14,6 @@ namespace isostat
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 ColumnScene checked_scene(const SceneDocument &document)
 {
   ColumnScene scene;
@@ -25,24 +22,11 @@ ColumnScene checked_scene(const SceneDocument &document)
   return scene;
 }
 
-/// The absolute path of a file that counts from the folder of the scene file, and must be there.
-std::string found_file(const SceneDocument &document, const std::string &key, const fs::path &folder,
-                       const std::string &file)
-{
-  const fs::path path = fs::absolute(folder / file).lexically_normal();
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored))
-    document.refuse(key, fmt::format("is not there ({}). A relative path counts from the folder of the scene file; "
-                                     "correct it.",
-                                     path.string()));
-  return path.string();
-}
-
-void find_motion_files(const SceneDocument &document, const fs::path &folder, ColumnScene &scene)
+void find_motion_files(const SceneDocument &document, const std::string &path, ColumnScene &scene)
 {
   for (std::size_t i = 0; i < scene.motions.size(); ++i)
     if (scene.motions[i].kind == MotionKind::record)
-      scene.motions[i].file = found_file(document, fmt::format("motion.{}.file", i), folder, scene.motions[i].file);
+      scene.motions[i].file = found_file(document, fmt::format("motion.{}.file", i), path, scene.motions[i].file);
 }
 } // namespace
 
@@ -51,10 +35,12 @@ double ColumnLayer::small_strain_modulus() const
   return shear_modulus ? *shear_modulus : density * *shear_velocity * *shear_velocity;
 }
 
-unsigned ColumnLayer::n_cells() const
+IwanParameters ColumnLayer::sand() const
 {
-  // 10 m in cells of 0.1 m are 100, whatever the rounding of 10/0.1
-  return cells > 0 ? cells : std::max(1u, static_cast<unsigned>(std::ceil(thickness / cell_size * (1 - 1e-12))));
+  IwanParameters sand = iwan;
+  sand.shear_modulus = small_strain_modulus();
+  sand.poisson_ratio = poisson_ratio;
+  return sand;
 }
 
 double ColumnLoad::traction(double time) const
@@ -75,13 +61,7 @@ std::vector<double> ColumnAnalysis::times() const
   return ends;
 }
 
-double ColumnScene::height() const
-{
-  double sum = 0;
-  for (const ColumnLayer &layer : layers)
-    sum += layer.thickness;
-  return sum;
-}
+double ColumnScene::height() const { return soil_profile(*this).height(); }
 
 bool ColumnScene::has_grains() const
 {
@@ -89,23 +69,19 @@ bool ColumnScene::has_grains() const
                      [](const ColumnLayer &layer) { return layer.material == LayerMaterial::grains; });
 }
 
+RveMaterialSettings ColumnScene::packings(int threads) const
+{
+  RveMaterialSettings settings = grains;
+  settings.undrained = water.drainage == Drainage::undrained;
+  settings.threads = threads;
+  return settings;
+}
+
 SoilProfile soil_profile(const ColumnScene &scene)
 {
-  SoilProfile profile;
-  profile.water.density = scene.water.drainage == Drainage::dry ? 0 : scene.water.density;
-  profile.water.bulk_modulus = scene.water.bulk_modulus;
-  profile.water.gravity = scene.water.gravity;
-  for (auto layer = scene.layers.rbegin(); layer != scene.layers.rend(); ++layer)
-    {
-      Layer &soil = profile.layers.emplace_back();
-      soil.name = layer->name;
-      soil.thickness = layer->thickness;
-      soil.density = layer->density;
-      soil.porosity = layer->porosity;
-      soil.permeability = layer->permeability;
-      soil.k0 = layer->k0;
-      soil.cells = layer->n_cells();
-    }
+  SoilProfile profile{{scene.layers.begin(), scene.layers.end()}, scene.water};
+  if (scene.water.drainage == Drainage::dry)
+    profile.water.density = 0;
   return profile;
 }
 
@@ -119,12 +95,11 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
 {
   const SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
   ColumnScene scene = checked_scene(document);
-  const fs::path folder = fs::path(path).parent_path();
-  find_motion_files(document, folder, scene);
+  find_motion_files(document, path, scene);
   if (scene.has_grains())
-    scene.grains.library = found_file(document, "grains.library", folder, scene.grains.library);
+    scene.grains.library = found_file(document, "grains.library", path, scene.grains.library);
   if (scene.output.folder.empty())
-    scene.output.folder = "results/" + fs::path(path).stem().string();
+    scene.output.folder = results_folder(path);
   return scene;
 }
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a run of the soil column consists of. Lengths m, stresses Pa, times s, accelerations m/s2, as everywhere inside.
 #pragma once
+#include "coupling/batch/rve_material_settings.hpp"
+#include "coupling/in_situ/specimen_request.hpp"
+#include "fem/material/iwan.hpp"
 #include "fem/material/soil.hpp"
+#include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
 
 #include <array>
@@ -23,12 +27,9 @@ struct ColumnMesh
   bool operator==(const ColumnMesh &) const = default;
 };
 
-struct ColumnWater
+struct ColumnWater : Water
 {
   Drainage drainage = Drainage::coupled;
-  double density = 1000;               ///< kg/m3
-  double bulk_modulus = 2.2e9;         ///< K_f, Pa
-  double gravity = 9.81;               ///< m/s2, also of the soil's weight
   bool lagged_compressibility = false; ///< undrained only
 
   bool operator==(const ColumnWater &) const = default;
@@ -41,70 +42,19 @@ enum class LayerMaterial
   grains ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
 };
 
-/// Numbers of the sand of fem/material/iwan.hpp (IwanParameters says what they mean); its small-strain stiffness is the
-/// layer's at `reference_pressure`. The defaults are a loose sand.
-struct IwanSpec
+/// A layer with its material.
+struct ColumnLayer : Layer
 {
-  double reference_pressure = 100e3;       ///< Pa
-  double exponent = 0.5;                   ///< of G ~ (p'/reference_pressure)^exponent [-]
-  double strength_ratio = 0.55;            ///< sqrt(J2)/p' at most [-]
-  double phase_transformation_ratio = 0.4; ///< sqrt(J2)/p' beyond which shearing dilates [-]
-  double contraction = 0.5, dilation = 0.3;
-  double fabric_limit = 8, fabric_rate = 1000;
-  double critical_pressure = 1e6; ///< Pa
-  unsigned elements = 12;
-
-  bool operator==(const IwanSpec &) const = default;
-};
-
-/// Which specimens of the library a layer of grains is made of.
-struct GrainsSpec
-{
-  std::optional<double> relative_density; ///< D_r; left out: the library has one density only
-  std::uint64_t realisation = 0;          ///< the first of the layer's seeds
-
-  bool operator==(const GrainsSpec &) const = default;
-};
-
-/// A layer with its material; from the surface down in a ColumnScene.
-struct ColumnLayer
-{
-  std::string name;
-  double thickness = 0;
-  unsigned cells = 0;      ///< through its thickness; 0: from cell_size
-  double cell_size = 0;    ///< largest height of a cell, m
-  double density = 2000;   ///< of soil and water together, kg/m3
-  double porosity = 0.4;   ///< [-]
-  double permeability = 0; ///< hydraulic conductivity, m/s
-  double k0 = 0.5;         ///< sigma'_h / sigma'_v in situ [-]
   LayerMaterial material = LayerMaterial::elastic;
-  std::optional<double> shear_modulus, shear_velocity; ///< one of them is set
+  std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, but for grains
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
-  IwanSpec iwan;                                       ///< of no meaning to other materials
-  GrainsSpec grains;                                   ///< of no meaning to other materials
+  IwanParameters iwan;    ///< of no meaning to other materials; its stiffness is the layer's, see sand()
+  SpecimenRequest grains; ///< of no meaning to other materials
 
   double small_strain_modulus() const; ///< G, Pa, whichever of the two was given (rho V_s^2)
-  unsigned n_cells() const;            ///< whichever of the two was given
+  IwanParameters sand() const;         ///< `iwan` with the stiffness of the layer
 
   bool operator==(const ColumnLayer &) const = default;
-};
-
-enum class BaseKind
-{
-  rigid,    ///< the base has the given motion
-  compliant ///< elastic rock, the motion is that of its outcrop
-};
-
-struct ColumnBase
-{
-  BaseKind kind = BaseKind::rigid;
-  double density = 2300;            ///< of the rock, kg/m3
-  double shear_velocity = 800;      ///< m/s
-  std::optional<double> p_velocity; ///< m/s
-
-  double rock_p_velocity() const { return p_velocity.value_or(2 * shear_velocity); } ///< Poisson's ratio 1/3
-
-  bool operator==(const ColumnBase &) const = default;
 };
 
 enum class Axis
@@ -200,28 +150,14 @@ struct ColumnOutput
   bool operator==(const ColumnOutput &) const = default;
 };
 
-enum class GrainsInSitu
+/// What packings of grains leave, where.
+struct GrainOutput
 {
-  all_stresses,     ///< vertical and horizontal stress as the layer's weight and k0 say
-  no_lateral_strain ///< the horizontal stress is what the packing gives
-};
+  std::vector<double> snapshot_depths; ///< below the surface; whole packings are stored there, m
+  std::vector<double> path_depths;     ///< below the surface; whole strain histories are stored there, m
+  double snapshot_interval = 1;        ///< s
 
-/// How packings of grains are run.
-struct ColumnGrains
-{
-  std::string library; ///< of specimens; after read_column_scene an absolute path
-  std::string cache;   ///< file of in-situ states for the next start; empty: none
-  GrainsInSitu in_situ = GrainsInSitu::all_stresses;
-  std::uint64_t realisations = 1;            ///< packings of a point
-  double quasi_static_tolerance = 0.01;      ///< as in the element tests [-]
-  double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s
-  std::uint64_t min_steps = 20;              ///< time steps of the grains in a step of the column, at least
-  double damping = 0.2;                      ///< [-]
-  std::vector<double> snapshot_depths;       ///< below the surface; whole packings are stored there, m
-  double snapshot_interval = 1;              ///< s
-  std::vector<double> path_depths;           ///< below the surface; whole strain histories are stored there, m
-
-  bool operator==(const ColumnGrains &) const = default;
+  bool operator==(const GrainOutput &) const = default;
 };
 
 /// A whole run: what a scene file says after defaults, overrides and checks.
@@ -231,21 +167,23 @@ struct ColumnScene
   ColumnMesh mesh;
   ColumnWater water;
   std::vector<ColumnLayer> layers; ///< from the surface down
-  ColumnBase base;
+  Base base;
   std::vector<ColumnMotion> motions; ///< at most one per axis
   ColumnLoad load;
-  ColumnGrains grains; ///< of no meaning without a layer of grains
+  RveMaterialSettings grains; ///< as the scene says it; of no meaning without a layer of grains
+  GrainOutput grain_output;   ///< likewise
   ColumnAnalysis analysis;
   ColumnOutput output;
 
-  double height() const;
+  double height() const; ///< that of soil_profile(), m
   bool has_grains() const;
+  RveMaterialSettings packings(int threads) const; ///< `grains` with the drainage of the scene
 
   bool operator==(const ColumnScene &) const = default; ///< bit for bit, every field
 };
 
-/// Layers from the base up, as the solvers take them; layer k of the scene is layer n-1-k of the profile. Without water
-/// (dry) its density is 0, so that all weight is effective.
+/// Layers and water as the solvers take them, layers in the order of the scene. Without water (dry) its density is 0,
+/// so that all weight is effective.
 SoilProfile soil_profile(const ColumnScene &scene);
 
 /// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given.

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a column's scene file. A new key is one entry here, one field in apps/deposit/scene.hpp and, if it
-// takes part in a rule that binds several keys, a line in apps/deposit/checks.cpp.
+// The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
+// binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
+// packings in coupling/scene/packings.cpp: other programs have them too.
 #include "apps/deposit/schema.hpp"
+
+#include "base/scene/ranges.hpp"
+#include "coupling/scene/packings.hpp"
+#include "fem/material/iwan_scene.hpp"
 
 namespace isostat
 {
@@ -9,7 +14,6 @@ namespace
 {
 constexpr const char *drainage_choices[] = {"dry", "undrained", "coupled"};
 constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
-constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *axis_choices[] = {"x", "y", "z"};
 constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
@@ -18,28 +22,18 @@ constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 constexpr const char *analysis_choices[] = {"dynamic", "consolidation"};
 
-template <class Kind>
-constexpr unsigned bit(Kind kind)
-{
-  return 1u << static_cast<unsigned>(kind);
-}
-constexpr unsigned iwan = bit(LayerMaterial::iwan);
-constexpr unsigned formula = bit(LayerMaterial::elastic) | iwan;
-constexpr unsigned grains = bit(LayerMaterial::grains);
-constexpr unsigned compliant = bit(BaseKind::compliant);
-constexpr unsigned record = bit(MotionKind::record);
-constexpr unsigned harmonic = bit(MotionKind::harmonic);
-constexpr unsigned ricker = bit(MotionKind::ricker);
-constexpr unsigned loaded = bit(LoadKind::step) | bit(LoadKind::harmonic);
-constexpr unsigned dynamic = bit(AnalysisKind::dynamic);
-constexpr unsigned consolidation = bit(AnalysisKind::consolidation);
+using namespace ranges;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Range positive{0, infinity, true};
-constexpr Range not_negative{0, infinity};
-constexpr Range fraction{0, 1, true, true}; // (0, 1)
-constexpr Range to_one{0, 1, true, false};  // (0, 1]
-constexpr Range counts{1, 1e6};
+constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned grains = kind_bit(LayerMaterial::grains);
+constexpr unsigned compliant = kind_bit(BaseKind::compliant);
+constexpr unsigned record = kind_bit(MotionKind::record);
+constexpr unsigned harmonic = kind_bit(MotionKind::harmonic);
+constexpr unsigned ricker = kind_bit(MotionKind::ricker);
+constexpr unsigned loaded = kind_bit(LoadKind::step) | kind_bit(LoadKind::harmonic);
+constexpr unsigned dynamic = kind_bit(AnalysisKind::dynamic);
+constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
 
 // clang-format off
 constexpr Section sections[] = {
@@ -69,7 +63,7 @@ constexpr Section sections[] = {
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
 
-constexpr Key keys[] = {
+constexpr Key ground_keys[] = {
   {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
    .field = [](ColumnScene &s) -> Field { return &s.title; }},
 
@@ -149,45 +143,9 @@ constexpr Key keys[] = {
   {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
    .reason = "because the skeleton is compressible without its water", .kinds = formula, .text = "Poisson's ratio of the drained skeleton.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
-  {.path = "layer.reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = positive, .kinds = iwan,
-   .text = "Mean effective stress p_r at which the stiffness is given.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.reference_pressure; }},
-  {.path = "layer.exponent", .value = "0.5", .range = {0, 1}, .kinds = iwan,
-   .text = "n of the small-strain stiffness G (p'/p_r)^n.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.exponent; }},
-  {.path = "layer.strength_ratio", .value = "0.55", .range = positive, .kinds = iwan,
-   .text = "M: shear strength over p', shear stress as sqrt(J2), which in simple shear is tau.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.strength_ratio; }},
-  {.path = "layer.phase_transformation_ratio", .value = "0.4", .range = positive, .kinds = iwan,
-   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.phase_transformation_ratio; }},
-  {.path = "layer.contraction", .value = "0.5", .range = not_negative, .kinds = iwan,
-   .text = "Rate of contraction per plastic shear strain; 0 here and for `dilation`: p' feels no shear.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.contraction; }},
-  {.path = "layer.dilation", .value = "0.3", .range = {0, 1}, .reason = "because plastic work would be negative above",
-   .kinds = iwan, .text = "Rate of dilation per plastic shear strain.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.dilation; }},
-  {.path = "layer.fabric_limit", .value = "8", .range = not_negative, .kinds = iwan,
-   .text = "After much dilation the soil contracts 1 + this times as fast.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_limit; }},
-  {.path = "layer.fabric_rate", .value = "1000", .range = not_negative, .kinds = iwan,
-   .text = "How soon that limit is reached, per volumetric strain of dilation.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.fabric_rate; }},
-  {.path = "layer.critical_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "1000 kPa", .range = positive, .kinds = iwan, .text = "Mean effective stress at which dilation ends.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.critical_pressure; }},
-  {.path = "layer.elements", .kind = Kind::integer, .value = "12", .range = {4, 32}, .kinds = iwan,
-   .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.iwan.elements; }},
+};
 
-  {.path = "layer.relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2}, .kinds = grains,
-   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.relative_density; }},
-  {.path = "layer.realisation", .kind = Kind::integer, .value = "0", .kinds = grains,
-   .text = "Which seed of the library, counted from 0; with `grains.realisations` the first of them.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.realisation; }},
-
+constexpr Key loading_keys[] = {
   {.path = "base.kind", .kind = Kind::choice, .value = "rigid", .choices = base_choices,
    .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion is "
            "that of its outcrop.",
@@ -267,55 +225,27 @@ constexpr Key keys[] = {
    .presence = Presence::required, .value = "10 kPa", .kinds = loaded, .text = "The traction, or the amplitude of its sine.",
    .field = [](ColumnScene &s) -> Field { return &s.load.amplitude; }},
   {.path = "load.frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
-   .presence = Presence::required, .value = "1 Hz", .range = positive, .kinds = bit(LoadKind::harmonic),
+   .presence = Presence::required, .value = "1 Hz", .range = positive, .kinds = kind_bit(LoadKind::harmonic),
    .text = "Frequency of the sine.",
    .field = [](ColumnScene &s) -> Field { return &s.load.frequency; }},
   {.path = "load.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
    .range = not_negative, .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing.",
    .field = [](ColumnScene &s) -> Field { return &s.load.ramp; }},
+};
 
-  {.path = "grains.library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
-   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file. Needed by layers of "
-           "grains.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.library; }},
-  {.path = "grains.cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
-   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
-           "directory. Left out: none are kept.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.cache; }},
-  {.path = "grains.in_situ", .kind = Kind::choice, .value = "all-stresses", .choices = in_situ_choices,
-   .text = "Packings start at the vertical and horizontal stress that weight and `layer.k0` say, or, without lateral "
-           "strain, at the horizontal stress that they give themselves.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.in_situ; }},
-  {.path = "grains.realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
-   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.realisations; }},
-  {.path = "grains.quasi_static_tolerance", .value = "0.01", .range = fraction,
-   .text = "Error that inertia of grains may add, as in element tests.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.quasi_static_tolerance; }},
-  {.path = "grains.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
-   .range = positive, .text = "Smallest strain rate inside a packing.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_floor; }},
-  {.path = "grains.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
-   .range = positive, .text = "Largest strain rate inside a packing.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.rate_ceiling; }},
-  {.path = "grains.min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
-   .text = "Time steps of the grains in each step of the column, at least: small increments would be over in one or two, "
-           "before the grains find their places.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.min_steps; }},
-  {.path = "grains.damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.damping; }},
+constexpr Key result_keys[] = {
   {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_depths; }},
+   .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_depths; }},
   {.path = "grains.path_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"5 m\"]", .range = not_negative,
    .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, which "
            "sends the packing the same way again, alone.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.path_depths; }},
+   .field = [](ColumnScene &s) -> Field { return &s.grain_output.path_depths; }},
   {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .value = "1 s", .range = positive, .text = "Time between them.",
-   .field = [](ColumnScene &s) -> Field { return &s.grains.snapshot_interval; }},
+   .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_interval; }},
 
   {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_choices,
    .text = "What is solved.",
@@ -395,12 +325,26 @@ A scene is one TOML file that says all about a run of `soil_column`. This page i
   other, the one set this way replaces the one in the file.
 
 )";
-
-constexpr SceneSchema schema{.keys = keys, .sections = sections, .groups = groups, .dimensions = dimensions,
-                             .set_example = "analysis.safety=0.5", .defaults_head = defaults_head,
-                             .manual_head = manual_head};
 // clang-format on
 } // namespace
 
-const SceneSchema &column_schema() { return schema; }
+const SceneSchema &column_schema()
+{
+  static const KeyTable keys{
+      ground_keys,
+      splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
+      splice("layer", specimen_keys(), grains,
+             [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
+      loading_keys,
+      splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
+      result_keys};
+  static const SceneSchema schema{.keys = keys.keys(),
+                                  .sections = sections,
+                                  .groups = groups,
+                                  .dimensions = dimensions,
+                                  .set_example = "analysis.safety=0.5",
+                                  .defaults_head = defaults_head,
+                                  .manual_head = manual_head};
+  return schema;
+}
 } // namespace isostat

@@ -12,27 +12,7 @@ namespace isostat
 {
 namespace
 {
-RveMaterialSettings grains_settings(const ColumnScene &scene, int threads)
-{
-  const ColumnGrains &spec = scene.grains;
-  RveMaterialSettings settings;
-  settings.library = spec.library;
-  settings.cache = spec.cache;
-  settings.motion.damping = spec.damping;
-  settings.motion.quasi_static_tolerance = spec.quasi_static_tolerance;
-  settings.motion.rate_floor = spec.rate_floor;
-  settings.motion.rate_ceiling = spec.rate_ceiling;
-  settings.in_situ.path =
-      spec.in_situ == GrainsInSitu::no_lateral_strain ? InSituPath::no_lateral_strain : InSituPath::all_stresses;
-  settings.in_situ.motion = settings.motion;
-  settings.undrained = scene.water.drainage == Drainage::undrained;
-  settings.min_steps = spec.min_steps;
-  settings.realisations = spec.realisations;
-  settings.threads = threads;
-  return settings;
-}
-
-/// Points of a layer of the profile.
+/// Points of a layer.
 template <int dim>
 std::vector<std::size_t> points_of(const Discretisation<dim> &space, std::size_t layer)
 {
@@ -71,23 +51,19 @@ SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &
     }
   std::vector<CompositeMaterial::Part> parts;
   std::vector<SpecimenRequest> requests;
-  for (std::size_t layer = 0; layer < scene.layers.size(); ++layer)
+  for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
     {
-      const ColumnLayer &spec = scene.layers[number_in_scene(scene, layer)];
+      const ColumnLayer &spec = scene.layers[layer];
       const std::vector<std::size_t> points = points_of(space, layer);
       if (spec.material == LayerMaterial::grains)
         {
           soil.grains_places.insert(soil.grains_places.end(), points.begin(), points.end());
-          SpecimenRequest request;
-          if (spec.grains.relative_density)
-            request.relative_density = *spec.grains.relative_density;
-          request.realisation = spec.grains.realisation;
-          requests.insert(requests.end(), points.size(), request);
+          requests.insert(requests.end(), points.size(), spec.grains);
         }
       else if (!points.empty())
         parts.push_back({formula_material(spec, points.size()), points});
     }
-  auto grains = std::make_unique<RveMaterial>(requests, grains_settings(scene, threads),
+  auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
                                               space.shared_out() ? MPI_COMM_SELF : MPI_COMM_WORLD);
   soil.grains = grains.get();
   parts.push_back({std::move(grains), soil.grains_places});

@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// The soil of a scene at the points of a mesh.
+/// The soil of a scene at the points of a mesh.   tested: tests/apps/grain_column_test.py
 struct SoilMaterial
 {
   std::unique_ptr<Material> material;

@@ -38,7 +38,7 @@ struct Run
   std::unique_ptr<Checkpoint> resumed;
 };
 
-Run resume(const Scene &scene, const fs::path &folder)
+Run resume(const Scene &scene, const fs::path &folder, const StepSettings &how)
 {
   Run run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
@@ -47,21 +47,22 @@ Run resume(const Scene &scene, const fs::path &folder)
         fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
                     "of --validate). Resume with the scene and --set values of the first run.",
                     folder.string(), (folder / "scene.toml").string()));
-  run.assembly = std::make_unique<Assembly>(run.resumed->state);
-  restore(*run.resumed, *run.assembly, run.state);
-  run.specimen = specimen_numbers(*run.resumed);
+  run.assembly = std::make_unique<Assembly>(run.resumed->state, how);
+  restore(*run.resumed, *run.assembly);
+  run.state = run.resumed->drive;
+  run.specimen = run.resumed->specimen;
   return run;
 }
 
-Run start(const Scene &scene, const fs::path &folder, bool quiet)
+Run start(const Scene &scene, const fs::path &folder, const StepSettings &how, bool quiet)
 {
   PreparationOutput preparation(quiet);
   const fs::path cache = folder.parent_path() / scene.specimen.cache;
-  const Specimen specimen = obtain_specimen(scene, cache, preparation);
+  const Specimen specimen = obtain_specimen(scene, cache, preparation, how.threads);
   Snapshot initial = specimen.state;
   initial.law = scene.contact;
   Run run;
-  run.assembly = std::make_unique<Assembly>(initial);
+  run.assembly = std::make_unique<Assembly>(initial, how);
   run.specimen = specimen.numbers;
   return run;
 }
@@ -69,7 +70,6 @@ Run start(const Scene &scene, const fs::path &folder, bool quiet)
 void run_test(const SceneOptions &options)
 {
   const Scene scene = read_scene(options.scene, options.set);
-  Assembly::default_threads = options.threads;
   if (options.validate)
     {
       fmt::print("{}", to_toml(scene));
@@ -80,8 +80,8 @@ void run_test(const SceneOptions &options)
                         : options.overwrite ? FolderUse::overwrite
                                             : FolderUse::fresh;
   check_result_folder(folder, use);
-  Run run = options.resume ? resume(scene, folder) : start(scene, folder, options.quiet);
-  run.assembly->measure_energy = scene.output.energy;
+  const StepSettings how{.measure_energy = scene.output.energy, .threads = options.threads};
+  Run run = options.resume ? resume(scene, folder, how) : start(scene, folder, how, options.quiet);
   open_result_folder(folder, use); // only now that everything else went well may older results go
   if (!options.resume)
     write_provenance(folder, scene, options.command_line);
@@ -90,8 +90,7 @@ void run_test(const SceneOptions &options)
   RunOutcome outcome = RunOutcome::finished;
   try
     {
-      outcome =
-          run_programme(scene.motion, scene.specimen, scene.output, scene.stages, *run.assembly, run.state, output);
+      outcome = run_programme(scene.programme(), *run.assembly, run.state, output);
     }
   catch (const RunFailure &failure)
     {
@@ -107,7 +106,7 @@ void run_test(const SceneOptions &options)
 
   TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
-  write_replacing(folder / "summary.json", to_json(summary));
+  write_json(folder / "summary.json", summary);
   const std::string text = to_text(summary, scene);
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}", text);

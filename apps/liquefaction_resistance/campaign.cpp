@@ -22,8 +22,8 @@ std::size_t cyclic_stage(const Scene &scene)
   std::size_t n_shear = 0, found = scene.stages.size();
   for (std::size_t k = 0; k < scene.stages.size(); ++k)
     {
-      n_shear += is_shear(scene.stages[k].kind);
-      if (is_cyclic(scene.stages[k].kind))
+      n_shear += behaviour(scene.stages[k]).shears();
+      if (as<CyclicConstantVolume>(scene.stages[k]))
         found = k;
     }
   if (found == scene.stages.size())
@@ -45,17 +45,13 @@ double consolidation_pressure(const Scene &scene, std::size_t stage)
   double pressure = scene.specimen.pressure;
   bool isotropic = scene.specimen.consolidation == "isotropic";
   for (std::size_t k = 0; k < stage; ++k)
-    {
-      const Stage &s = scene.stages[k];
-      if (s.kind == StageKind::k0_compress)
-        isotropic = false;
-      else if (s.kind == StageKind::compress || s.kind == StageKind::rebalance)
-        {
-          isotropic = true;
-          pressure = s.pressure > 0 ? s.pressure : scene.specimen.pressure;
-        }
-    }
-  if (!isotropic && !is_simple_shear(scene.stages[stage].kind))
+    if (const auto *servo = as<ServoStage>(scene.stages[k]))
+      {
+        isotropic = servo->axes()[0];
+        if (isotropic)
+          pressure = servo->pressure > 0 ? servo->pressure : scene.specimen.pressure;
+      }
+  if (!isotropic && as<UndrainedCyclic>(scene.stages[stage]))
     throw InputError(fmt::format("{}: consolidated without lateral strain; CSR = q_amp / (2 p0') of a triaxial test "
                                  "needs isotropic consolidation. Take it, or cyclic simple shear.",
                                  scene.title));
@@ -111,12 +107,11 @@ Campaign::Campaign(Scene scene, const CampaignPlan &plan, fs::path folder)
                                  "let the scene prepare its specimens.",
                                  shared_.title));
   shared_.title = without_ratio(shared_.title);
-  Stage &cyclic = shared_.stages[stage_];
-  cyclic.stress_ratio = Stage{}.stress_ratio; // what differs between the runs is not part of what they share
-  cyclic.deviator_amplitude = Stage{}.deviator_amplitude;
+  auto &cyclic = *as<CyclicConstantVolume>(shared_.stages[stage_]);
+  cyclic.forget_stress_ratio(); // what differs between the runs is not part of what they share
   cyclic.max_cycles = plan.cycles;
   cyclic.reversals_after_liquefaction = plan.reversals_after;
-  cyclic.max_strain = std::min(cyclic.max_strain, enough_strain / strain_factor(cyclic.kind));
+  cyclic.max_strain = std::min(cyclic.max_strain, enough_strain / cyclic.mode().gamma_factor);
   shared_.grading.seed = 1;
   shared_.output.folder = "runs";
   shared_.output.snapshots = "none";
@@ -138,8 +133,7 @@ Campaign::Run Campaign::make_run(std::string name, double ratio, std::uint64_t s
   run.result.seed = seed;
   run.scene.title = fmt::format("{}; CSR {:g}, seed {}", shared_.title, ratio, seed);
   run.scene.grading.seed = seed;
-  run.scene.stages[stage_].stress_ratio = ratio;
-  run.scene.stages[stage_].deviator_amplitude = 2 * ratio * p0_;
+  as<CyclicConstantVolume>(run.scene.stages[stage_])->set_stress_ratio(ratio, p0_);
   // through text once: what element_test reads and writes is the same to the bit
   run.scene = parse_scene(to_toml(run.scene), run.name);
   return run;

@@ -39,7 +39,7 @@ public:
   const Scene &shared() const { return shared_; }
   const std::filesystem::path &folder() const { return folder_; }
   std::size_t stage() const { return stage_; }
-  bool simple_shear() const { return is_simple_shear(shared_.stages[stage_].kind); }
+  const CyclicConstantVolume &cyclic() const { return *as<CyclicConstantVolume>(shared_.stages[stage_]); }
 
   /// Throws InputError if the folder holds the runs of another scene, or other things than a campaign.
   void check_folder() const;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/report.hpp"
 
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -83,12 +85,12 @@ std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const st
 {
   const Scene &scene = campaign.shared();
   const std::vector<RunResult> results = campaign.results();
-  std::string text = fmt::format(
-      "\n{}\n  CSR                      {}\n  liquefied                p'/p0' < {:g}; at most {} cycles\n  cycles      "
-      "  "
-      "           half the reversals; means over seeds are geometric, - if a run has none\n",
-      scene.title, campaign.simple_shear() ? "tau_amp / sigma'_v0, simple shear" : "q_amp / (2 p0'), triaxial",
-      scene.stages[campaign.stage()].liquefaction_ratio, plan.cycles);
+  std::string text = fmt::format("\n{}\n  CSR                      {}, {}\n  liquefied                p'/p0' < {:g}; "
+                                 "at most {} cycles\n  cycles      "
+                                 "  "
+                                 "           half the reversals; means over seeds are geometric, - if a run has none\n",
+                                 scene.title, campaign.cyclic().stress_ratio_text(), campaign.cyclic().mode().name,
+                                 campaign.cyclic().liquefaction_ratio, plan.cycles);
   text += table(results, plan.ratios) + "\n" + fit_text(law);
   double seconds = 0;
   std::vector<double> e;
@@ -107,22 +109,22 @@ std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const st
   return text + "\n";
 }
 
-std::string to_json(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
+Json to_json(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
 {
-  std::string title;
-  for (char c : campaign.shared().title)
-    title += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  const std::string fit =
-      law ? fmt::format(
-                "{{\"a\": {:.10g}, \"b\": {:.10g}, \"b_error\": {:.6g}, \"R2\": {:.6g}, \"runs\": {}, \"left_out\": "
-                "{}, \"CSR_15\": {:.10g}}}",
-                law->a, law->b, law->b_error, law->r_squared, law->n_runs, law->n_left_out, law->at(reference_cycles))
-          : "null";
-  return fmt::format(
-      "{{\n  \"title\": \"{}\",\n  \"test\": \"{}\",\n  \"liquefaction_ratio\": {:g},\n  \"cycles\": {},\n  "
-      "\"fit\": {}\n}}\n",
-      title, campaign.simple_shear() ? "simple shear" : "triaxial",
-      campaign.shared().stages[campaign.stage()].liquefaction_ratio, plan.cycles, fit);
+  Json fit;
+  if (law)
+    fit = {{"a", law->a},
+           {"b", law->b},
+           {"b_error", law->b_error},
+           {"R2", law->r_squared},
+           {"runs", law->n_runs},
+           {"left_out", law->n_left_out},
+           {"CSR_15", law->at(reference_cycles)}};
+  return {{"title", campaign.shared().title},
+          {"test", campaign.cyclic().mode().name},
+          {"liquefaction_ratio", campaign.cyclic().liquefaction_ratio},
+          {"cycles", plan.cycles},
+          {"fit", fit}};
 }
 } // namespace
 
@@ -131,7 +133,7 @@ std::string write_report(const Campaign &campaign, const CampaignPlan &plan)
   const std::vector<RunResult> results = campaign.results();
   const std::optional<PowerLaw> law = fit_power_law(results);
   write_replacing(campaign.folder() / "resistance.csv", to_csv(results));
-  write_replacing(campaign.folder() / "resistance.json", to_json(campaign, plan, law));
+  write_json(campaign.folder() / "resistance.json", to_json(campaign, plan, law));
   std::string text = to_text(campaign, plan, law);
   write_replacing(campaign.folder() / "summary.txt", text);
   return text;

@@ -2,10 +2,12 @@
 #include "apps/liquefaction_resistance/resistance.hpp"
 
 #include "base/files/csv_table.hpp"
+#include "base/files/json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -19,18 +21,11 @@ enum Column
   strain
 };
 
-/// The number behind "name" in a summary.json; nothing if it is not there.
-std::optional<double> json_number(const std::string &text, const std::string &name)
+/// A member of an object; nothing if it is not there or is no number.
+std::optional<double> number(const Json &object, const char *name)
 {
-  const std::string key = "\"" + name + "\": ";
-  const std::size_t found = text.find(key);
-  if (found == std::string::npos)
-    return std::nullopt;
-  const std::size_t begin = found + key.size(), end = text.find_first_of(",\n}", begin);
-  double value = 0;
-  if (!parse(std::string_view(text).substr(begin, end - begin), value))
-    return std::nullopt;
-  return value;
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
 }
 
 double cycles_of(double n_reversals) { return std::max(0.25, 0.5 * n_reversals); }
@@ -81,10 +76,9 @@ std::string cell(const std::optional<double> &value, const char *format)
 RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage)
 {
   RunResult result;
-  const Stage &cyclic = scene.stages[stage];
-  const bool simple_shear = is_simple_shear(cyclic.kind);
+  const auto &cyclic = *as<CyclicConstantVolume>(scene.stages[stage]);
   const CsvTable history(folder / "history.csv",
-                         {"stage (-)", "reversals (-)", "liquefied (-)", simple_shear ? "gamma_xy (-)" : "eps_y (-)"});
+                         {"stage (-)", "reversals (-)", "liquefied (-)", cyclic.mode().strain_column});
   Criteria criteria(result);
   double maximum = 0;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
@@ -92,14 +86,14 @@ RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std:
       {
         maximum = std::max(maximum, std::abs(history(row, strain)));
         criteria.look(history(row, reversals), history(row, liquefied) != 0,
-                      strain_factor(cyclic.kind) * history(row, strain));
+                      cyclic.mode().gamma_factor * history(row, strain));
       }
   result.status = result.to_liquefaction         ? RunStatus::liquefied
                   : maximum >= cyclic.max_strain ? RunStatus::strain
                                                  : RunStatus::censored;
-  const std::string summary = read_text(folder / "summary.json");
-  result.void_ratio = json_number(summary, "void_ratio");
-  result.wall_seconds = json_number(summary, "seconds");
+  const Json summary = read_json(folder / "summary.json");
+  result.void_ratio = number(summary, "void_ratio");
+  result.wall_seconds = number(summary, "seconds");
   return result;
 }
 

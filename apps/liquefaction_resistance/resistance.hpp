@@ -35,9 +35,6 @@ struct RunResult
 /// Shear strains that count as failure, and one beyond which nothing is left to be seen.
 inline constexpr double double_amplitude = 0.03, single_amplitude = 0.0375, enough_strain = 0.04;
 
-/// Shear strain over the strain that drives a stage: in a triaxial test at constant volume gamma = 1.5 eps_y.
-inline double strain_factor(StageKind kind) { return is_simple_shear(kind) ? 1.0 : 1.5; }
-
 /// Reads a finished run: its history.csv and summary.json.
 /// @param stage  index of its only shear stage, a cyclic one
 RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage);

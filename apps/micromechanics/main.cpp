@@ -16,10 +16,12 @@
 #include "apps/micromechanics/analysis.hpp"
 #include "apps/micromechanics/snapshot_series.hpp"
 #include "base/error.hpp"
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace
@@ -150,9 +152,9 @@ void write_tables(const fs::path &folder, const Tables &tables)
   write_replacing(folder / "roses.csv", tables.roses_text);
   write_replacing(folder / "coordination.csv", tables.coordination_text);
   const std::optional<std::size_t> liquefied = onset(tables);
-  write_replacing(folder / "micromechanics.json",
-                  fmt::format("{{\n  \"snapshots\": {},\n  \"p0\": {:.10g},\n  \"onset\": {}\n}}\n", tables.rows.size(),
-                              tables.rows[0].at("p"), liquefied ? fmt::format("{}", *liquefied) : "null"));
+  write_json(folder / "micromechanics.json", {{"snapshots", tables.rows.size()},
+                                              {"p0", tables.rows[0].at("p")},
+                                              {"onset", liquefied ? Json(*liquefied) : Json()}});
 }
 
 fs::path output_path(const Options &options)

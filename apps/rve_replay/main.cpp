@@ -18,6 +18,7 @@
 #include "base/record/progress.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -43,7 +44,7 @@ std::string scene_text(const Options &options, const RveSettings &settings)
 void run(const Options &options)
 {
   const StrainRecord record = read_strain_record(options.record);
-  const RveSettings settings = options.changes.applied_to(record.settings);
+  const RveSettings settings = options.changes.applied_to(record.settings.rve);
   const fs::path folder = options.output.empty() ? fs::path(options.record) / "replay" : fs::path(options.output);
   const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
   check_result_folder(folder, use);
@@ -58,7 +59,7 @@ void run(const Options &options)
       throw Interrupted(fmt::format("interrupted at increment {}", done));
   });
   const std::string text = to_text(result, record, options.changes);
-  write_replacing(folder / "summary.json", to_json(result, record));
+  write_json(folder / "summary.json", to_json(result, record));
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}  wall time                {:.2f} s\n", text, result.seconds);
   if (!options.no_figures)

@@ -3,12 +3,13 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "coupling/element/axes.hpp"
 #include "coupling/element/rve_element.hpp"
-#include "coupling/in_situ/in_situ.hpp"
 #include "dem/measure/summary.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -97,8 +98,9 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
                     std::size_t every, const std::function<void(std::size_t)> &tell)
 {
   const Stopwatch watch;
-  RveElement element(Rve::unpack(record.packing, changes.applied_to(record.settings)), record.undrained,
-                     record.halvings);
+  ElementSettings settings = record.settings;
+  settings.rve = changes.applied_to(settings.rve);
+  RveElement element(Rve::unpack(record.packing, settings.rve), settings);
   Files files(folder);
   ReplayResult result;
   const Stress start = to_stress(element.rve().stress());
@@ -160,13 +162,17 @@ std::string to_text(const ReplayResult &r, const StrainRecord &record, const Rep
   return text;
 }
 
-std::string to_json(const ReplayResult &r, const StrainRecord &record)
+Json to_json(const ReplayResult &r, const StrainRecord &record)
 {
-  return fmt::format(
-      "{{\n  \"depth\": {:.17g},\n  \"increments\": {},\n  \"equal\": {},\n  \"steps\": {},\n"
-      "  \"shear_error\": {:.17g},\n  \"pressure_error\": {:.17g},\n  \"largest_error\": {:.17g},\n"
-      "  \"largest_strain\": {:.17g},\n  \"min_pressure\": {:.17g},\n  \"min_redundancy\": {:.17g}\n}}\n",
-      record.depth, r.increments, r.equal, r.steps, r.shear_error, r.pressure_error, r.largest_error, r.largest_strain,
-      r.min_pressure, r.min_redundancy);
+  return {{"depth", record.depth},
+          {"increments", r.increments},
+          {"equal", r.equal},
+          {"steps", r.steps},
+          {"shear_error", r.shear_error},
+          {"pressure_error", r.pressure_error},
+          {"largest_error", r.largest_error},
+          {"largest_strain", r.largest_strain},
+          {"min_pressure", r.min_pressure},
+          {"min_redundancy", r.min_redundancy}};
 }
 } // namespace isostat

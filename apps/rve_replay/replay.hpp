@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/files/json.hpp"
 #include "coupling/element/strain_record.hpp"
 
 #include <functional>
@@ -39,5 +40,5 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
                     std::size_t every, const std::function<void(std::size_t)> &tell);
 
 std::string to_text(const ReplayResult &result, const StrainRecord &record, const ReplayChanges &changes);
-std::string to_json(const ReplayResult &result, const StrainRecord &record);
+Json to_json(const ReplayResult &result, const StrainRecord &record);
 } // namespace isostat

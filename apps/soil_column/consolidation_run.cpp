@@ -52,7 +52,7 @@ template <int dim>
 class ConsolidationRun
 {
 public:
-  explicit ConsolidationRun(const RunRequest &request);
+  explicit ConsolidationRun(const ColumnRequest &request);
   RunResult go();
 
 private:
@@ -65,7 +65,7 @@ private:
   /// Steps of the time table that are done; a load that is there at once takes a step of its own.
   std::size_t n_done() const { return static_cast<std::size_t>(run_.n_steps()) - (at_once_ ? 1 : 0); }
 
-  const RunRequest &request_;
+  const ColumnRequest &request_;
   const ColumnScene &scene_;
   const std::array<Motion, 3> rest_ = {};
   const std::vector<double> times_;
@@ -84,7 +84,7 @@ private:
 };
 
 template <int dim>
-ConsolidationRun<dim>::ConsolidationRun(const RunRequest &request)
+ConsolidationRun<dim>::ConsolidationRun(const ColumnRequest &request)
     : request_(request), scene_(request.scene), times_(scene_.analysis.times()), at_once_(scene_.load.ramp == 0),
       space_(column_mesh<dim>(scene_, shaken_supports<dim>(false))), material_(column_material(scene_, space_)),
       run_(space_, material_, settings_of(scene_.load, true)), files_(request.folder, scene_, space_, rest_),
@@ -94,7 +94,7 @@ ConsolidationRun<dim>::ConsolidationRun(const RunRequest &request)
     return;
   run_.restore(resumed_->state);
   follower_.peaks.restore(*resumed_);
-  files_.history().state.restore(*resumed_);
+  resumed_->get(files_.history().state);
   immediate_settlement_ = resumed_->numbers.at("immediate_settlement");
 }
 
@@ -201,12 +201,12 @@ RunResult ConsolidationRun<dim>::go()
 } // namespace
 
 template <int dim>
-RunResult run_consolidation(const RunRequest &request)
+RunResult run_consolidation(const ColumnRequest &request)
 {
   return ConsolidationRun<dim>(request).go();
 }
 
-template RunResult run_consolidation<1>(const RunRequest &);
-template RunResult run_consolidation<2>(const RunRequest &);
-template RunResult run_consolidation<3>(const RunRequest &);
+template RunResult run_consolidation<1>(const ColumnRequest &);
+template RunResult run_consolidation<2>(const ColumnRequest &);
+template RunResult run_consolidation<3>(const ColumnRequest &);
 } // namespace isostat

@@ -23,7 +23,7 @@ template <int dim>
 class DynamicRun
 {
 public:
-  explicit DynamicRun(const RunRequest &request);
+  explicit DynamicRun(const ColumnRequest &request);
   RunResult go();
 
 private:
@@ -44,7 +44,7 @@ private:
   void observe();
   RunResult result();
 
-  const RunRequest &request_;
+  const ColumnRequest &request_;
   const ColumnScene &scene_;
   std::array<Motion, 3> motions_;
   Discretisation<dim> space_;
@@ -65,9 +65,9 @@ private:
 };
 
 template <int dim>
-DynamicRun<dim>::DynamicRun(const RunRequest &request)
+DynamicRun<dim>::DynamicRun(const ColumnRequest &request)
     : request_(request), scene_(request.scene), motions_(column_motions(scene_)),
-      space_(column_mesh<dim>(scene_, shaken_supports<dim>(scene_.base.kind == BaseKind::compliant))),
+      space_(column_mesh<dim>(scene_, shaken_supports<dim>(scene_.base.compliant()))),
       soil_(soil_material(scene_, space_, request.threads)), material_(std::move(soil_.material)),
       run_(space_, material_, dynamics_settings(scene_, motions_)), files_(request.folder, scene_, space_, motions_),
       follower_(space_, files_.line(), files_.history().vertical_stress()), resumed_(checkpoint_of(request)),
@@ -77,7 +77,7 @@ DynamicRun<dim>::DynamicRun(const RunRequest &request)
     {
       run_.restore(resumed_->state);
       follower_.peaks.restore(*resumed_);
-      files_.history().state.restore(*resumed_);
+      resumed_->get(files_.history().state);
     }
 }
 
@@ -179,7 +179,7 @@ void DynamicRun<dim>::look_at_grains(bool row, bool profile)
     grain_files_->record(run_.n_steps(), run_.time());
   if (profile)
     grain_files_->profile(run_.n_steps(), run_.time());
-  if (due(scene_.grains.snapshot_interval))
+  if (due(scene_.grain_output.snapshot_interval))
     grain_files_->snapshots(run_.time());
 }
 
@@ -297,12 +297,12 @@ RunResult DynamicRun<dim>::go()
 } // namespace
 
 template <int dim>
-RunResult run_dynamic(const RunRequest &request)
+RunResult run_dynamic(const ColumnRequest &request)
 {
   return DynamicRun<dim>(request).go();
 }
 
-template RunResult run_dynamic<1>(const RunRequest &);
-template RunResult run_dynamic<2>(const RunRequest &);
-template RunResult run_dynamic<3>(const RunRequest &);
+template RunResult run_dynamic<1>(const ColumnRequest &);
+template RunResult run_dynamic<2>(const ColumnRequest &);
+template RunResult run_dynamic<3>(const ColumnRequest &);
 } // namespace isostat

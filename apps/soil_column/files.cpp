@@ -102,7 +102,7 @@ void ColumnFiles<dim>::save(SolverState state, const ColumnPeaks &peaks, std::ma
   flush();
   ColumnCheckpoint checkpoint{std::move(state), std::move(more), {}, scene_text_};
   peaks.save(checkpoint);
-  history_.state.save(checkpoint);
+  checkpoint.put(history_.state);
   checkpoint.numbers["rows"] = static_cast<double>(recorder_->n_rows());
   checkpoint.numbers["profiles"] = profiles_ ? static_cast<double>(profiles_->n_rows()) : 0;
   checkpoint.numbers["paraview"] = pvd_ ? static_cast<double>(pvd_->n_entries()) : 0;

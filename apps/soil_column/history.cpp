@@ -32,38 +32,13 @@ void append(const std::vector<double> &values, const std::array<long, 3> &node, 
   for (long dof : node)
     row.push_back(dof < 0 ? 0 : values[static_cast<std::size_t>(dof)]);
 }
-
-template <typename Number, typename State>
-auto fields(State &s)
-{
-  return std::array<std::pair<const char *, Number *>, 7>{{{"last_time", &s.time},
-                                                           {"last_surface_acceleration", &s.surface_acceleration},
-                                                           {"last_ru", &s.max_ru},
-                                                           {"last_p_ratio", &s.min_p_ratio},
-                                                           {"last_settlement", &s.settlement},
-                                                           {"last_residual", &s.residual},
-                                                           {"max_energy", &s.max_energy}}};
-}
 } // namespace
-
-void ColumnState::save(ColumnCheckpoint &checkpoint) const
-{
-  for (const auto &[name, value] : fields<const double>(*this))
-    checkpoint.numbers[name] = *value;
-}
-
-void ColumnState::restore(const ColumnCheckpoint &checkpoint)
-{
-  for (const auto &[name, value] : fields<double>(*this))
-    *value = checkpoint.numbers.at(name);
-}
 
 template <int dim>
 ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
                                   const std::array<Motion, 3> &motions)
-    : space_(space), motions_(motions), rigid_(scene.base.kind == BaseKind::rigid),
-      area_(std::pow(scene.mesh.width, dim - 1)), base_(node_at(space, 0)),
-      surface_(node_at(space, space.mesh().soil.height()))
+    : space_(space), motions_(motions), rigid_(!scene.base.compliant()), area_(std::pow(scene.mesh.width, dim - 1)),
+      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height()))
 {
   for (double depth : scene.output.depths)
     points_.push_back(point_at_depth(space, depth));

@@ -15,8 +15,14 @@ struct ColumnState
   double settlement = 0, residual = 0;       ///< m, J/m2
   double max_energy = 0;                     ///< largest of the energies of any row, J/m2
 
-  void save(ColumnCheckpoint &checkpoint) const;
-  void restore(const ColumnCheckpoint &checkpoint);
+  template <class State, class Visit>
+  static void for_each(State &s, const Visit &visit)
+  {
+    visit("last_time", s.time), visit("last_surface_acceleration", s.surface_acceleration);
+    visit("last_ru", s.max_ru), visit("last_p_ratio", s.min_p_ratio);
+    visit("last_settlement", s.settlement), visit("last_residual", s.residual);
+    visit("max_energy", s.max_energy);
+  }
 };
 
 /// Rows of history.csv/.h5. Every quantity of a row is of the one instant `time` (see observe_step). Accelerations are

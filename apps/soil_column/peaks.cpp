@@ -8,18 +8,6 @@ namespace isostat
 {
 namespace
 {
-template <typename Number, typename Peaks>
-auto fields(Peaks &p)
-{
-  return std::array<std::pair<const char *, Number *>, 7>{{{"peak_input", &p.input},
-                                                           {"peak_surface", &p.surface},
-                                                           {"peak_gamma", &p.gamma},
-                                                           {"peak_gamma_depth", &p.gamma_depth},
-                                                           {"peak_ru", &p.ru},
-                                                           {"peak_ru_depth", &p.ru_depth},
-                                                           {"peak_ru_time", &p.ru_time}}};
-}
-
 double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
 
 /// The largest of all ranks, and what belongs to it.
@@ -37,16 +25,14 @@ void take_max(double &value, std::initializer_list<double *> with, MPI_Comm comm
 
 void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 {
-  for (const auto &[name, value] : fields<const double>(*this))
-    checkpoint.numbers[name] = *value;
+  checkpoint.put(*this);
   checkpoint.vectors["peak_gamma"] = line_gamma;
   checkpoint.vectors["peak_acceleration"] = line_acceleration;
 }
 
 void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 {
-  for (const auto &[name, value] : fields<double>(*this))
-    *value = checkpoint.numbers.at(name);
+  checkpoint.get(*this);
   line_gamma = checkpoint.vectors.at("peak_gamma");
   line_acceleration = checkpoint.vectors.at("peak_acceleration");
 }
@@ -95,9 +81,10 @@ void PeakFollower<dim>::follow(const Dynamics<dim> &run)
   const bool coupled = run.settings().drainage == Drainage::coupled;
   const double now = run.time() - run.time_step(); // what accelerations are of
   follow(run.displacement(), run.point_pressure(), coupled ? now : run.time());
-  const Base &base = run.settings().base;
-  const double ax = base.motion[0].acceleration(now), ay = base.motion[1].acceleration(now);
-  const double frame_x = base.compliant ? 0 : ax, frame_y = base.compliant ? 0 : ay;
+  const auto &motion = run.settings().motion;
+  const double ax = motion[0].acceleration(now), ay = motion[1].acceleration(now);
+  const bool absolute = run.settings().base.compliant();
+  const double frame_x = absolute ? 0 : ax, frame_y = absolute ? 0 : ay;
   const Vector &a = run.acceleration();
   const auto size = [&](long x, long y) {
     return std::hypot(a.local_element(static_cast<unsigned>(x)) + frame_x,

@@ -14,6 +14,13 @@ struct ColumnPeaks
   double ru = 0, ru_depth = 0, ru_time = 0;          ///< [-], m, s
   std::vector<double> line_gamma, line_acceleration; ///< on a ColumnLine; empty if the mesh is shared out
 
+  template <class Peaks, class Visit>
+  static void for_each(Peaks &p, const Visit &visit)
+  {
+    visit("peak_input", p.input), visit("peak_surface", p.surface);
+    visit("peak_gamma", p.gamma), visit("peak_gamma_depth", p.gamma_depth);
+    visit("peak_ru", p.ru), visit("peak_ru_depth", p.ru_depth), visit("peak_ru_time", p.ru_time);
+  }
   void save(ColumnCheckpoint &checkpoint) const;
   void restore(const ColumnCheckpoint &checkpoint);
 };

@@ -28,8 +28,8 @@ DynamicsSettings dynamics_settings(const ColumnScene &scene, const std::array<Mo
   settings.mass_damping = scene.analysis.mass_damping;
   settings.drainage = scene.water.drainage;
   settings.lagged_compressibility = scene.water.lagged_compressibility;
-  settings.base = {scene.base.kind == BaseKind::compliant, scene.base.density, scene.base.shear_velocity,
-                   scene.base.rock_p_velocity(), motions};
+  settings.base = scene.base;
+  settings.motion = motions;
   if (scene.load.kind != LoadKind::none)
     settings.surface_traction = [load = scene.load](double t) {
       std::array<double, 3> traction = {};
@@ -39,9 +39,9 @@ DynamicsSettings dynamics_settings(const ColumnScene &scene, const std::array<Mo
   return settings;
 }
 
-std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request)
+std::unique_ptr<ColumnCheckpoint> checkpoint_of(const ColumnRequest &request)
 {
-  if (!request.resume)
+  if (request.use != FolderUse::resume)
     return nullptr;
   auto checkpoint = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
   if (checkpoint->scene != to_toml(request.scene))
@@ -52,13 +52,13 @@ std::unique_ptr<ColumnCheckpoint> checkpoint_of(const RunRequest &request)
   return checkpoint;
 }
 
-void open_folder(const RunRequest &request)
+void open_folder(const ColumnRequest &request)
 {
   MPI_Barrier(MPI_COMM_WORLD); // all ranks have read their checkpoint, and are ready to start
   on_first_rank([&] {
-    if (request.resume)
+    if (request.use == FolderUse::resume)
       return;
-    open_result_folder(request.folder, request.overwrite ? FolderUse::overwrite : FolderUse::fresh);
+    open_result_folder(request.folder, request.use);
     write_provenance(request.folder, to_toml(request.scene), request.command_line,
                      {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
   });
@@ -82,7 +82,7 @@ ColumnSummary summary_so_far(const Discretisation<dim> &space, ColumnFiles<dim> 
 }
 
 template <int dim>
-void stop_if_requested(const RunRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
+void stop_if_requested(const ColumnRequest &request, std::uint64_t step, ColumnFiles<dim> &files,
                        const std::function<void()> &save)
 {
   const bool distributed = request.scene.mesh.distributed, together = distributed || request.scene.has_grains();
@@ -124,7 +124,7 @@ std::string in_words(const ColumnState &state)
 #define ISOSTAT_INSTANTIATE(dim) \
   template Discretisation<dim> column_mesh<dim>(const ColumnScene &, const Supports &); \
   template ColumnSummary summary_so_far<dim>(const Discretisation<dim> &, ColumnFiles<dim> &, PeakFollower<dim> &); \
-  template void stop_if_requested<dim>(const RunRequest &, std::uint64_t, ColumnFiles<dim> &, \
+  template void stop_if_requested<dim>(const ColumnRequest &, std::uint64_t, ColumnFiles<dim> &, \
                                        const std::function<void()> &); \
   template void fail<dim>(const RunFailure &, std::uint64_t, double, const Discretisation<dim> &, ColumnFiles<dim> &);
 ISOSTAT_INSTANTIATE(1)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -19,49 +20,28 @@ double relative_residual(const ColumnState &last)
   return last.max_energy > 0 ? std::abs(last.residual) / last.max_energy : 0;
 }
 
-std::string quoted(const std::string &text)
-{
-  std::string word = "\"";
-  for (char c : text)
-    if (c == '"' || c == '\\')
-      word += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < ' ')
-      word += fmt::format("\\u{:04x}", c);
-    else
-      word += c;
-  return word + "\"";
-}
-
-std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : "null"; }
-
-std::string list(const std::vector<double> &values)
-{
-  std::string text;
-  for (double x : values)
-    text += (text.empty() ? "" : ", ") + number(x);
-  return "[" + text + "]";
-}
-
 const char *name_of(LayerMaterial material)
 {
   return material == LayerMaterial::grains ? "grains" : material == LayerMaterial::iwan ? "iwan" : "elastic";
 }
 
 /// From the surface down.
-std::string layers_json(const ColumnScene &scene)
+Json layers_json(const ColumnScene &scene)
 {
-  std::string text;
+  Json layers = Json::array();
   double top = 0;
   for (const ColumnLayer &layer : scene.layers)
     {
-      text += fmt::format("{}\n    {{\"name\": {}, \"top\": {}, \"bottom\": {}, \"material\": {}, \"density\": {}, "
-                          "\"shear_modulus\": {}}}",
-                          text.empty() ? "" : ",", quoted(layer.name), number(top), number(top + layer.thickness),
-                          quoted(name_of(layer.material)), number(layer.density),
-                          layer.material == LayerMaterial::grains ? "null" : number(layer.small_strain_modulus()));
+      layers.push_back(
+          {{"name", layer.name},
+           {"top", top},
+           {"bottom", top + layer.thickness},
+           {"material", name_of(layer.material)},
+           {"density", layer.density},
+           {"shear_modulus", layer.material == LayerMaterial::grains ? Json() : Json(layer.small_strain_modulus())}});
       top += layer.thickness;
     }
-  return "[" + text + "\n  ]";
+  return layers;
 }
 
 const char *name_of(Drainage drainage)
@@ -82,7 +62,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
                         "{:.4f} m/s2{}\n  peak surface             {:.4f} m/s2\n",
                         scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
-                        scene.base.kind == BaseKind::compliant ? " (outcrop)" : "", p.surface);
+                        scene.base.compliant() ? " (outcrop)" : "", p.surface);
   else
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
   if (p.input > 0)
@@ -128,52 +108,63 @@ std::string to_text(const RunTimes &t)
              1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
 }
 
-std::string to_json(const ColumnSummary &s, const ColumnScene &scene)
+Json to_json(const ColumnSummary &s, const ColumnScene &scene)
 {
   const ColumnPeaks &p = s.peaks;
-  std::string text =
-      fmt::format("{{\n  \"title\": {},\n  \"analysis\": \"{}\",\n  \"drainage\": \"{}\",\n  \"base\": "
-                  "\"{}\",\n  \"layers\": {}",
-                  quoted(scene.title), shaken(scene) ? "dynamic" : "consolidation", name_of(scene.water.drainage),
-                  scene.base.kind == BaseKind::compliant ? "compliant" : "rigid", layers_json(scene));
-  const auto add = [&](const char *name, const std::string &value) {
-    text += fmt::format(",\n  \"{}\": {}", name, value);
-  };
-  add("dimension", std::to_string(scene.mesh.dimension));
-  add("height", number(scene.height()));
-  add("mass_damping", number(scene.analysis.mass_damping));
-  add("spectrum_damping", number(scene.output.spectrum_damping));
-  add("requested_depths", list(scene.output.depths));
-  add("depths", list(s.point_depths));
-  add("elements", std::to_string(s.cells));
-  add("points", std::to_string(s.points));
-  add("steps", number(s.steps));
-  add("time_step", number(s.time_step));
-  add("end", number(s.last.time));
-  add("peak_input", number(p.input));
-  add("peak_surface", number(p.surface));
-  add("amplification", number(amplification(p)));
-  add("peak_gamma", number(p.gamma));
-  add("peak_gamma_depth", number(p.gamma_depth));
-  add("max_ru", number(p.ru));
-  add("max_ru_depth", number(p.ru_depth));
-  add("max_ru_time", number(p.ru_time));
-  add("settlement", number(s.last.settlement));
-  add("energy_residual", number(s.last.residual));
-  add("relative_energy_residual", number(relative_residual(s.last)));
-  add("final_settlement", shaken(scene) ? "null" : number(s.final_settlement));
-  add("degree_of_consolidation", shaken(scene) ? "null" : number(s.degree));
+  const bool drains = !shaken(scene);
+  Json json{{"title", scene.title},
+            {"analysis", shaken(scene) ? "dynamic" : "consolidation"},
+            {"drainage", name_of(scene.water.drainage)},
+            {"base", scene.base.compliant() ? "compliant" : "rigid"},
+            {"layers", layers_json(scene)},
+            {"dimension", scene.mesh.dimension},
+            {"height", scene.height()},
+            {"mass_damping", scene.analysis.mass_damping},
+            {"spectrum_damping", scene.output.spectrum_damping},
+            {"requested_depths", scene.output.depths},
+            {"depths", s.point_depths},
+            {"elements", s.cells},
+            {"points", s.points},
+            {"steps", std::llround(s.steps)},
+            {"time_step", s.time_step},
+            {"end", s.last.time},
+            {"peak_input", p.input},
+            {"peak_surface", p.surface},
+            {"amplification", amplification(p)},
+            {"peak_gamma", p.gamma},
+            {"peak_gamma_depth", p.gamma_depth},
+            {"max_ru", p.ru},
+            {"max_ru_depth", p.ru_depth},
+            {"max_ru_time", p.ru_time},
+            {"settlement", s.last.settlement},
+            {"energy_residual", s.last.residual},
+            {"relative_energy_residual", relative_residual(s.last)},
+            {"final_settlement", drains ? Json(s.final_settlement) : Json()},
+            {"degree_of_consolidation", drains ? Json(s.degree) : Json()}};
   if (s.grains)
     {
-      add("packings", std::to_string(s.grains->packings));
-      add("shear_velocities", list({s.grains->slowest, s.grains->fastest}));
+      json["packings"] = s.grains->packings;
+      json["shear_velocities"] = {s.grains->slowest, s.grains->fastest};
     }
   if (s.grains && s.grains->has_profiles)
     {
-      add("min_redundancy", number(s.grains->min_redundancy));
-      add("min_redundancy_depth", number(s.grains->min_redundancy_depth));
-      add("min_redundancy_time", number(s.grains->min_redundancy_time));
+      json["min_redundancy"] = s.grains->min_redundancy;
+      json["min_redundancy_depth"] = s.grains->min_redundancy_depth;
+      json["min_redundancy_time"] = s.grains->min_redundancy_time;
     }
-  return text + "\n}\n";
+  return json;
+}
+
+Json to_json(const RunTimes &t)
+{
+  return {{"wall", t.wall},
+          {"steps", std::llround(t.steps)},
+          {"solver", t.solver},
+          {"material", t.material},
+          {"packing_calls", std::llround(t.packing_trials)},
+          {"packing_steps", std::llround(t.packing_steps)},
+          {"busiest_packings", t.in_packings},
+          {"all_packings", t.all_packings},
+          {"wave_velocities", t.waves}};
 }
 } // namespace isostat

@@ -2,6 +2,7 @@
 #pragma once
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
+#include "base/files/json.hpp"
 
 #include <optional>
 
@@ -41,6 +42,8 @@ struct RunTimes
 /// For the terminal and summary.txt.
 std::string to_text(const ColumnSummary &summary, const ColumnScene &scene);
 std::string to_text(const RunTimes &times);
-/// For summary.json: read by scripts/plots_soil_column.py. No number is ever nan.
-std::string to_json(const ColumnSummary &summary, const ColumnScene &scene);
+/// For summary.json, which the figures read.
+Json to_json(const ColumnSummary &summary, const ColumnScene &scene);
+/// For times.json, which benchmarks read: times in s.
+Json to_json(const RunTimes &times);
 } // namespace isostat

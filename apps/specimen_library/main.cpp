@@ -220,7 +220,6 @@ void make_library(const Options &options)
   const bool extend = options.append && fs::exists(path, ignored);
   tasks = missing_ones(std::move(tasks), extend ? list_library(path) : std::vector<LibraryEntry>{});
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  Assembly::default_threads = 1;
   catch_signals();
   prepare_side_by_side(tasks, path.parent_path() / scene.specimen.cache, options.jobs > 0 ? options.jobs : cores,
                        options.quiet);

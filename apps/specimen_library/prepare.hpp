@@ -23,6 +23,6 @@ struct Task
 /// Prepares all tasks, or takes them from the cache, `jobs` side by side, each on a thread of its own. One that fails
 /// does not keep the others from being prepared. Says on stderr what begins, what is done, and when the rest will be.
 /// @throws Interrupted  after a signal; what was finished is in the cache
-/// @pre Assembly::default_threads is 1     @post every task has a specimen or a failure
+/// @post every task has a specimen or a failure
 void prepare_side_by_side(std::vector<Task> &tasks, const std::filesystem::path &cache, int jobs, bool quiet);
 } // namespace isostat

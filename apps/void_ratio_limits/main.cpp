@@ -16,6 +16,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
 #include "base/error.hpp"
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/measure/summary.hpp"
@@ -24,6 +25,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace
@@ -53,7 +55,7 @@ Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
   const Stopwatch watch;
   Dense dense;
-  dense.state = compact(cloud, scene.contact, 0, scene.specimen, observer);
+  dense.state = compact(cloud, scene.contact, 0, {scene.specimen, observer});
   dense.void_ratio = void_ratio(dense.state.volume(), dense.state.grains.solid_volume());
   const double margin = 2 * dense.state.grains.d50();
   RigidBox inside = dense.state.box;
@@ -112,16 +114,17 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
 
 void write_limits(const fs::path &folder, const std::vector<Value> &values)
 {
-  std::string names, numbers, json = "{";
+  std::string names, numbers;
+  Json json;
   for (const Value &v : values)
     {
       const std::string_view comma = names.empty() ? "" : ",";
       names += fmt::format("{}{} ({})", comma, v.name, v.unit);
-      numbers += fmt::format("{}{:.10g}", comma, v.value);
-      json += fmt::format("{}\n  \"{}\": {{\"value\": {:.10g}, \"unit\": \"{}\"}}", comma, v.name, v.value, v.unit);
+      numbers += fmt::format("{}{}", comma, v.value);
+      json[v.name] = {{"value", v.value}, {"unit", v.unit}};
     }
   write_replacing(folder / "limits.csv", names + "\n" + numbers + "\n");
-  write_replacing(folder / "limits.json", json + "\n}\n");
+  write_json(folder / "limits.json", json);
 }
 
 /// Whole vessel, inside, and for the paper's sand what paper and laboratory found.

@@ -143,6 +143,24 @@ std::string read_scene_text(const std::string &path)
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
+                       const std::string &file)
+{
+  namespace fs = std::filesystem;
+  const fs::path path = fs::absolute(fs::path(scene_path).parent_path() / file).lexically_normal();
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored))
+    document.refuse(key, fmt::format("is not there ({}). A relative path counts from the folder of the scene file; "
+                                     "correct it.",
+                                     path.string()));
+  return path.string();
+}
+
+std::string results_folder(const std::string &scene_path)
+{
+  return "results/" + std::filesystem::path(scene_path).stem().string();
+}
+
 bool takes_key(const Key &key, std::size_t kind) { return key.kinds == 0 || key.belongs_to(kind); }
 
 std::size_t kind_number(const SceneSchema &schema, const Section &section, void *scene, void *item)

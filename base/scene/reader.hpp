@@ -8,6 +8,14 @@ namespace isostat
 /// The text of a scene file.  @throws InputError if it is not there or cannot be read
 std::string read_scene_text(const std::string &path);
 
+/// The absolute path of a file that a scene names, which counts from the folder of the scene file and must be there.
+/// @throws InputError  tested: tests/apps/deposit/scene_error_test.cpp
+std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
+                       const std::string &file);
+
+/// Where a run goes whose scene does not say it: results/<scene file name without ending>.
+std::string results_folder(const std::string &scene_path);
+
 /// Fills a scene from a document: every key of the document is known and belongs there, every value has the form, unit
 /// and range of the schema, what is left out takes its default. Rules between keys are left to check_groups and to the
 /// owner of the schema.

@@ -44,6 +44,13 @@ struct Range
   bool operator==(const Range &) const = default;
 };
 
+/// Of Key::kinds.
+template <class Kind>
+constexpr unsigned kind_bit(Kind kind)
+{
+  return 1u << static_cast<unsigned>(kind);
+}
+
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
 struct Key
 {

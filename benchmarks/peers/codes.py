@@ -2,8 +2,8 @@
 """Isostat and YADE in the comparison (LAMMPS and LIGGGHTS: lammps.py). Each has run(test) -> Figures: a block of
 constant-volume shear, timed, and the state at its end."""
 import dataclasses
+import json
 import pathlib
-import re
 
 from . import packing as packings
 from .process import PeerError, execute, install, installed_version, last_lines
@@ -53,12 +53,14 @@ def together(runs):
     return dataclasses.replace(runs[-1], steps_per_s=speed, cores=min(f.cores for f in runs))
 
 
-def printed_figures(text, name):
-    lines = [line for line in text.splitlines() if line.startswith(name + " ")]
-    found = dict(re.findall(r"(\w+) ([-+0-9.e]+)(?= |$)", lines[-1][len(name) + 1:])) if lines else {}
-    if not {"steps_per_s", "p_kPa", "q_kPa", "contacts"} <= found.keys():
-        raise PeerError(f"{name} printed no figures; its last lines:\n{last_lines(text)}")
-    return {key: float(value) for key, value in found.items()}
+def timed(command, test):
+    """Runs a program that writes its figures to the file named last, and returns its output and those figures."""
+    times = test.folder / "times.json"
+    times.unlink(missing_ok=True)
+    out = execute([*command, times], test.cores, test.folder)
+    if not times.exists():
+        raise PeerError(f"{command[0]} wrote no figures; its last lines:\n{last_lines(out.text)}")
+    return out, json.loads(times.read_text(encoding="utf-8"))[-1]
 
 
 class Isostat:
@@ -84,9 +86,8 @@ class Isostat:
         command += ["--damping", damping] if damping is not None else []
 
         def once():
-            out = execute(command, test.cores, test.folder)
-            f = printed_figures(out.text, "isostat")
-            self.instruction_set = (re.findall(r"instruction_set (\S+)", out.text) or [""])[-1]
+            out, f = timed([*command, "--times"], test)
+            self.instruction_set = f["instruction_set"]
             return Figures(f["steps_per_s"], f["p_kPa"], f["q_kPa"], f["contacts"], out.cores)
         return repeated(once, test.steps)
 
@@ -122,8 +123,7 @@ class Yade:
             packings.write_packing(path, test.packing)
         command = ["yade", "-n", "-x", f"-j{test.threads}", HERE / "yade_shear.py", path, test.rate, test.time_step,
                    test.warm_up, test.steps]
-        out = execute(command, test.cores, test.folder)
-        f = printed_figures(out.text, "yade")
+        _, f = timed(command, test)
         if f.get("grains") != len(test.packing.spheres):
             raise PeerError(f"{path} has {f.get('grains', 0):.0f} grains, the specimen has {len(test.packing.spheres)}")
         return Figures(f["steps_per_s"], f["p_kPa"], f["q_kPa"], f["contacts"], f["cores"])

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Constant-volume shear of a packing in YADE, timed.
 
-    yade -n -x -j1 yade_shear.py PACKING RATE TIME_STEP WARM_UP STEPS
+    yade -n -x -j1 yade_shear.py PACKING RATE TIME_STEP WARM_UP STEPS TIMES
 
 PACKING is text, lines x y z r (m) with the box in a comment `# box xlo xhi ylo yhi zlo zhi`; bodies are stored in the
 order of the lines, contacts start without history. Or it is a state saved by YADE (.yade.bz2: six walls x- x+ y- y+
 z- z+, then spheres); contacts then keep their history. The law is the one of Isostat: CohFrictMat without cohesion,
 rolling limit, elastic twist, incremental form, frictionless walls, damping 0.2. The block of STEPS after WARM_UP
-untimed steps prints steps per second, contacts, p and q."""
+untimed steps gives steps per second, contacts, p and q, written to the file TIMES as JSON."""
+import json
 import math
 import sys
 import time
@@ -64,7 +65,7 @@ def wall_stress():
             for k in range(3)]
 
 
-path, rate, dt, warm_up, steps = [a for a in sys.argv[1:] if not a.endswith(".py")][:5]
+path, rate, dt, warm_up, steps, times = [a for a in sys.argv[1:] if not a.endswith(".py")][:6]
 if path.endswith(".yade.bz2"):
     O.load(path)
 else:
@@ -76,6 +77,6 @@ O.run(int(steps), True)
 seconds, used = time.perf_counter() - begin, time.process_time() - used
 contacts = sum(1 for i in O.interactions if i.isReal)
 s = wall_stress()
-print("yade steps_per_s %.4f contacts %d p_kPa %.4f q_kPa %.4f grains %d cores %.3f" % (
-    int(steps) / seconds, contacts, sum(s) / 3e3, (s[1] - 0.5 * (s[0] + s[2])) / 1e3, len(O.bodies) - 6,
-    used / seconds), flush=True)
+with open(times, "w") as file:
+    json.dump([{"steps_per_s": int(steps) / seconds, "contacts": contacts, "p_kPa": sum(s) / 3e3,
+                "q_kPa": (s[1] - 0.5 * (s[0] + s[2])) / 1e3, "grains": len(O.bodies) - 6, "cores": used / seconds}], file)

@@ -21,29 +21,28 @@ Exchange::Exchange(MPI_Comm comm) : comm_(comm)
   MPI_Comm_size(comm_, &size_);
 }
 
-void Exchange::share(std::span<const std::size_t> ids, const Owners &owners, std::size_t width,
-                     std::span<double> rows) const
+void Exchange::share_bytes(std::span<const std::size_t> ids, const Owners &owners, std::size_t width,
+                           std::span<std::byte> rows) const
 {
   if (size_ == 1 || ids.empty())
     return;
-  std::vector<int> counts(size_, 0), begins(size_, 0);
+  std::vector<int> counts(size_, 0), begins(size_, 0); // in rows
   for (std::size_t id : ids)
-    counts[owners[id]] += static_cast<int>(width);
+    ++counts[owners[id]];
   for (int r = 1; r < size_; ++r)
     begins[r] = begins[r - 1] + counts[r - 1];
-  std::vector<double> mine, all(rows.size());
-  mine.reserve(counts[rank_]);
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    if (owners[ids[k]] == rank_)
-      mine.insert(mine.end(), &rows[width * k], &rows[width * k] + width);
-  MPI_Allgatherv(mine.data(), counts[rank_], MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, comm_);
+  Bytes mine, all(ids.size() * width);
+  for (std::size_t id : ids)
+    if (owners[id] == rank_)
+      mine.insert(mine.end(), &rows[width * id], &rows[width * id] + width);
+  MPI_Datatype row;
+  MPI_Type_contiguous(static_cast<int>(width), MPI_BYTE, &row);
+  MPI_Type_commit(&row);
+  MPI_Allgatherv(mine.data(), counts[rank_], row, all.data(), counts.data(), begins.data(), row, comm_);
+  MPI_Type_free(&row);
   std::vector<int> next = begins;
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    {
-      int &at = next[owners[ids[k]]];
-      std::copy_n(&all[at], width, &rows[width * k]);
-      at += static_cast<int>(width);
-    }
+  for (std::size_t id : ids)
+    std::copy_n(&all[width * static_cast<std::size_t>(next[owners[id]]++)], width, &rows[width * id]);
 }
 
 void Exchange::stop_together(const std::optional<Failure> &mine) const
@@ -122,6 +121,8 @@ std::vector<Bytes> Exchange::gather(const Bytes &mine) const
 
 std::vector<Bytes> Exchange::move(const std::vector<Bytes> &sent, const Owners &from, const Owners &to) const
 {
+  if (size_ == 1)
+    return {};
   std::vector<MPI_Request> pending;
   pending.reserve(sent.size());
   std::size_t next = 0;

@@ -6,13 +6,14 @@
 #include <mpi.h>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 namespace isostat
 {
 using Bytes = std::vector<std::byte>;
 
 /// What goes between ranks. Every call is collective on the communicator, in the same order on all ranks; nothing is
-/// summed by MPI, so no bit hangs on the number of ranks. One rank alone makes no MPI call but those for its number.
+/// summed by MPI, so results are bitwise the same for any number of ranks. One rank alone makes no MPI call but those for its number.
 /// tested: tests/mpi/rve_material_mpi.cpp
 class Exchange
 {
@@ -23,9 +24,14 @@ public:
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  /// Rows of `width` numbers, one for each of the elements `ids` (rising): the owner has filled in its own, afterwards
-  /// everybody has all.   cost one MPI_Allgatherv
-  void share(std::span<const std::size_t> ids, const Owners &owners, std::size_t width, std::span<double> rows) const;
+  /// Rows, one for each element: the owners of the elements `ids` (rising) have filled in those, afterwards
+  /// everybody has them.   cost one MPI_Allgatherv
+  template <typename Row>
+  void share(std::span<const std::size_t> ids, const Owners &owners, std::span<Row> rows) const
+  {
+    static_assert(std::is_trivially_copyable_v<Row>);
+    share_bytes(ids, owners, sizeof(Row), std::as_writable_bytes(rows));
+  }
 
   /// An element that failed, on the rank where it did.
   struct Failure
@@ -34,7 +40,7 @@ public:
     std::string message;
     bool bad_input = false; ///< of the user's making
   };
-  /// Stops all ranks alike: if any rank has a failure, every rank throws that of the lowest element.
+  /// If any rank has a failure, every rank throws that of the lowest element.
   /// @throws InputError, RunFailure  the same message everywhere
   void stop_together(const std::optional<Failure> &mine) const;
 
@@ -47,6 +53,8 @@ public:
   std::vector<Bytes> move(const std::vector<Bytes> &send, const Owners &from, const Owners &to) const;
 
 private:
+  void share_bytes(std::span<const std::size_t> ids, const Owners &owners, std::size_t width,
+                   std::span<std::byte> rows) const;
   void send(const Bytes &bytes, int to, std::vector<MPI_Request> &pending) const;
   Bytes receive(int from) const;
 

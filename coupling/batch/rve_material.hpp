@@ -1,36 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "coupling/batch/exchange.hpp"
-#include "coupling/element/rve_element.hpp"
-#include "coupling/in_situ/in_situ.hpp"
-#include "fem/material/material.hpp"
-
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
+#include "coupling/batch/element_batch.hpp"
+#include "coupling/batch/rve_material_settings.hpp"
+#include "coupling/in_situ/in_situ_start.hpp"
+#include "coupling/placement/cost_meter.hpp"
 
 namespace isostat
 {
-/// How a material of grains is run.
-struct RveMaterialSettings
-{
-  std::filesystem::path library; ///< specimens of the sand, made by the program specimen_library
-  std::filesystem::path cache;   ///< in-situ states, kept for the next start; empty: none are kept
-  InSituSettings in_situ;
-  MotionSpec motion;            ///< of the elements, as in the element tests
-  bool undrained = true;        ///< volume strain is stripped (Rve::undrained); false: it is live
-  std::size_t realisations = 1; ///< elements of a point; its stress is their mean
-  std::uint64_t min_steps = 20; ///< time steps that an increment takes at least, see RveSettings
-  unsigned halvings = 6;        ///< a rejected increment is taken in up to 2^halvings parts
-  int threads = 1;              ///< that share the elements of a rank; 0: as many as the process may use
-  BalanceRule balance;
-  std::uint64_t balance_interval = 100;    ///< commits between two looks at the balance
-  double refresh_rise = 0.25;              ///< wave moduli are found anew when p' has risen by this part since [-] ...
-  std::uint64_t refresh_interval = 10'000; ///< ... or, unless p' is lower, after so many commits
-  void check() const;                      ///< @throws InputError
-};
-
 /// Where the time went; the same on all ranks but for `batch_seconds` and `wave_seconds`.
 struct RveMaterialCost
 {
@@ -42,14 +18,14 @@ struct RveMaterialCost
 };
 
 /// A soil whose every Gauss point is `realisations` packings of grains: representative volume elements under the
-/// displacement gradient of the point, z upwards, see column_frame(). Elements are numbered point by point,
-/// id = point * realisations + realisation.
+/// displacement gradient of the point, z upwards, see column_frame().
 ///
-///     trial:   H of every point -> [ rank 0: elements 0, 3, 4 ][ rank 1: 1, 2, 5 ]... -> stresses of all, by id
+///     increments -> ElementBatch (ranks, threads, trial and commit) -> stresses of all elements -> Realisations -> means
+///                        placed by CostMeter and BalanceRule             WaveModuliCache, committed
 ///
 /// All calls are collective: every rank of the communicator calls them in the same order with the same arguments, and
-/// gets the same answer to the bit, whatever the number of ranks and threads, and wherever elements live. Placement
-/// follows the measured cost of each element (running mean of the last ten trials or so), known to all ranks.
+/// gets the same answer, bitwise, for any number of ranks and threads and any placement. Placement
+/// follows the measured cost of each element, known to all ranks.
 ///
 /// An element that rejects an increment in all its parts stops all ranks with one and the same RunFailure; all elements
 /// are back at the committed state then. A trial that is committed costs no copy of an element, see RveElement.
@@ -59,16 +35,16 @@ struct RveMaterialCost
 class RveMaterial : public Material
 {
 public:
-  /// Elements come into being in set_initial_stress(), from a library of specimens.
+  /// set_initial_stress() makes the elements, from a library of specimens.
   RveMaterial(std::vector<SpecimenRequest> points, const RveMaterialSettings &settings, MPI_Comm comm);
   /// Elements as they are, one specimen each, by id; periodic, in their own axes (y vertical).
   RveMaterial(const std::vector<Snapshot> &specimens, const RveMaterialSettings &settings, MPI_Comm comm);
 
   std::string name() const override { return "rve"; }
-  std::size_t n_points() const override { return n_points_; }
+  std::size_t n_points() const override { return points().n_points; }
 
   /// Finds each element in the cache, or brings the nearest specimen of the library (or the element as it is) to the
-  /// stress, several side by side; within 1 % of p' of what is wanted.
+  /// stress, several side by side; within 1 % of p' of the target.
   /// @throws InputError  the library has no such specimens; p' too low     @throws RunFailure  not reached
   void set_initial_stress(std::span<const Stress> effective) override;
 
@@ -82,8 +58,7 @@ public:
   void stiffness(std::span<Stiffness> tangents) const override;
   /// C of the skeleton, whether undrained or not: symmetric.
   void skeleton_stiffness(std::span<Stiffness> stiffnesses) const;
-  /// From C, found anew as RveMaterialSettings says: it falls with p' and hardly rises with it, so that an old one is
-  /// rather too large. cost when found anew that of stiffness()
+  /// From C, see WaveModuliCache. cost when computed anew that of stiffness()
   void wave_moduli(std::span<WaveModuli> moduli) const override;
 
   /// The same bytes for any number of ranks and threads, on every rank.
@@ -91,77 +66,48 @@ public:
   void unpack(std::span<const std::byte> bytes) override;
 
   /// Standard deviation of the stress over the realisations of each point, at the committed state; 0 for one. Pa
-  void scatter(std::span<Stress> deviations) const;
+  void scatter(std::span<Stress> deviations) const { points().deviation(batch_.committed_stress(), deviations); }
   /// An element for micromechanics and figures, as the last trial left it, or as committed if there is none;
-  /// null where it lives on another rank.
+  /// null where it is on another rank.
   const Rve *element(std::size_t point, std::size_t realisation = 0) const;
 
-  /// How its elements are run.
-  RveSettings element_settings() const;
   const RveMaterialSettings &settings() const { return settings_; }
+  /// How its elements are run.
+  const ElementSettings &element_settings() const { return batch_.settings(); }
   /// Displacement gradient of a point in the last trial.
   const Gradient &increment(std::size_t point) const { return increments_[point]; }
   /// Stress of an element at the committed state, on every rank.
   const Stress &stress(std::size_t point, std::size_t realisation = 0) const
   {
-    return committed_[point * settings_.realisations + realisation];
+    return batch_.committed_stress()[points().id_of(point, realisation)];
+  }
+  /// Time steps that an element took in the last trial, on every rank.
+  double steps_of(std::size_t point, std::size_t realisation = 0) const
+  {
+    return static_cast<double>(batch_.rows()[points().id_of(point, realisation)].steps);
   }
 
-  /// Time steps that an element took in the last trial, on every rank.
-  double steps_of(std::size_t point, std::size_t realisation = 0) const;
-
   /// Moves elements to given ranks, one for each id. Results do not change.   @pre no trial is pending
-  void place(const Owners &owners);
-  const Owners &owners() const { return owners_; }
+  void place(const Owners &owners) { cost_.moves += batch_.place(owners, meter_.means()); }
+  const Owners &owners() const { return batch_.owners(); }
   const RveMaterialCost &cost() const { return cost_; }
 
 private:
   RveMaterial(std::size_t n_points, const RveMaterialSettings &settings, MPI_Comm comm);
-  std::size_t n_elements() const { return owners_.size(); }
-  std::size_t point_of(std::size_t id) const { return id / settings_.realisations; }
-  bool is_mine(std::size_t id) const { return owners_[id] == exchange_.rank(); }
-  std::string label(std::size_t id) const;
-  std::unique_ptr<RveElement> make_element(Rve rve) const;
-  std::unique_ptr<RveElement> unpack_element(std::span<const std::byte> bytes) const;
-  std::optional<Exchange::Failure> for_mine(const std::function<void(std::size_t)> &work) const;
-  void run_element(std::size_t id, const Gradient &increment);
-  void stop_if_failed();
-  void count_costs();
-  void balance();
-  void start();
-  void check_ready() const;
-  Stress mean(const std::vector<Stress> &stresses, std::size_t point) const;
-  void mark_due();
-  void find_stiffnesses() const;
-
-  struct Jobs;
-  Jobs jobs_for(std::span<const Stress> effective) const;
-  void keep(const Jobs &jobs) const;
+  const Realisations &points() const { return batch_.points(); }
+  void make(const std::function<Rve(std::size_t id)> &maker);
+  InSituStart in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const;
+  void count_trial();
+  const std::vector<Stiffness> &skeleton() const;
+  void refresh_waves() const;
 
   RveMaterialSettings settings_;
-  std::size_t n_points_;
-  Exchange exchange_;
+  ElementBatch batch_;
   std::vector<SpecimenRequest> requests_; ///< empty: elements were given as they are
-  Owners owners_;
-  std::vector<std::size_t> all_, order_;              ///< every id; mine, dearest first
-  std::vector<double> costs_;                         ///< s per trial, of each element
-  std::vector<std::unique_ptr<RveElement>> elements_; ///< null where it is not mine
-  bool ready_ = false, has_trial_ = false;
   std::vector<Gradient> increments_;      ///< of each point in the last trial
-  std::vector<Stress> committed_, trial_; ///< of each element
-  std::vector<double> rows_;              ///< what a trial gave, shared between ranks
-  std::map<std::size_t, std::string> reasons_;
-  std::uint64_t commits_ = 0;
-
-  /// Wave moduli of each element and what they were found at.
-  struct Wave
-  {
-    double p = 0, s = 0, pressure = 0, commit = 0;
-    bool due = true;
-  };
-  mutable std::vector<Wave> waves_;
-  mutable std::vector<Stiffness> skeleton_; ///< of each element
-  mutable bool skeleton_known_ = false;
+  CostMeter meter_;
+  mutable WaveModuliCache waves_;
+  mutable std::vector<Stiffness> skeleton_; ///< of each element at the last trial; empty: not computed yet
   mutable RveMaterialCost cost_;
 };
 } // namespace isostat

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 
+#include <fmt/format.h>
 #include <utility>
 
 namespace isostat
@@ -28,8 +29,8 @@ Rve newborn(const Rve &rve)
 }
 } // namespace
 
-RveElement::RveElement(Rve rve, bool constant_volume, unsigned halvings)
-    : rve_(std::move(rve)), constant_volume_(constant_volume), halvings_(halvings)
+RveElement::RveElement(Rve rve, const ElementSettings &settings)
+    : rve_(std::move(rve)), undrained_(settings.undrained), halvings_(settings.halvings)
 {
   keep_copy();
 }
@@ -39,11 +40,15 @@ ElementTrial RveElement::trial(const Mat3 &displacement_gradient)
   rollback();
   ElementTrial result;
   result.accepted = displacement_gradient.isZero(0) || advance(displacement_gradient, halvings_, result);
+  if (!result.accepted)
+    result.reason =
+        fmt::format("an increment of displacement gradient of {:.3g} cannot be taken, in {} parts neither: {}",
+                    displacement_gradient.norm(), 1u << halvings_, result.reason);
   result.stress = rve_.stress();
   return result;
 }
 
-RveResponse RveElement::strain(const Mat3 &h) { return constant_volume_ ? rve_.undrained(h) : rve_.advance(h); }
+RveResponse RveElement::strain(const Mat3 &h) { return undrained_ ? rve_.undrained(h) : rve_.advance(h); }
 
 bool RveElement::advance(const Mat3 &h, unsigned halvings, ElementTrial &result)
 {

@@ -6,6 +6,14 @@
 
 namespace isostat
 {
+/// How an element is run.
+struct ElementSettings
+{
+  RveSettings rve;
+  bool undrained = true; ///< volume strain is stripped (Rve::undrained)
+  unsigned halvings = 6; ///< a rejected increment is taken in up to 2^halvings parts
+};
+
 /// What a trial of an element gave.
 struct ElementTrial
 {
@@ -15,8 +23,8 @@ struct ElementTrial
   std::uint64_t steps = 0;
 };
 
-/// A representative volume element that can be tried from its committed state as often as wanted, and go back there to
-/// the bit.
+/// A representative volume element for trials: each starts from the committed state, any number of them, and the way back to it
+/// is bitwise.
 ///
 /// An element goes on from where the last trial left it, so a trial that is committed costs nothing beyond itself. The
 /// way back is a copy of an earlier committed state and the increments taken since, to be run again: the copy is
@@ -26,11 +34,11 @@ struct ElementTrial
 ///
 /// A rejected increment H is taken in two halves, each sqrt(I + H) - I, these in halves in their turn, and so on
 /// `halvings` times. Halves are part of what is committed and run again.
-/// tested: tests/coupling/batch/rve_material_test.cpp
+/// tested: tests/coupling/element/rve_element_test.cpp
 class RveElement
 {
 public:
-  RveElement(Rve rve, bool constant_volume, unsigned halvings);
+  RveElement(Rve rve, const ElementSettings &settings);
 
   /// From the committed state. A rejected trial leaves the element part of the way; rollback() brings it back.
   /// @throws RunFailure  an increment that was accepted is not when it is run again: a fault of the program
@@ -40,20 +48,20 @@ public:
 
   /// As the last trial left it.
   const Rve &rve() const { return rve_; }
-  /// Looks at the committed state; afterwards the last trial is back.
-  template <typename Look>
-  auto at_committed(const Look &look)
+  /// A function of the committed element; afterwards the last trial is back.
+  template <typename Measure>
+  auto at_committed(const Measure &measure)
   {
     if (trial_.empty())
-      return look(rve_);
+      return measure(rve_);
     const RveState now = rve_.save();
     go_back();
-    auto seen = look(rve_);
+    auto result = measure(rve_);
     rve_.restore(now);
-    return seen;
+    return result;
   }
 
-  /// The committed state, the same bytes whatever it cost to come to it.
+  /// The committed state, the same bytes whatever trials led to it.
   std::vector<std::byte> pack();
   /// The same with the cost, for a move to another rank.   @pre no trial is pending
   std::vector<std::byte> pack_to_move() const { return rve_.pack(); }
@@ -65,7 +73,7 @@ private:
   void keep_copy();
 
   Rve rve_;
-  bool constant_volume_;
+  bool undrained_;
   unsigned halvings_;
   RveState copy_;                ///< a committed state
   std::vector<Mat3> since_copy_; ///< committed increments since

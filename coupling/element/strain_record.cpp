@@ -45,7 +45,7 @@ void check_packing(const std::filesystem::path &path, const StrainRecord &record
 {
   try
     {
-      (void)Rve::unpack(record.packing, record.settings);
+      (void)Rve::unpack(record.packing, record.settings.rve);
     }
   catch (const InputError &error)
     {
@@ -103,9 +103,9 @@ void write_strain_record_start(const std::filesystem::path &folder, const Strain
   hdf5::Group root = file.root();
   set_format(root, format_name, schema_version);
   root.set_attribute("depth", record.depth);
-  root.set_attribute("undrained", std::uint64_t{record.undrained});
-  root.set_attribute("halvings", std::uint64_t{record.halvings});
-  write_settings(root, record.settings);
+  root.set_attribute("undrained", std::uint64_t{record.settings.undrained});
+  root.set_attribute("halvings", std::uint64_t{record.settings.halvings});
+  write_settings(root, record.settings.rve);
   hdf5::write_bytes(root, "packing", record.packing);
   file.commit();
 }
@@ -122,9 +122,9 @@ StrainRecord read_strain_record(const std::filesystem::path &folder)
     const hdf5::Group root = file.root();
     expect_format(root, format_name, schema_version);
     record.depth = root.attribute<double>("depth");
-    record.undrained = root.attribute<std::uint64_t>("undrained") != 0;
-    record.halvings = static_cast<unsigned>(root.attribute<std::uint64_t>("halvings"));
-    record.settings = read_settings(root);
+    record.settings.undrained = root.attribute<std::uint64_t>("undrained") != 0;
+    record.settings.halvings = static_cast<unsigned>(root.attribute<std::uint64_t>("halvings"));
+    record.settings.rve = read_settings(root);
     record.packing = hdf5::read_bytes(root, "packing");
   }
   check_packing(folder / "packing.h5", record);

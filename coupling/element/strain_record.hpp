@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "base/record/recorder.hpp"
-#include "dem/rve/rve.hpp"
+#include "coupling/element/rve_element.hpp"
 #include "fem/material/material.hpp"
 
 #include <filesystem>
 
 namespace isostat
 {
-/// What one element went through at its Gauss point, with all that is needed to send it the same way again, alone.
-/// In a folder: packing.h5 (how it started, and how it is run), and history.csv and .h5 (a row for each increment).
+/// Strain history of one element at its Gauss point, and what is needed to repeat it with the element alone.
+/// In a folder: packing.h5 (its initial state, and how it is run), and history.csv and .h5 (a row for each increment).
 /// tested: tests/apps/grain_column_test.py
 struct StrainRecord
 {
   double depth = 0;               ///< of the point below the surface, m
   std::vector<std::byte> packing; ///< Rve::pack() before the first increment
-  RveSettings settings;
-  bool undrained = true; ///< volume strain was stripped
-  unsigned halvings = 0; ///< of a rejected increment, see RveElement
+  ElementSettings settings;       ///< how it was run
 
   std::vector<double> time;         ///< at the end of each increment, s
   std::vector<Gradient> increments; ///< of the displacement gradient, row by row

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/in_situ/in_situ_cache.hpp"
 
+#include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
+#include "coupling/in_situ/in_situ.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -31,6 +33,30 @@ Specimen described(const InSituState &state)
   return specimen;
 }
 } // namespace
+
+std::vector<std::byte> to_bytes(const std::vector<InSituState> &states)
+{
+  ByteWriter out;
+  out.count(states.size());
+  for (const InSituState &state : states)
+    {
+      out.text(state.recipe), out.text(state.source);
+      out.block(state.packed);
+    }
+  return out.take();
+}
+
+void append_states(std::vector<InSituState> &states, std::span<const std::byte> bytes)
+{
+  ByteReader in(bytes, "in situ");
+  for (std::uint64_t n = in.count(); n > 0; --n)
+    {
+      InSituState &state = states.emplace_back();
+      state.recipe = in.text(), state.source = in.text();
+      const auto block = in.block();
+      state.packed.assign(block.begin(), block.end());
+    }
+}
 
 InSituCache::InSituCache(std::filesystem::path path) : path_(std::move(path))
 {

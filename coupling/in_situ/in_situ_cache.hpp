@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "coupling/in_situ/in_situ.hpp"
+#include "dem/io/specimen_library.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -15,10 +15,14 @@ struct InSituState
   std::vector<std::byte> packed; ///< bring_to_stress()
 };
 
+/// States as bytes, for another rank.   @throws InputError  from append_states(): the bytes are none of to_bytes()
+std::vector<std::byte> to_bytes(const std::vector<InSituState> &states);
+void append_states(std::vector<InSituState> &states, std::span<const std::byte> bytes);
+
 /// Specimens at their stress in situ, kept from run to run: a specimen library (specimen_library.hpp) whose entries are
 /// named by a hash of their recipe, which stands in `provenance` and is compared as well. Any entry can be the specimen
 /// of an element test.
-/// tested: tests/coupling/in_situ/in_situ_test.cpp
+/// tested: tests/coupling/in_situ/in_situ_start_test.cpp
 class InSituCache
 {
 public:

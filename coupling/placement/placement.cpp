@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/placement/placement.hpp"
 
+#include "base/error.hpp"
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -18,14 +20,6 @@ std::vector<std::size_t> by_falling_cost(std::span<const double> costs)
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
   return order;
-}
-
-std::vector<double> loads_of(std::span<const double> costs, const Owners &owners, int n_ranks)
-{
-  std::vector<double> loads(n_ranks, 0.0);
-  for (std::size_t i = 0; i < costs.size(); ++i)
-    loads[owners[i]] += costs[i];
-  return loads;
 }
 } // namespace
 
@@ -46,6 +40,13 @@ Owners longest_first(std::span<const double> costs, int n_ranks)
   return owners;
 }
 
+std::vector<double> loads_of(std::span<const double> costs, const Owners &owners, int n_ranks)
+{
+  std::vector<double> loads(n_ranks, 0.0);
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    loads[owners[i]] += costs[i];
+  return loads;
+}
 double imbalance(std::span<const double> costs, const Owners &owners, int n_ranks)
 {
   const std::vector<double> loads = loads_of(costs, owners, n_ranks);
@@ -83,6 +84,12 @@ Owners renamed_to_stay(const Owners &parts, const Owners &present, int n_ranks)
   Owners renamed(parts.size());
   std::transform(parts.begin(), parts.end(), renamed.begin(), [&](int part) { return rank_of[part]; });
   return renamed;
+}
+
+void BalanceRule::check() const
+{
+  if (!(threshold >= 1 && min_gain >= 0) || interval == 0)
+    throw InputError("rve: the threshold of balance must be >= 1, the smallest gain >= 0, the interval > 0");
 }
 
 Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ranks, const BalanceRule &rule)

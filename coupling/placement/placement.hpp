@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,7 +9,7 @@ namespace isostat
 {
 /// Which rank computes what. Costs are numbers of any unit, one per element, >= 0 and finite; a rank's load is the sum
 /// of its elements' costs. Everything here is a function of its arguments alone, so that ranks that know the same costs
-/// come to the same placement without a word.
+/// come to the same placement without a message.
 /// tested: tests/coupling/placement/placement_test.cpp
 using Owners = std::vector<int>; ///< rank of each element
 
@@ -17,6 +18,9 @@ using Owners = std::vector<int>; ///< rank of each element
 /// equal. The largest load is at most 4/3 - 1/(3 n_ranks) of the best possible one.
 /// @param n_ranks  > 0     cost O(n log n + n log n_ranks)
 Owners longest_first(std::span<const double> costs, int n_ranks);
+
+/// Load of each rank.
+std::vector<double> loads_of(std::span<const double> costs, const Owners &owners, int n_ranks);
 
 /// Largest load over mean load [-]: 1 is balanced, n_ranks is one rank alone. 1 if there is no cost at all.
 double imbalance(std::span<const double> costs, const Owners &owners, int n_ranks);
@@ -29,13 +33,17 @@ Owners renamed_to_stay(const Owners &parts, const Owners &present, int n_ranks);
 /// When elements may move.
 struct BalanceRule
 {
-  double threshold = 1.1; ///< imbalance above which elements are placed anew [-]
-  double min_gain = 0.05; ///< ... if the largest load falls by at least this part [-]
+  double threshold = 1.1;       ///< imbalance above which elements are placed anew [-]
+  double min_gain = 0.05;       ///< ... if the largest load falls by at least this part [-]
+  std::uint64_t interval = 100; ///< commits between two checks
+  void check() const;           ///< @throws InputError
+
+  bool operator==(const BalanceRule &) const = default;
 };
 
-/// Where elements should be from now on: `present` unless the rule asks for a move and longest_first is a gain.
+/// Where elements should be from now on: `present` unless the imbalance is above the threshold and longest_first lowers it enough.
 Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ranks, const BalanceRule &rule);
 
-/// Elements of one rank, dearest first: the order in which its threads take them.
+/// Elements of one rank by falling cost: the order in which its threads take them.
 std::vector<std::size_t> costliest_first(std::span<const double> costs, const Owners &owners, int rank);
 } // namespace isostat

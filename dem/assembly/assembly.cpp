@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stepping: forces, motion, and how threads share them. What others see of the state is in assembly_views.cpp.
+// Stepping. What others see of the state is in assembly_views.cpp.
 #include "dem/assembly/assembly.hpp"
 
 #include "base/error.hpp"
-#include "dem/motion/leapfrog.hpp"
+#include "dem/assembly/contact_forces-inl.hpp"
+#include "dem/assembly/explosion.hpp"
 
-#include <chrono>
 #include <fmt/format.h>
-#include <omp.h>
-#include <utility>
 
 namespace isostat
 {
 namespace
 {
-// Of the smallest radius, per step. At p' = 10 MPa overlaps reach a tenth of it, and a grain that snaps off takes 0.01.
-constexpr double explosion_step = 0.05;
 constexpr double max_strain_step = 0.01;
 
-double sign_of_wall(int wall) { return wall % 2 ? 1.0 : -1.0; } // outward direction
-
-/// Threads that pay for themselves: four chunks for each.
-int useful_threads(std::uint32_t n_grains)
+/// Gives the list the history of the contacts of a snapshot, both sorted.
+void take_history(const std::vector<Contact> &contacts, ContactList &list)
 {
-  return std::clamp(static_cast<int>(Partition(n_grains).n_chunks / 4), 1, omp_get_max_threads());
+  const std::uint32_t idle = list.partition().n_grains;
+  std::size_t pair = 0;
+  for (const Contact &c : contacts)
+    {
+      while (pair < list.n_lanes() &&
+             (list.first()[pair] == idle ||
+              std::pair(list.first()[pair], list.second()[pair]) < std::pair(c.first, c.second)))
+        ++pair;
+      if (pair < list.n_lanes() && list.first()[pair] == c.first && list.second()[pair] == c.second)
+        list.set_history(pair, c.history);
+    }
 }
 
 MotionReport sum_of(const std::vector<MotionReport> &parts)
@@ -39,231 +43,110 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
 }
 } // namespace
 
-Assembly::Assembly(const Snapshot &initial)
-    : packing_(initial.grains), box_(initial.box), cell_(initial.cell), law_(initial.law),
-      contacts_(initial.law->history()), action_(8 * (initial.grains.n_grains() + Packing::n_padding), 0.0),
-      solid_volume_(initial.grains.solid_volume()), d50_(initial.grains.d50()),
-      min_radius_(initial.grains.min_radius()), d_max_(2 * initial.grains.max_radius()), step_(initial.step),
-      time_(initial.time)
+Assembly::Assembly(const Snapshot &initial, const StepSettings &how)
+    : settings(how), packing_(initial.grains), domain_(initial.box, initial.cell), law_(initial.law),
+      forces_(initial.law->history(), initial.grains.n_grains()), solid_volume_(initial.grains.solid_volume()),
+      d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()),
+      max_diameter_(2 * initial.grains.max_radius()), step_(initial.step), time_(initial.time)
 {
-  if (cell_)
-    {
-      verlet_.update(packing_, *cell_, 0.0, contacts_);
-      contacts_.set_cell(cell_->edges);
-    }
-  else
-    verlet_.update(packing_, box_, 0.0, contacts_);
-  threads = default_threads > 0 ? default_threads : useful_threads(contacts_.partition().n_grains);
-  const std::uint32_t idle = contacts_.partition().n_grains;
-  std::size_t pair = 0;
-  for (const Contact &c : initial.contacts)
-    {
-      while (pair < contacts_.n_lanes() &&
-             (contacts_.first()[pair] == idle ||
-              std::pair(contacts_.first()[pair], contacts_.second()[pair]) < std::pair(c.first, c.second)))
-        ++pair;
-      if (pair < contacts_.n_lanes() && contacts_.first()[pair] == c.first && contacts_.second()[pair] == c.second)
-        contacts_.set_history(pair, c.history);
-    }
+  verlet_.update(packing_, domain_, 0.0, forces_.list());
+  take_history(initial.contacts, forces_.list());
 }
 
 void Assembly::set_law(const Law &law)
 {
-  evaluate();
+  forces();
   law_ = law;
-  contacts_.set_layout(law->history());
+  forces_.list().set_layout(law->history());
+}
+
+const ContactForces &Assembly::forces() const
+{
+  forces_.evaluate(force_input());
+  return forces_;
+}
+
+void Assembly::update_list(double max_step)
+{
+  verlet_.update(packing_, domain_, max_step, forces_.list(), forces_.n_threads(settings));
 }
 
 void Assembly::compute_forces()
 {
   if (std::exchange(forces_known_, true))
     return;
-  if (cell_)
-    {
-      if (verlet_.update(packing_, *cell_, max_step_, contacts_, n_threads()))
-        contacts_.set_cell(cell_->edges);
-      virial_.start(contacts_.partition().n_chunks, law_->young * cell_->reference_volume);
-    }
-  else
-    verlet_.update(packing_, box_, max_step_, contacts_, n_threads());
-  action_.resize(8 * contacts_.n_slots()); // all zero: integrate() clears grains, add_ghosts() ghosts
-  wall_sums_.resize(contacts_.partition().n_chunks);
-  if (measure_energy)
-    dissipation_.resize(contacts_.n_lanes());
-  const bool at_once = n_threads() > 1;
-  if (at_once || !cell_)
-    for_chunks([&](std::size_t chunk) {
-      if (!cell_)
-        add_wall_forces(chunk);
-      if (at_once)
-        evaluate_chunk(chunk);
-    });
-  pending_ = at_once ? Pending::ghosts : Pending::contacts;
-  if (!cell_)
-    sum_wall_forces();
-  if (gravity != Vec3::Zero())
-    add_gravity();
-  if (measure_energy)
-    energy_started_ ? sum_dissipation() : start_energy();
-}
-
-int Assembly::n_threads() const { return std::clamp(threads, 1, static_cast<int>(contacts_.partition().n_chunks)); }
-
-template <typename Work>
-void Assembly::for_chunks(const Work &work) const
-{
-  const Partition &partition = contacts_.partition();
-  const int n = n_threads();
-  if (n == 1)
-    {
-      for (std::size_t chunk = 0; chunk < partition.n_chunks; ++chunk)
-        work(chunk);
-      return;
-    }
-  shares_.update(n, partition.n_chunks, [&](std::size_t chunk) { // a block of pairs costs as much as 16 grains to move
-    return 16.0 * contacts_.first_block(chunk) + partition.begin(chunk);
+  update_list(max_step_);
+  walls_.begin_step(forces_.list().partition().n_chunks);
+  forces_.begin_step(force_input(), [&](std::size_t chunk) {
+    if (const RigidBox *box = walls())
+      walls_.add_chunk(chunk, law_, packing_, *box, verlet_, forces_.action().data());
   });
-#pragma omp parallel num_threads(n)
-  {
-    const int thread = omp_get_thread_num();
-    const auto begin = std::chrono::steady_clock::now();
-    for (std::size_t chunk = shares_.begin(thread); chunk < shares_.begin(thread + 1); ++chunk)
-      work(chunk);
-    shares_.add_time(thread, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  }
-}
-
-void Assembly::evaluate_chunk(std::size_t chunk) const
-{
-  const CellMotion motion{cell_ ? cell_->strain_step : Mat3::Zero(), &virial_};
-  add_contact_forces(law_, packing_, time_step, contacts_, chunk, action_.data(),
-                     measure_energy ? &dissipation_ : nullptr, &motion);
-}
-
-void Assembly::evaluate() const
-{
-  if (pending_ == Pending::contacts)
-    for_chunks([&](std::size_t chunk) { evaluate_chunk(chunk); });
-  if (pending_ != Pending::nothing)
-    for_chunks([&](std::size_t chunk) { add_ghosts(contacts_, chunk, action_.data()); });
-  pending_ = Pending::nothing;
-}
-
-void Assembly::start_energy()
-{
-  const StoredEnergy stored = stored_energy(snapshot());
-  tally = {};
-  tally.kinetic = -stored.kinetic();
-  tally.elastic = -stored.elastic();
-  if (cell_)
-    virial_sum_ = virial_.sum();
-  energy_started_ = true;
-}
-
-void Assembly::add_wall_forces(std::size_t chunk)
-{
-  WallSums sums{};
-  for (int wall = 0; wall < 6; ++wall)
-    {
-      const double inward = -sign_of_wall(wall);
-      for (std::uint32_t i : verlet_.near_wall(wall, chunk))
-        {
-          const double overlap = -wall_gap(packing_, box_, i, wall);
-          const WallResponse response = overlap > 0 ? law_->wall(packing_.radius(i), overlap) : WallResponse{};
-          action_[8 * i + wall / 2] += inward * response.force;
-          sums.force[wall] += response.force;
-          sums.stiffness[wall] += response.stiffness;
-        }
-    }
-  wall_sums_[chunk] = sums;
-}
-
-void Assembly::sum_wall_forces()
-{
-  previous_wall_force_ = wall_force_;
-  wall_force_.fill(0);
-  wall_stiffness_sum_.fill(0);
-  for (const WallSums &sums : wall_sums_) // in order of chunks
-    for (int wall = 0; wall < 6; ++wall)
-      {
-        wall_force_[wall] += sums.force[wall];
-        wall_stiffness_sum_[wall / 2] += sums.stiffness[wall];
-      }
+  if (walls())
+    walls_.sum_chunks();
+  if (settings.gravity != Vec3::Zero())
+    add_gravity();
+  if (settings.measure_energy)
+    measure_energy();
 }
 
 void Assembly::add_gravity()
 {
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
     for (int k = 0; k < 3; ++k)
-      action_[8 * i + k] += gravity[k] * packing_.mass(i);
+      forces_.action()[8 * i + k] += settings.gravity[k] * packing_.mass(i);
 }
 
-void Assembly::sum_dissipation()
+void Assembly::measure_energy()
 {
-  evaluate();
-  // in pair order, so that the sums do not depend on the list either
-  for (std::size_t p = 0; p < contacts_.n_lanes() && !dissipation_.sliding.empty(); ++p)
+  const ContactForces &contacts = forces();
+  if (!meter_.started())
     {
-      tally.sliding += dissipation_.sliding[p];
-      tally.rolling += dissipation_.rolling[p];
-      tally.released += dissipation_.released[p];
-      tally.created += dissipation_.created[p];
-    }
-  sum_boundary_work();
-}
-
-void Assembly::sum_boundary_work()
-{
-  if (cell_)
-    {
-      const Mat3 before = std::exchange(virial_sum_, virial_.sum());
-      tally.boundary_work -= (0.5 * (before + virial_sum_)).cwiseProduct(cell_->strain_step).sum();
+      meter_.start(stored_energy(snapshot()), walls_.forces(), contacts.virial().sum());
       return;
     }
-  for (int wall = 0; wall < 6; ++wall)
-    tally.boundary_work -= 0.5 * (previous_wall_force_[wall] + wall_force_[wall]) * wall_displacement_[wall];
+  meter_.add_dissipation(contacts.dissipation());
+  if (domain_.cell)
+    meter_.add_work_of_cell(contacts.virial().sum(), domain_.cell->strain_step);
+  else
+    meter_.add_work_of_walls(walls_.forces());
 }
 
-MotionReport Assembly::move_grains(double speed_limit, const AffineStep *affine)
+/// Leapfrog of all grains, each chunk when its forces are there.   @return bound on what a grain has moved, m
+double Assembly::move_grains(const AffineStep *affine)
 {
-  if (pending_ == Pending::contacts && n_threads() > 1) // threads were added since compute_forces()
-    evaluate();
-  const Partition &partition = contacts_.partition();
-  const Pending pending = std::exchange(pending_, Pending::nothing);
+  const double dt = settings.time_step, speed_limit = explosion_speed(min_radius_, dt);
+  const Partition &partition = forces_.list().partition();
+  forces_known_ = false;
   motion_reports_.resize(partition.n_chunks);
-  for_chunks([&](std::size_t chunk) {
-    // On one thread the chunks come in order. Pairs belong to their first grain, the lower one: once its chunk is
-    // done, no later pair reads or pushes it, and all its ghosts are filled.
-    if (pending == Pending::contacts)
-      evaluate_chunk(chunk);
-    if (pending != Pending::nothing)
-      add_ghosts(contacts_, chunk, action_.data());
-    motion_reports_[chunk] = integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), action_.data(),
-                                       time_step, damping, speed_limit, measure_energy, affine);
+  forces_.finish_step(force_input(), [&](std::size_t chunk) {
+    motion_reports_[chunk] =
+        integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), forces_.action().data(), dt,
+                  settings.damping, speed_limit, settings.measure_energy, affine);
   });
-  return sum_of(motion_reports_);
+  const MotionReport report = sum_of(motion_reports_);
+  if (report.exploded)
+    report_explosion(packing_, step_, dt, speed_limit);
+  meter_.add_damping(report.damping_loss);
+  ++step_;
+  time_ += dt;
+  return report.max_speed * dt;
 }
 
 void Assembly::move(const RigidBox &next_box)
 {
-  forces_known_ = false;
-  const double speed_limit = explosion_step * min_radius_ / time_step;
-  const MotionReport report = move_grains(speed_limit);
-  if (report.exploded)
-    report_explosion(speed_limit);
-  tally.damping += report.damping_loss;
+  const double grain_step = move_grains();
+  RigidBox &box = domain_.box;
+  std::array<double, 6> outward;
   double wall_step = 0;
-  for (int wall = 0; wall < 6; ++wall)
+  for (int axis = 0; axis < 3; ++axis)
     {
-      const int axis = wall / 2;
-      const double moved = wall % 2 ? next_box.upper[axis] - box_.upper[axis] : next_box.lower[axis] - box_.lower[axis];
-      wall_displacement_[wall] = sign_of_wall(wall) * moved; // outward
-      wall_step = std::max(wall_step, std::abs(moved));
+      outward[2 * axis] = -(next_box.lower[axis] - box.lower[axis]);
+      outward[2 * axis + 1] = next_box.upper[axis] - box.upper[axis];
+      wall_step = std::max({wall_step, std::abs(outward[2 * axis]), std::abs(outward[2 * axis + 1])});
     }
-  max_step_ = report.max_speed * time_step + wall_step;
-  box_ = next_box;
-  ++step_;
-  time_ += time_step;
+  meter_.walls_moved(outward);
+  max_step_ = grain_step + wall_step;
+  box = next_box;
 }
 
 void Assembly::deform(const Mat3 &displacement_gradient)
@@ -274,29 +157,22 @@ void Assembly::deform(const Mat3 &displacement_gradient)
         fmt::format("step {}: a displacement gradient of {:.3g} in one time step; at most {:g} is allowed. "
                     "Divide the increment or lower the strain rate.",
                     step_, size, max_strain_step));
-  forces_known_ = false;
-  PeriodicCell next = *cell_; // forces that are pending belong to the cell as it still is
+  PeriodicCell next = *domain_.cell; // forces that are pending belong to the cell as it still is
   const AffineStep affine(next.deform(displacement_gradient));
-  const double speed_limit = explosion_step * min_radius_ / time_step;
-  const MotionReport report = move_grains(speed_limit, &affine);
-  if (report.exploded)
-    report_explosion(speed_limit);
-  tally.damping += report.damping_loss;
-  max_step_ = report.max_speed * time_step + size * d_max_;
-  cell_ = next;
+  max_step_ = move_grains(&affine) + size * max_diameter_;
+  domain_.cell = next;
   turn_upright();
-  contacts_.set_cell(cell_->edges);
-  ++step_;
-  time_ += time_step;
+  forces_.list().set_cell(domain_.cell->edges);
 }
 
 void Assembly::turn_upright()
 {
-  const std::optional<Mat3> upright = cell_->upright_edges();
+  PeriodicCell &cell = *domain_.cell;
+  const std::optional<Mat3> upright = cell.upright_edges();
   if (!upright)
     return;
-  cell_->edges = *upright;
-  ++cell_->flips;
+  cell.edges = *upright;
+  ++cell.flips;
   const Mat3 to_fraction = upright->inverse();
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
     {
@@ -304,26 +180,6 @@ void Assembly::turn_upright()
       packing_.set_centre(i, packing_.centre(i) - *upright * whole);
     }
   verlet_.invalidate(); // shifts count other edges now
-  verlet_.update(packing_, *cell_, 0.0, contacts_, n_threads());
-}
-
-void Assembly::report_explosion(double speed_limit) const
-{
-  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
-    {
-      const double speed = packing_.linear_velocity(i).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-      if (!std::isfinite(speed) || !packing_.angular_velocity(i).allFinite())
-        throw RunFailure(
-            fmt::format("step {}: the velocity of grain {} is not a number. A force or the state it started "
-                        "from was not one; look at the last checkpoint.",
-                        step_, packing_.id[i]));
-      if (speed >= speed_limit)
-        throw RunFailure(fmt::format(
-            "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (5 % of the smallest radius per step of "
-            "{:.3g} "
-            "s): the packing explodes. Lower motion.time_step_safety, the strain rate or the fixed time step.",
-            step_, packing_.id[i], speed, speed_limit, time_step));
-    }
-  throw RunFailure(fmt::format("step {}: the packing explodes", step_)); // not reached: integrate() found one
+  update_list(0.0);
 }
 } // namespace isostat

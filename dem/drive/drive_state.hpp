@@ -1,80 +1,196 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/dem/io/checkpoint_test.cpp
+// What drivers remember from step to step, by concept. Stresses and strains here are in the soil-mechanics convention
+// (compression positive) because q_amp and p' are.
+//
+// Every struct lists its fields once, for_each(self, f) calls f(name, field); checkpoints (dem/io/checkpoint.cpp) and
+// packed elements (dem/rve/rve_bytes.cpp) go by it. It takes the struct apart with a structured binding, so that a field
+// that is not listed does not compile.
+// tested: tests/dem/io/checkpoint_test.cpp (every field comes back to the bit)
 #pragma once
 #include "dem/domain/rigid_box.hpp"
 
-#include <string>
+#include <cstdint>
+#include <optional>
 
 namespace isostat
 {
-/// Everything that drivers remember from step to step, in one plain struct: a checkpoint stores it field by field, so a
-/// resumed run goes on to the same bits. Stresses and strains here are in the soil-mechanics convention (compression
-/// positive) because q_amp and p' are.
+/// Where in the programme.
+struct ProgrammePlace
+{
+  std::uint64_t stage = 0;
+  std::uint64_t steps = 0; ///< of this stage so far
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[stage_, steps_] = self;
+    f("stage", stage_), f("steps", steps_);
+  }
+};
+
+/// How fast a packing is strained.
+struct Pace
+{
+  double rate = 0;      ///< bound on the driven strain rate, from the rate control, 1/s
+  double time_step = 0; ///< s
+  double indicator = 0; ///< quasi-static error indicator of the last control, see rate_control.hpp [-]
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[rate_, time_step_, indicator_] = self;
+    f("rate", rate_), f("time_step", time_step_), f("indicator", indicator_);
+  }
+};
+
+enum class LoadDirection
+{
+  compression, ///< in simple shear towards positive gamma_xy
+  extension
+};
+
+/// +1 in compression, -1 in extension.
+constexpr double sign(LoadDirection direction) { return direction == LoadDirection::compression ? 1 : -1; }
+constexpr LoadDirection opposite(LoadDirection direction)
+{
+  return direction == LoadDirection::compression ? LoadDirection::extension : LoadDirection::compression;
+}
+
+/// The driven load of this stage: its strain rate ramps, and brakes before a reversal by the slope of the load.
+struct Loading
+{
+  double strain = 0;      ///< driven in this stage: axial logarithmic compression, or gamma_xy [-]
+  double signed_rate = 0; ///< 1/s, compression positive; ramps towards sign(direction) * Pace::rate
+  LoadDirection direction = LoadDirection::compression;
+  double slope = 0;                          ///< |d load/d strain|, Pa
+  double window_load = 0, window_strain = 0; ///< where the window began that the slope is taken over, Pa and [-]
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[strain_, signed_rate_, direction_, slope_, window_load_, window_strain_] = self;
+    f("strain", strain_), f("signed_rate", signed_rate_), f("direction", direction_), f("slope", slope_);
+    f("window_load", window_load_), f("window_strain", window_strain_);
+  }
+};
+
+/// The specimen when the first shear stage began: what strains and p'/p0 count from.
+struct ShearStart
+{
+  Vec3 edges = Vec3::Zero(); ///< of the box, m
+  double p0 = 0;             ///< mean effective stress, Pa
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[edges_, p0_] = self;
+    f("edges", edges_), f("p0", p0_);
+  }
+};
+
+/// The way that the specimen went.
+struct PathState
+{
+  RigidBox reference;                 ///< box at the start of this stage
+  Vec3 lateral_target = Vec3::Zero(); ///< stresses at the start of this shear stage: kept laterally if drained, Pa
+  std::optional<ShearStart> start;    ///< none before the first shear stage
+  Vec3 cell_strain = Vec3::Zero();    ///< of a cell: sum of L dt along x, y, z since then, tension positive [-]
+  double gamma = 0;                   ///< of a cell: sum of L_xy dt since then [-]
+
+  double p0() const { return start ? start->p0 : 0.0; }
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[reference_, lateral_target_, start_, cell_strain_, gamma_] = self;
+    f("reference_lower", reference_.lower), f("reference_upper", reference_.upper);
+    f("lateral_target", lateral_target_), f("start", start_), f("cell_strain", cell_strain_), f("gamma", gamma_);
+  }
+};
+
+/// What a stress servo goes on from.
+struct ServoState
+{
+  Vec3 step = Vec3::Zero();          ///< of the step before: wall displacement, m per wall, inward positive; of a cell
+                                     ///< strain [-], tension positive
+  Vec3 shear = Vec3::Zero();         ///< of a cell: strain yz, xz, xy of the step before [-]
+  Vec3 modulus = Vec3::Zero();       ///< of a cell: affine modulus along x, y, z, Pa
+  std::uint64_t balanced_checks = 0; ///< consecutive checks in which the stage's balance held
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[step_, shear_, modulus_, balanced_checks_] = self;
+    f("step", step_), f("shear", shear_), f("modulus", modulus_), f("balanced_checks", balanced_checks_);
+  }
+};
+
+/// The moment at which p'/p0 first fell below the ratio of its stage.
+struct Liquefaction
+{
+  std::uint64_t step = 0, reversals = 0;
+  double strain = 0; ///< driven, since the start of shearing [-]
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[step_, reversals_, strain_] = self;
+    f("step", step_), f("reversals", reversals_), f("strain", strain_);
+  }
+};
+
+/// What happened at constant volume, over all stages.
+struct UndrainedRecord
+{
+  std::uint64_t reversals = 0;
+  double worst_overshoot = 0; ///< of the load over its limit at a reversal, Pa
+  std::optional<Liquefaction> liquefaction;
+  double max_strain_before = 0; ///< largest |driven strain| before it [-]
+
+  /// 0 as long as there is none.
+  std::uint64_t reversals_to_liquefaction() const { return liquefaction ? liquefaction->reversals : 0; }
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[reversals_, worst_overshoot_, liquefaction_, max_strain_before_] = self;
+    f("reversals", reversals_), f("worst_overshoot", worst_overshoot_), f("liquefaction", liquefaction_);
+    f("max_strain_before", max_strain_before_);
+  }
+};
+
+/// The last row of the history, and the last snapshot.
+struct RecordedState
+{
+  double p = 0, load = 0, strain = 0; ///< Pa, Pa, [-]
+  std::optional<std::uint64_t> step;
+  double snapshot_strain = 0;
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[p_, load_, strain_, step_, snapshot_strain_] = self;
+    f("p", p_), f("load", load_), f("strain", strain_), f("step", step_), f("snapshot_strain", snapshot_strain_);
+  }
+};
+
+/// All of it: a resumed run goes on from here to the same bits.
 struct DriveState
 {
-  // where in the programme
-  double stage = 0, steps_in_stage = 0;
-  double shear_started = 0; ///< 1 once a shear stage has set p0 and the origin of strain
+  ProgrammePlace place;
+  Pace pace;
+  Loading loading;
+  PathState path;
+  ServoState servo;
+  UndrainedRecord undrained;
+  RecordedState recorded;
 
-  // strain path of the present stage
-  RigidBox reference, origin;         ///< box at the start of this stage; at the start of the first shear stage
-  double axial = 0;                   ///< driven strain of this stage: axial logarithmic compression, or gamma_xy [-]
-  Vec3 cell_strain = Vec3::Zero();    ///< of a cell: sum of L dt along x, y, z since the first shear stage, tension +
-  double gamma = 0;                   ///< of a cell: sum of L_xy dt since then [-]
-  double p0 = 0;                      ///< mean effective stress at the start of the first shear stage, Pa
-  Vec3 lateral_target = Vec3::Zero(); ///< stresses at the start of this shear stage: kept laterally if drained, Pa
-
-  // rate
-  double rate = 0;        ///< present axial rate bound chosen by the rate control, 1/s
-  double time_step = 0;   ///< s
-  double signed_rate = 0; ///< axial rate of the walls, compression positive, 1/s; ramps towards direction * rate
-  double direction = 1;   ///< +1 compression, -1 extension
-  double indicator = 0;   ///< quasi-static error indicator of the last control, see rate_control.hpp
-
-  // slope of q, for braking before a reversal
-  double slope = 0, slope_q = 0, slope_axial = 0; ///< |dq/d eps| Pa; q and strain where the window began
-
-  // servo
-  Vec3 servo_step = Vec3::Zero();    ///< of the step before: wall displacement, m per wall, inward positive; of a cell
-                                     ///< strain [-], tension positive
-  Vec3 servo_shear = Vec3::Zero();   ///< of a cell: strain yz, xz, xy of the step before [-]
-  Vec3 servo_modulus = Vec3::Zero(); ///< of a cell: affine modulus along x, y, z, Pa
-  double balanced_checks = 0;        ///< consecutive checks in which the stage's balance held
-
-  // what happened
-  double reversals = 0, worst_overshoot = 0;
-  double liquefied = 0, liquefaction_step = 0, liquefaction_reversals = 0, liquefaction_strain = 0;
-  double max_strain_before = 0; ///< largest |axial strain| before liquefaction [-]
-
-  // recording
-  double recorded_p = 0, recorded_q = 0, recorded_strain = 0, recorded_step = -1, snapshot_strain = 0;
-
-  /// Calls f(name, field) for every number: the one list that checkpoints and tests go by.
-  template <typename F>
-  void for_each(F &&f)
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
   {
-    f("stage", stage), f("steps_in_stage", steps_in_stage), f("shear_started", shear_started);
-    vector(f, "reference_lower", reference.lower), vector(f, "reference_upper", reference.upper);
-    vector(f, "origin_lower", origin.lower), vector(f, "origin_upper", origin.upper);
-    f("axial", axial), vector(f, "cell_strain", cell_strain), f("gamma", gamma), f("p0", p0),
-        vector(f, "lateral_target", lateral_target);
-    f("rate", rate), f("time_step", time_step), f("signed_rate", signed_rate), f("direction", direction),
-        f("indicator", indicator);
-    f("slope", slope), f("slope_q", slope_q), f("slope_axial", slope_axial);
-    vector(f, "servo_step", servo_step), vector(f, "servo_shear", servo_shear),
-        vector(f, "servo_modulus", servo_modulus), f("balanced_checks", balanced_checks);
-    f("reversals", reversals), f("worst_overshoot", worst_overshoot), f("liquefied", liquefied);
-    f("liquefaction_step", liquefaction_step), f("liquefaction_reversals", liquefaction_reversals);
-    f("liquefaction_strain", liquefaction_strain), f("max_strain_before", max_strain_before);
-    f("recorded_p", recorded_p), f("recorded_q", recorded_q), f("recorded_strain", recorded_strain);
-    f("recorded_step", recorded_step), f("snapshot_strain", snapshot_strain);
-  }
-
-private:
-  template <typename F>
-  static void vector(F &f, const std::string &name, Vec3 &v)
-  {
-    f(name + "_x", v[0]), f(name + "_y", v[1]), f(name + "_z", v[2]);
+    auto &[place_, pace_, loading_, path_, servo_, undrained_, recorded_] = self;
+    f("place", place_), f("pace", pace_), f("loading", loading_), f("path", path_), f("servo", servo_);
+    f("undrained", undrained_), f("recorded", recorded_);
   }
 };
 } // namespace isostat

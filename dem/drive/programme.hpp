@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/assembly/assembly.hpp"
-#include "dem/drive/drive_state.hpp"
-#include "dem/drive/undrained.hpp"
-#include "dem/scene/scene.hpp"
+#include "dem/drive/recording.hpp"
+#include "dem/drive/stages/stages.hpp"
 
 #include <string>
 
 namespace isostat
 {
+/// What the laboratory does: the stages in their order, and how all of them are run.
+struct Programme
+{
+  MotionSpec motion = {};
+  ServoSpec servo = {};
+  RecordSpec record = {};
+  std::vector<Stage> stages = {};
+};
+
 /// Who watches a run. Observers never change it: trajectories are the same with output on or off.
 class RunObserver
 {
@@ -28,25 +35,18 @@ enum class RunOutcome
   interrupted
 };
 
-/// Runs the stages of a scene from where `state` stands (a fresh state: from the first), one time step after the other:
+/// Runs the stages from where `state` stands (a fresh state: from the first), one time step after the other:
 ///
-///     time step -> contact forces -> stress -> driver (strain, servo, reversal) -> record -> motion, walls
+///     time step -> contact forces -> stress -> stage (verdict, strain, servo, reversal) -> record -> motion, walls
 ///
 /// The specimen is bounded by walls or by a periodic cell, whose strain takes the place of wall motion.
 /// A stage ends with walls at rest for one step. The time step follows the critical step of the closed contacts
-/// (DESIGN 4) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
+/// (docs/theory.md) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
 /// @throws RunFailure  a stage that cannot reach its target; an unstable fixed time step; an exploding packing
 /// tested: tests/verification/programme_test.cpp, tests/hard/, tests/regression/
-RunOutcome run_programme(const MotionSpec &motion, const SpecimenSpec &specimen, const OutputSpec &output,
-                         const std::vector<Stage> &stages, Assembly &assembly, DriveState &state,
-                         RunObserver &observer);
-
-/// Axial logarithmic strain since the start of shearing, compression positive [-].
-double axial_strain(const Assembly &assembly, const DriveState &state);
+RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveState &state, RunObserver &observer);
 
 /// Logarithmic strain along x, y, z since the start of shearing, tension positive [-]; of a cell sheared by gamma the
 /// sum of the normal components of L dt.
-Vec3 strain_since_origin(const Assembly &assembly, const DriveState &state);
-
-std::string to_string(StageKind kind);
+Vec3 strain_since_start(const Assembly &assembly, const PathState &path);
 } // namespace isostat

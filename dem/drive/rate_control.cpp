@@ -28,35 +28,35 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
   return std::max({inertia, difference / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
-void RateControl::update(const Assembly &assembly, double mean_stress, DriveState &state) const
+void RateControl::update(const Assembly &assembly, double mean_stress, double p0, Pace &pace) const
 {
-  state.indicator = quasi_static_indicator(assembly, mean_stress, state.p0, state.rate);
+  pace.indicator = quasi_static_indicator(assembly, mean_stress, p0, pace.rate);
   if (fixed_)
     {
-      state.rate = *fixed_;
+      pace.rate = *fixed_;
       return;
     }
   if (inertial_number_)
     {
-      state.rate = rate_of(*inertial_number_, assembly.d50(), assembly.packing().density,
-                           reference_stress(mean_stress, state.p0));
+      pace.rate =
+          rate_of(*inertial_number_, assembly.d50(), assembly.packing().density, reference_stress(mean_stress, p0));
       return;
     }
-  const double factor = std::clamp(std::sqrt(tolerance_ / std::max(state.indicator, 1e-12)), 0.7, 1.2);
-  state.rate = std::clamp(state.rate * factor, floor_, ceiling_);
+  const double factor = std::clamp(std::sqrt(tolerance_ / std::max(pace.indicator, 1e-12)), 0.7, 1.2);
+  pace.rate = std::clamp(pace.rate * factor, floor_, ceiling_);
 }
 
-double next_rate(const DriveState &state, double load, double limit, double ramp_time, double time_step)
+double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step)
 {
-  const double acceleration = state.rate / ramp_time;
+  const double acceleration = rate / ramp_time, direction = sign(loading.direction);
   const double change = acceleration * time_step;
-  const double next = state.signed_rate + std::clamp(state.direction * state.rate - state.signed_rate, -change, change);
-  if (limit <= 0 || state.slope <= 0 || next * state.direction <= 0)
+  const double next = loading.signed_rate + std::clamp(direction * rate - loading.signed_rate, -change, change);
+  if (limit <= 0 || loading.slope <= 0 || next * direction <= 0)
     return next;
-  const double strain_left = std::max(0.0, (limit - state.direction * load) / state.slope);
-  const double slowest = 0.1 * state.rate;
+  const double strain_left = std::max(0.0, (limit - direction * load) / loading.slope);
+  const double slowest = 0.1 * rate;
   const double braked = std::sqrt(slowest * slowest + 2 * acceleration * strain_left);
-  return state.direction * std::min(std::abs(next), braked);
+  return direction * std::min(std::abs(next), braked);
 }
 
 double ramp_steps(const Assembly &assembly)
@@ -65,13 +65,13 @@ double ramp_steps(const Assembly &assembly)
   return 10 * edge / assembly.d50();
 }
 
-void update_slope(DriveState &state, double load)
+void update_slope(Loading &loading, double load, std::uint64_t step_number)
 {
-  if (std::fmod(state.steps_in_stage, 20) != 0)
+  if (step_number % 20 != 0)
     return;
-  const double strain = std::abs(state.axial - state.slope_axial);
-  state.slope = strain > 0 ? std::abs(load - state.slope_q) / strain : 0;
-  state.slope_q = load;
-  state.slope_axial = state.axial;
+  const double strain = std::abs(loading.strain - loading.window_strain);
+  loading.slope = strain > 0 ? std::abs(load - loading.window_load) / strain : 0;
+  loading.window_load = load;
+  loading.window_strain = loading.strain;
 }
 } // namespace isostat

@@ -2,11 +2,11 @@
 #pragma once
 #include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
-#include "dem/scene/scene.hpp"
+#include "dem/drive/motion_spec.hpp"
 
 namespace isostat
 {
-/// Chooses the strain rate from a quasi-static tolerance (DESIGN 4), or keeps a fixed rate or inertial number.
+/// Chooses the strain rate from a quasi-static tolerance, or keeps a fixed rate or inertial number.
 ///
 /// The indicator is what inertia adds to a quasi-static answer, relative to the stress at hand:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0),
@@ -26,8 +26,8 @@ public:
   /// The rate a stage starts with, 1/s. With a fixed inertial number it is the floor until the first update, which
   /// comes before the first step of a shear stage.
   double initial_rate() const { return fixed_ ? *fixed_ : floor_; }
-  /// Updates state.rate and state.indicator.     @pre compute_forces()
-  void update(const Assembly &assembly, double mean_stress, DriveState &state) const;
+  /// Updates rate and indicator.   @param p0  mean effective stress when shearing began, Pa     @pre compute_forces()
+  void update(const Assembly &assembly, double mean_stress, double p0, Pace &pace) const;
 
 private:
   std::optional<double> fixed_, inertial_number_;
@@ -44,14 +44,15 @@ double rate_of(double inertial_number, double d50, double density, double p_r);
 /// eta above; also where the rate is fixed it is recorded.
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);
 
-/// Axial rate for the next step, 1/s: goes towards direction * rate within `ramp_time`, and brakes with the same
+/// Driven rate for the next step, 1/s: goes towards sign(direction) * rate within `ramp_time`, and brakes with the same
 /// deceleration so that the load arrives at +-limit at a tenth of the rate: a load reversal is no jump either.
-/// @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time  s   @param time_step  s
-double next_rate(const DriveState &state, double load, double limit, double ramp_time, double time_step);
+/// @param rate  1/s   @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time, time_step  s
+double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step);
 
 /// Ten times the steps in which a wave crosses the packing, in steps: how long loads ramp.
 double ramp_steps(const Assembly &assembly);
 
-/// Keeps state.slope = |d load/d driven strain| over windows of 20 steps, for the braking.
-void update_slope(DriveState &state, double load);
+/// Keeps loading.slope = |d load/d driven strain| over windows of 20 steps, for the braking.
+/// @param step_number  of the stage
+void update_slope(Loading &loading, double load, std::uint64_t step_number);
 } // namespace isostat

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/servo.hpp"
 
+#include "dem/measure/stiffness.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace isostat
 {
+namespace
+{
+constexpr std::uint64_t modulus_interval = 20;
+}
+
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
-                 DriveState &state)
+                 ServoState &state)
 {
   const Vec3 stress = -assembly.wall_stress();
   Vec3 edges = assembly.box().edges();
   for (int axis = 0; axis < 3; ++axis)
     if (controlled[axis])
       {
-        const double cap = 0.5 * rate_cap * edges[axis] * assembly.time_step;
+        const double cap = 0.5 * rate_cap * edges[axis] * assembly.settings.time_step;
         const double missing_force = (target[axis] - stress[axis]) * assembly.box().area(axis);
         const double stiffness = 0.5 * assembly.wall_stiffness_sum(axis);
         const double wanted = stiffness > 0 ? missing_force / stiffness : cap;
-        double &step = state.servo_step[axis];
+        double &step = state.step[axis];
         step = 0.8 * step + 0.2 * std::clamp(wanted, -cap, cap);
         edges[axis] -= 2 * step;
       }
@@ -26,12 +33,12 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 }
 
 Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
-                  double rate_cap, DriveState &state)
+                  double rate_cap, std::uint64_t step_number, ServoState &state)
 {
-  if (std::fmod(state.steps_in_stage, 20) == 0)
-    state.servo_modulus = assembly.affine_moduli();
+  if (step_number % modulus_interval == 0)
+    state.modulus = affine_moduli(assembly.live_contacts(), assembly.volume());
   const Mat3 missing = wanted - assembly.stress();
-  const double cap = rate_cap * assembly.time_step;
+  const double cap = rate_cap * assembly.settings.time_step;
   Mat3 strain = Mat3::Zero();
   const auto follow = [&](int i, int j, double modulus, double &step) {
     if (!controlled(i, j))
@@ -44,8 +51,8 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Mat
   };
   for (int axis = 0; axis < 3; ++axis)
     {
-      follow(axis, axis, state.servo_modulus[axis], state.servo_step[axis]);
-      follow((axis + 1) % 3, (axis + 2) % 3, 2 * 0.4 * state.servo_modulus.mean(), state.servo_shear[axis]);
+      follow(axis, axis, state.modulus[axis], state.step[axis]);
+      follow((axis + 1) % 3, (axis + 2) % 3, 2 * 0.4 * state.modulus.mean(), state.shear[axis]);
     }
   return strain;
 }

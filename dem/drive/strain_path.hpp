@@ -6,7 +6,7 @@ namespace isostat
 {
 /// A box under prescribed logarithmic strain: edge_k = edge_k,0 exp(eps_k) about a fixed centre. The box is set from
 /// the total strain, never from products of increments, so that its volume is V_0 exp(eps_x+eps_y+eps_z) to round-off
-/// after any number of steps (DESIGN 4).
+/// after any number of steps.
 /// tested: tests/dem/drive/strain_path_test.cpp (volume to 1e-12 over 1e6 steps)
 struct StrainPath
 {

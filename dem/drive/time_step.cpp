@@ -27,17 +27,18 @@ void check_fixed_step(double fixed, const Assembly &assembly)
 }
 } // namespace
 
-void update_time_step(const MotionSpec &motion, bool shearing, Assembly &assembly, DriveState &state)
+void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t step_number, Assembly &assembly,
+                      Pace &pace)
 {
   const std::uint64_t interval = shearing ? shear_interval : servo_interval;
-  if (state.time_step > 0 && static_cast<std::uint64_t>(state.steps_in_stage) % interval != 0)
+  if (pace.time_step > 0 && step_number % interval != 0)
     return;
   if (motion.time_step)
     check_fixed_step(*motion.time_step, assembly);
-  state.time_step = motion.time_step
-                        ? *motion.time_step
-                        : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
-                                                                        assembly.walls(), assembly.contacts());
-  assembly.time_step = state.time_step;
+  pace.time_step = motion.time_step
+                       ? *motion.time_step
+                       : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
+                                                                       assembly.walls(), assembly.contacts());
+  assembly.settings.time_step = pace.time_step;
 }
 } // namespace isostat

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/checkpoint.hpp"
 
+#include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "dem/io/snapshot_file.hpp"
 
@@ -9,7 +10,21 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-checkpoint";
-constexpr std::uint64_t schema_version = 1;
+constexpr std::uint64_t schema_version = 2; // 1: every number as double, those of the energy balance without names
+
+void write_numbers(hdf5::Group group, const std::map<std::string, double> &numbers)
+{
+  for (const auto &[name, value] : numbers)
+    group.set_attribute(name, value);
+}
+
+std::map<std::string, double> read_numbers(const hdf5::Group &group)
+{
+  std::map<std::string, double> numbers;
+  for (const std::string &name : group.attribute_names())
+    numbers[name] = group.attribute<double>(name);
+  return numbers;
+}
 
 Checkpoint read_file(const std::filesystem::path &path)
 {
@@ -19,9 +34,10 @@ Checkpoint read_file(const std::filesystem::path &path)
   Checkpoint checkpoint;
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state = read_snapshot(root.group("state"));
-  const hdf5::Group numbers = root.group("numbers");
-  for (const std::string &name : numbers.attribute_names())
-    checkpoint.numbers[name] = numbers.attribute<double>(name);
+  hdf5::read_field(root, "drive", checkpoint.drive);
+  hdf5::read_field(root, "written", checkpoint.written);
+  checkpoint.assembly = read_numbers(root.group("assembly"));
+  checkpoint.specimen = read_numbers(root.group("specimen"));
   return checkpoint;
 }
 } // namespace
@@ -32,9 +48,10 @@ void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &che
     set_format(root, format_name, schema_version);
     root.set_attribute("scene", checkpoint.scene);
     write_snapshot(root.create_group("state"), checkpoint.state);
-    hdf5::Group numbers = root.create_group("numbers");
-    for (const auto &[name, value] : checkpoint.numbers)
-      numbers.set_attribute(name, value);
+    hdf5::write_field(root, "drive", checkpoint.drive);
+    hdf5::write_field(root, "written", checkpoint.written);
+    write_numbers(root.create_group("assembly"), checkpoint.assembly);
+    write_numbers(root.create_group("specimen"), checkpoint.specimen);
   });
 }
 

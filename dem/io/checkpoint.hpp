@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/drive/drive_state.hpp"
 #include "dem/state/snapshot.hpp"
 
 #include <filesystem>
@@ -8,13 +9,30 @@
 
 namespace isostat
 {
+/// What a run has written so far.
+struct WrittenSoFar
+{
+  std::uint64_t rows = 0, snapshots = 0; ///< of the history; stored
+  double redundancy = 0;                 ///< of the last row, for the progress line
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[rows_, snapshots_, redundancy_] = self;
+    f("rows", rows_), f("snapshots", snapshots_), f("redundancy", redundancy_);
+  }
+};
+
 /// All that a killed run needs to go on to the same bits: grains with the history of their contacts (after a move), and
-/// every number that drivers, sums and recorders keep.
+/// what drivers, sums and recorders keep.
 struct Checkpoint
 {
   Snapshot state;
-  std::map<std::string, double> numbers;
-  std::string scene; ///< the resolved scene; a resumed run must have the same
+  DriveState drive;
+  WrittenSoFar written;
+  std::map<std::string, double> assembly; ///< sums of the energy balance, and what they go on from
+  std::map<std::string, double> specimen; ///< its figures (Specimen::numbers), for the summary of a resumed run
+  std::string scene;                      ///< the resolved scene; a resumed run must have the same
 };
 
 /// Writes folder/last.h5 aside and renames it; what was last becomes folder/previous.h5, so that two are kept and one
@@ -22,7 +40,7 @@ struct Checkpoint
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint);
 
 /// The newest readable checkpoint of a folder. A damaged last.h5 gives way to previous.h5.
-/// @throws InputError when there is none, naming what is wrong with each
+/// @throws InputError when there is none, naming what is wrong with each; a checkpoint of another schema is refused
 /// tested: tests/dem/io/checkpoint_test.cpp
 Checkpoint read_checkpoint(const std::filesystem::path &folder);
 } // namespace isostat

@@ -279,6 +279,19 @@ Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
   return checked(sum, cell_volume(snapshot));
 }
 
+Vec3 affine_moduli(const LiveContacts &contacts, double volume)
+{
+  Vec3 sum = Vec3::Zero();
+  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
+    const double r1 = contacts.packing.radius(i), r2 = contacts.packing.radius(j);
+    const ContactStiffness k = contacts.law.stiffness(r1, r2, r1 + r2 - branch.norm());
+    const Vec3 n2 = branch.cwiseAbs2() / branch.squaredNorm();
+    const Vec3 along = n2.cwiseProduct(k.normal * n2 + k.shear * (Vec3::Ones() - n2));
+    sum += branch.squaredNorm() * along;
+  });
+  return sum / volume;
+}
+
 Mat3 column_stiffness(const Mat6 &stiffness, int axis)
 {
   constexpr std::array<std::array<int, 3>, 3> rows{{{0, 5, 4}, {1, 5, 3}, {2, 4, 3}}};

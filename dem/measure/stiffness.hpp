@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/measure/live_contacts.hpp"
 #include "dem/state/snapshot.hpp"
 
 namespace isostat
@@ -52,6 +53,11 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::el
 /// @throws RunFailure  as above     cost two 6 x 6 products per contact
 /// tested: tests/dem/measure/stiffness_test.cpp (cubic lattices, icosahedral directions)
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
+
+/// Its first three diagonal entries, of an assembly at work: (1/V) sum l^2 n_k^2 (kn n_k^2 + ks (1 - n_k^2)), Pa, own
+/// frame of a cell. What the servo of a cell divides by.   @param volume  m3     cost one pass over the contacts
+/// tested: tests/verification/cell_programme_test.cpp (the servo that uses it)
+Vec3 affine_moduli(const LiveContacts &contacts, double volume);
 
 /// What is left of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
 /// the lateral directions b < c. Rows and columns: aa, ab, ac with engineering shear; for axis 2: zz, xz, yz.

@@ -22,6 +22,18 @@ Mat3 contact_stress(const Snapshot &snapshot)
   return -sum / snapshot.volume();
 }
 
+Vec3 contact_stress(const LiveContacts &contacts, double volume)
+{
+  Vec3 sum = Vec3::Zero();
+  contacts.for_pairs([&](std::uint32_t, std::uint32_t, const Vec3 &branch, const Vec3 &force) {
+    sum -= force.cwiseProduct(branch); // push-apart is compression: negative
+  });
+  contacts.for_walls([&](std::uint32_t i, int wall, double overlap, double fn) {
+    sum[wall / 2] -= fn * (contacts.packing.radius(i) - overlap);
+  });
+  return sum / volume;
+}
+
 Vec3 wall_stress(const Snapshot &snapshot)
 {
   Vec3 force = Vec3::Zero();

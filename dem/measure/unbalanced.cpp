@@ -44,6 +44,33 @@ double unbalanced_force(const Snapshot &snapshot)
   return (grain_sum / n_touched) / (contact_sum / n_contacts);
 }
 
+double unbalanced_force(const LiveContacts &contacts, const double *action, const Vec3 &gravity)
+{
+  const Packing &packing = contacts.packing;
+  std::vector<std::uint8_t> in_contact(packing.n_grains(), 0);
+  double force_sum = 0;
+  std::size_t n_contacts = 0;
+  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &, const Vec3 &force) {
+    force_sum += force.norm();
+    ++n_contacts;
+    in_contact[i] = in_contact[j] = 1;
+  });
+  contacts.for_walls([&](std::uint32_t i, int, double, double fn) {
+    force_sum += fn;
+    ++n_contacts;
+    in_contact[i] = 1;
+  });
+  double resultant = 0;
+  std::size_t n_active = 0;
+  for (std::size_t i = 0; i < packing.n_grains(); ++i)
+    if (in_contact[i])
+      {
+        resultant += (Vec3(&action[8 * i]) - packing.mass(i) * gravity).norm();
+        ++n_active;
+      }
+  return force_sum > 0 ? (resultant / n_active) / (force_sum / n_contacts) : 0.0;
+}
+
 double inertial_number(double strain_rate, double d50, double density, double pressure)
 {
   const double rate = std::abs(strain_rate);

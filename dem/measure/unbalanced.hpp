@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/measure/live_contacts.hpp"
 #include "dem/state/snapshot.hpp"
 
 namespace isostat
@@ -14,6 +15,11 @@ namespace isostat
 /// @return [-]; 0 in equilibrium and where there are no contacts     cost one addition per contact and side
 /// tested: tests/dem/measure/unbalanced_test.cpp (row in balance and not, shear, floating grain, no contacts)
 double unbalanced_force(const Snapshot &snapshot);
+
+/// The same of an assembly at work.
+/// @param action  [F 0 T 0] of each grain, N and N m, weight included     @param gravity  m/s2
+/// tested: tests/dem/assembly/assembly_test.cpp (against the above)
+double unbalanced_force(const LiveContacts &contacts, const double *action, const Vec3 &gravity);
 
 /// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004)
 /// @param strain_rate  1/s, its magnitude counts     @param d50  m     @param density  of the grains, kg/m3

@@ -30,22 +30,6 @@ void VerletList::invalidate()
   wide_ = {};
 }
 
-void VerletList::update(const Packing &packing, const RigidBox &box, double max_step, ContactList &contacts,
-                        int threads)
-{
-  const Domain domain{box.edges().asDiagonal(), box.centre(), &box};
-  update(packing, domain, max_step, contacts, threads);
-}
-
-bool VerletList::update(const Packing &packing, const PeriodicCell &cell, double max_step, ContactList &contacts,
-                        int threads)
-{
-  const Domain domain{cell.edges, Vec3::Zero(), nullptr, &cell}; // other edges of the lattice are another shape
-  const std::uint64_t before = n_rebuilds_;
-  update(packing, domain, max_step, contacts, threads);
-  return n_rebuilds_ != before;
-}
-
 void VerletList::update(const Packing &packing, const Domain &domain, double max_step, ContactList &contacts,
                         int threads)
 {
@@ -68,14 +52,15 @@ double VerletList::Reference::slack(const Packing &now, const Domain &domain, do
 {
   if (position.size() != now.position.size())
     return -1;
-  const Mat3 stretch = domain.shape * shape.inverse();
+  const Vec3 centre_now = domain.centre();
+  const Mat3 stretch = domain.edges() * edges.inverse();
   double moved2 = 0, fluctuation2 = 0;
 #pragma omp parallel for schedule(static) reduction(max : moved2, fluctuation2) num_threads(threads) if (threads > 1)
   for (std::size_t i = 0; i < now.n_grains(); ++i)
     {
       const Vec3 x = now.centre(i), x0(&position[4 * i]);
       moved2 = std::max(moved2, (x - x0).squaredNorm());
-      fluctuation2 = std::max(fluctuation2, (x - domain.centre - stretch * (x0 - centre)).squaredNorm());
+      fluctuation2 = std::max(fluctuation2, (x - centre_now - stretch * (x0 - centre)).squaredNorm());
     }
   // with the domain: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
   const Mat3 squared = stretch.transpose() * stretch;
@@ -83,10 +68,10 @@ double VerletList::Reference::slack(const Packing &now, const Domain &domain, do
       std::max(0.0, Eigen::SelfAdjointEigenSolver<Mat3>(squared, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()));
   const double shrink = std::max(0.0, 1 - minimum);
   const double with_domain = skin * (1 - shrink) - shrink * max_reach - 2 * std::sqrt(fluctuation2);
-  if (!domain.box)
+  if (domain.cell)
     return with_domain;
   // as they are: two grains approach by at most 2 moved; a wall comes nearer by its own way
-  const RigidBox &box_now = *domain.box;
+  const RigidBox &box_now = domain.box;
   const double wall =
       std::max((box_now.lower - box.lower).cwiseAbs().maxCoeff(), (box_now.upper - box.upper).cwiseAbs().maxCoeff());
   const double moved = std::sqrt(moved2);
@@ -114,7 +99,7 @@ void VerletList::search(const Packing &packing, const Domain &domain, int thread
                                  2 * (room + max_reach_), max_reach_));
   wide_skin_ = std::min(wide_over_tight * skin_, 0.99 * room);
   skin_ = std::min(skin_, 0.5 * wide_skin_);
-  wide_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};
+  wide_ = reference(packing, domain);
   ++n_searches_;
   if (domain.cell)
     {
@@ -126,7 +111,7 @@ void VerletList::search(const Packing &packing, const Domain &domain, int thread
     {
       wall_candidates_[wall].clear();
       for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
-        if (wall_gap(packing, *domain.box, i, wall) < wide_skin_)
+        if (wall_gap(packing, domain.box, i, wall) < wide_skin_)
           wall_candidates_[wall].push_back(i);
     }
 }
@@ -137,7 +122,7 @@ void VerletList::select(const Packing &packing, const Domain &domain, ContactLis
   thread_local std::vector<ImageCode> images;
   pairs.clear();
   images.clear();
-  const bool in_cell = domain.cell != nullptr;
+  const bool in_cell = domain.cell.has_value();
   Vec3 offset = Vec3::Zero();
   ImageCode code = image_code(Eigen::Vector3i::Zero());
   for (std::size_t c = 0; c < candidates_.size(); ++c)
@@ -159,9 +144,11 @@ void VerletList::select(const Packing &packing, const Domain &domain, ContactLis
         }
     }
   contacts.replace_pairs(pairs, static_cast<std::uint32_t>(packing.n_grains()), threads, images);
-  if (domain.box)
-    select_near_walls(packing, *domain.box, contacts.partition());
-  tight_ = {packing.position, domain.shape, domain.centre, domain.box ? *domain.box : RigidBox{}};
+  if (in_cell)
+    contacts.set_cell(domain.cell->edges);
+  else
+    select_near_walls(packing, domain.box, contacts.partition());
+  tight_ = reference(packing, domain);
   slack_ = skin_;
   steps_since_rebuild_ = 0;
   ++n_rebuilds_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/domain/periodic_cell.hpp"
-#include "dem/domain/rigid_box.hpp"
+#include "dem/domain/domain.hpp"
 #include "dem/state/contact_list.hpp"
 #include "dem/state/packing.hpp"
 
@@ -21,15 +20,13 @@ namespace isostat
 class VerletList
 {
 public:
-  /// Makes the list valid for the present positions.
+  /// Makes the list valid for the present positions. In a periodic cell a list also knows images of grains, and no
+  /// grain is near a wall.
   /// @param max_step  bound on what any grain or wall has moved since the last call, m
-  /// @param threads        that share the work; the list does not depend on it
-  void update(const Packing &packing, const RigidBox &box, double max_step, ContactList &contacts, int threads = 1);
-  /// The same in a periodic cell, where a list also knows images of grains; no grain is near a wall.
-  /// @return whether the list is a new one: it wants ContactList::set_cell() then
+  /// @param contacts  a new list has the offsets of the present cell; an old one keeps those it was given
+  /// @param threads   that share the work; the list does not depend on it
   /// @throws RunFailure  the cell is too narrow for the grains in it: a pair could touch through two faces at once
-  bool update(const Packing &packing, const PeriodicCell &cell, double max_step, ContactList &contacts,
-              int threads = 1);
+  void update(const Packing &packing, const Domain &domain, double max_step, ContactList &contacts, int threads = 1);
 
   /// Grains within the tight skin of wall 0..5 (x-, x+, y-, y+, z-, z+), rising.
   const std::array<std::vector<std::uint32_t>, 6> &near_wall() const { return near_wall_; }
@@ -52,24 +49,19 @@ public:
   }
 
 private:
-  /// What bounds the grains: the walls of a box, or a cell; `shape` maps what stood there to what stands now.
-  struct Domain
-  {
-    Mat3 shape = Mat3::Identity();
-    Vec3 centre = Vec3::Zero();
-    const RigidBox *box = nullptr;
-    const PeriodicCell *cell = nullptr;
-  };
-  /// Positions a list was made from.
+  /// Positions and domain that a list was made from.
   struct Reference
   {
     AlignedVector<double> position;
-    Mat3 shape = Mat3::Identity();
+    Mat3 edges = Mat3::Identity();
     Vec3 centre = Vec3::Zero();
     RigidBox box;
     double slack(const Packing &now, const Domain &domain, double skin, double max_reach, int threads) const;
   };
-  void update(const Packing &packing, const Domain &domain, double max_step, ContactList &contacts, int threads);
+  static Reference reference(const Packing &packing, const Domain &domain)
+  {
+    return {packing.position, domain.edges(), domain.centre(), domain.box};
+  }
   void choose_skin(double r_min);
   void search(const Packing &packing, const Domain &domain, int threads);
   void select(const Packing &packing, const Domain &domain, ContactList &contacts, int threads);

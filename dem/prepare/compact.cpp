@@ -14,17 +14,14 @@ constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
 constexpr int rest_attempts = 5; // a packing on the verge can collapse while its walls are held
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
-/// Runs servo stages on a state and returns what they end with.
-Snapshot run_stages(const Snapshot &initial, const std::vector<Stage> &stages, double damping,
-                    const SpecimenSpec &specimen, RunObserver &observer)
+/// Runs a stage on a state and returns what it ends with.
+Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const Preparation &how)
 {
-  MotionSpec motion;
-  motion.damping = damping;
-  OutputSpec output;
-  output.snapshots = "none";
-  Assembly assembly(initial);
+  const Programme programme{
+      .motion = {.damping = damping}, .servo = how.specimen, .record = {.snapshots = "none"}, .stages = {stage}};
+  Assembly assembly(initial, {.threads = how.threads});
   DriveState state;
-  if (run_programme(motion, specimen, output, stages, assembly, state, observer) == RunOutcome::interrupted)
+  if (run_programme(programme, assembly, state, how.observer) == RunOutcome::interrupted)
     throw Interrupted("interrupted while the specimen was prepared; nothing is kept of it");
   assembly.compute_forces();
   Snapshot end = assembly.snapshot();
@@ -43,19 +40,22 @@ void stop_grains(Packing &grains)
     }
 }
 
-Stage servo_stage(StageKind kind, double pressure, double balance)
+/// @param pressure  Pa   @param balance  unbalanced-force ratio at the end
+template <class Kind>
+Stage servo_stage(double pressure, double balance)
 {
-  Stage stage;
-  stage.kind = kind;
+  Kind stage;
   stage.pressure = pressure;
   stage.balance = balance;
   return stage;
 }
 } // namespace
 
-Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer)
+Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation &how)
 {
-  law->friction = friction;
+  const SpecimenSpec &specimen = how.specimen;
+  if (law->friction > 0)
+    law->friction = friction;
   Snapshot start;
   start.grains = cloud.packing;
   start.box = cloud.box;
@@ -63,21 +63,23 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpe
     start.cell = PeriodicCell::with_edges(cloud.box.edges());
   start.law = law;
   const double pressure = specimen.consolidation == "k0" ? k0_start * specimen.pressure : specimen.pressure;
-  return run_stages(start, {servo_stage(StageKind::compress, pressure, compressed_balance)}, specimen.damping, specimen,
-                    observer);
+  return run_stage(start, servo_stage<Compress>(pressure, compressed_balance), specimen.damping, how);
 }
 
-Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen, RunObserver &observer)
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how)
 {
+  const SpecimenSpec &specimen = how.specimen;
   Snapshot start = compacted;
   start.law = law;
-  const StageKind kind = specimen.consolidation == "k0" ? StageKind::k0_compress : StageKind::rebalance;
+  const Stage consolidate = specimen.consolidation == "k0" ? servo_stage<K0Compress>(specimen.pressure, rebalanced)
+                                                           : servo_stage<Rebalance>(specimen.pressure, rebalanced);
+  Hold hold;
+  hold.balance = at_rest;
   Snapshot rest;
   for (int attempt = 0; attempt < rest_attempts; ++attempt)
     {
-      const Snapshot balanced =
-          run_stages(start, {servo_stage(kind, specimen.pressure, rebalanced)}, specimen.damping, specimen, observer);
-      rest = run_stages(balanced, {servo_stage(StageKind::hold, specimen.pressure, at_rest)}, 0.5, specimen, observer);
+      const Snapshot balanced = run_stage(start, consolidate, specimen.damping, how);
+      rest = run_stage(balanced, hold, 0.5, how);
       if (-contact_stress(rest)(1, 1) > 0.95 * specimen.pressure)
         break;
       if (attempt + 1 == rest_attempts)

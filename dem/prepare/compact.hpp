@@ -6,14 +6,23 @@
 
 namespace isostat
 {
-/// Isotropic compression of a resting cloud to specimen.pressure with the given friction (DESIGN 5): walls close in
-/// under servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
+/// How a specimen is being made.
+struct Preparation
+{
+  const SpecimenSpec &specimen;
+  RunObserver &observer;
+  int threads = 1; ///< that share a step, see StepSettings; changes no bit of the specimen
+};
+
+/// Isotropic compression of a resting cloud to specimen.pressure with the given friction : walls close in under
+/// servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
 /// A specimen with K0 consolidation is compressed to 0.1 of its vertical stress here; the rest follows in rebalance().
-/// @param law       of the contacts; its friction is replaced
+/// @param law       of the contacts; its friction is replaced, unless it has none: then there is none here either
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop
 /// @return state with contacts in force
 /// cost: some 60,000 steps at 10,000 grains
-Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpec &specimen, RunObserver &observer);
+/// tested: tests/verification/programme_test.cpp, cell_programme_test.cpp
+Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation &how);
 
 /// Raises the friction to its shearing value, keeps the pressure (K0: raises the vertical stress without lateral
 /// strain) until forces balance (2e-4), then holds the walls and damps until 5e-5. A periodic packing is then stopped:
@@ -21,5 +30,6 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const SpecimenSpe
 /// A loose packing that loses its pressure while it is held is brought back to it, up to five times.
 /// @param law  with the friction of shearing
 /// @throws RunFailure  it does not keep its pressure
-Snapshot rebalance(const Snapshot &compacted, const Law &law, const SpecimenSpec &specimen, RunObserver &observer);
+/// tested: tests/verification/programme_test.cpp, cell_programme_test.cpp
+Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how);
 } // namespace isostat

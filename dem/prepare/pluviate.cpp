@@ -175,15 +175,15 @@ Deposit pluviate(const Cloud &cloud, const Law &law, const Pluviation &how, RunO
                              deposit.fall_speed, deposit.young));
 
   Assembly assembly(stretched(cloud, falling, how.fall));
-  assembly.gravity = {0, -g, 0};
-  assembly.damping = how.damping;
+  assembly.settings.gravity = {0, -g, 0};
+  assembly.settings.damping = how.damping;
   const DriveState state;
   const double rest_energy = rest * assembly.solid_volume() * density * g * d50;
   const double fall_time = std::sqrt(2 * how.fall * cloud.box.edges()[1] / (g * (1 - how.damping)));
   for (std::uint64_t step = 0; step < most_steps; ++step)
     {
       if (step % review == 0)
-        assembly.time_step =
+        assembly.settings.time_step =
             safety * critical_step_bound(falling, assembly.packing(), assembly.walls(), assembly.contacts());
       assembly.compute_forces();
       if (step % review == review - 1)

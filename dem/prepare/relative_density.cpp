@@ -30,19 +30,18 @@ double further(double friction, double end, bool at_once)
 class Search
 {
 public:
-  Search(const Cloud &cloud, const Law &law, double target, double tolerance, const SpecimenSpec &specimen,
-         RunObserver &observer)
-      : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), specimen_(specimen), observer_(observer)
+  Search(const Cloud &cloud, const Law &law, double target, double tolerance, const Preparation &how)
+      : cloud_(cloud), law_(law), target_(target), tolerance_(tolerance), how_(how)
   {}
 
   /// e - target, and exactly 0 within the tolerance: that ends the root search.
   double operator()(double friction)
   {
-    const Snapshot state = compact(cloud_, law_, friction, specimen_, observer_);
+    const Snapshot state = compact(cloud_, law_, friction, how_);
     const double e = void_ratio(state.volume(), state.grains.solid_volume());
     ++best.compressions;
-    observer_.event(fmt::format("compression {}: preparation friction {:.3f} deg gives e = {:.4f} (target {:.4f})",
-                                best.compressions, degrees(friction), e, target_));
+    how_.observer.event(fmt::format("compression {}: preparation friction {:.3f} deg gives e = {:.4f} (target {:.4f})",
+                                    best.compressions, degrees(friction), e, target_));
     if (best.state.contacts.empty() || std::abs(e - target_) < std::abs(best.void_ratio - target_))
       {
         best.state = state;
@@ -60,21 +59,20 @@ private:
   const Cloud &cloud_;
   const Law &law_;
   double target_, tolerance_;
-  const SpecimenSpec &specimen_;
-  RunObserver &observer_;
+  const Preparation &how_;
 };
 } // namespace
 
 PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, double target, double tolerance,
-                                          const SpecimenSpec &specimen, RunObserver &observer)
+                                          const Preparation &how)
 {
-  Search search(cloud, law, target, tolerance, specimen, observer);
+  Search search(cloud, law, target, tolerance, how);
   const double guess = std::tan(8 * std::numbers::pi / 180), loosest = std::tan(std::numbers::pi / 3);
   const double at_guess = search(guess);
   if (at_guess == 0)
     return search.best;
   const double end = at_guess > 0 ? 0.0 : loosest;
-  const bool at_once = specimen.domain != "periodic-cell";
+  const bool at_once = how.specimen.domain != "periodic-cell";
   double near = guess, at_near = at_guess;
   double other = further(near, end, at_once), at_other = search(other);
   while (at_other * at_near > 0 && other != end)

@@ -33,5 +33,5 @@ struct PreparedDensity
 /// cost: 3 to 7 compressions, up to 30 where e is noisy
 /// tested: tests/verification/programme_test.cpp
 PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, double target, double tolerance,
-                                          const SpecimenSpec &specimen, RunObserver &observer);
+                                          const Preparation &how);
 } // namespace isostat

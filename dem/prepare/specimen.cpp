@@ -62,7 +62,7 @@ double missed_density(const SpecimenSpec &spec, double void_ratio)
 
 /// Searches the density on the compressed packing and rebalances it. Where that loses it (K0 consolidation begins
 /// here, from a part of its stress), searches again with the loss allowed for.
-Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &prepared, RunObserver &observer)
+Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &prepared, const Preparation &how)
 {
   const SpecimenSpec &spec = scene.specimen;
   const double tolerance = 0.8 * spec.density_tolerance * (spec.e_max - spec.e_min);
@@ -70,14 +70,14 @@ Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &
   int compressions = 0;
   for (int attempt = 0; attempt < density_attempts; ++attempt)
     {
-      prepared = find_preparation_friction(cloud, scene.contact, aim, tolerance, spec, observer);
+      prepared = find_preparation_friction(cloud, scene.contact, aim, tolerance, how);
       compressions += prepared.compressions;
       prepared.compressions = compressions;
-      const Snapshot state = rebalance(prepared.state, scene.contact, spec, observer);
+      const Snapshot state = rebalance(prepared.state, scene.contact, how);
       e = void_ratio(state.volume(), state.grains.solid_volume());
       if (missed_density(spec, e) <= spec.density_tolerance)
         return state;
-      observer.event(fmt::format("rebalancing changes e from {:.4f} to {:.4f}", prepared.void_ratio, e));
+      how.observer.event(fmt::format("rebalancing changes e from {:.4f} to {:.4f}", prepared.void_ratio, e));
       aim = target_void_ratio(spec) - (e - prepared.void_ratio);
     }
   throw RunFailure(
@@ -86,9 +86,10 @@ Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &
                   e, missed_density(spec, e), spec.density_tolerance));
 }
 
-Specimen prepare(const Scene &scene, RunObserver &observer)
+Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
 {
   const SpecimenSpec &spec = scene.specimen;
+  const Preparation how{spec, observer, threads};
   const Cloud cloud = make_cloud(scene.grading);
   const GradingReport grading = grading_report(scene.grading);
   observer.event(fmt::format("cloud: {} grains, d50 {:.3f} mm (scaled up {:.2f} times), Cu {:.2f}, sizes 1:{:.2f}",
@@ -99,12 +100,12 @@ Specimen prepare(const Scene &scene, RunObserver &observer)
   if (spec.preparation_friction)
     {
       prepared.friction = *spec.preparation_friction;
-      prepared.state = compact(cloud, scene.contact, prepared.friction, spec, observer);
+      prepared.state = compact(cloud, scene.contact, prepared.friction, how);
       prepared.compressions = 1;
-      specimen.state = rebalance(prepared.state, scene.contact, spec, observer);
+      specimen.state = rebalance(prepared.state, scene.contact, how);
     }
   else
-    specimen.state = reach_density(cloud, scene, prepared, observer);
+    specimen.state = reach_density(cloud, scene, prepared, how);
   specimen.numbers["preparation_friction_deg"] = std::atan(prepared.friction) * 180 / std::numbers::pi;
   specimen.numbers["compressions"] = prepared.compressions;
   specimen.numbers["upscaling"] = cloud.upscaling;
@@ -169,7 +170,7 @@ std::string specimen_recipe(const Scene &scene)
   return fmt::format("# recipe {}\n{}", version, to_toml(recipe));
 }
 
-Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer)
+Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)
 {
   if (!scene.specimen.file.empty())
     {
@@ -185,7 +186,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       describe(scene, *cached); // an older version may have told less
       return *cached;
     }
-  Specimen specimen = prepare(scene, observer);
+  Specimen specimen = prepare(scene, observer, threads);
   {
     const std::lock_guard lock(hdf5_access);
     std::filesystem::create_directories(cache);

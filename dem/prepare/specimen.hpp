@@ -14,9 +14,12 @@ namespace isostat
 /// A library entry, "library.h5#s0007", is a file, too. May be called from several threads, each with an observer of
 /// its own, for different recipes.
 /// @param cache  folder of prepared specimens, named by a hash of their recipe; the recipe itself is compared as well
+/// @param threads  that share a step of the preparation, see StepSettings; changes no bit of the specimen
 /// @throws InputError  a density that cannot be reached, a file that is not a specimen
 /// @throws Interrupted
-Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer);
+/// tested: tests/verification/programme_test.cpp, tests/apps/specimen_library_test.py
+Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer,
+                         int threads = 1);
 
 /// All that a prepared specimen depends on, as text: the key of the cache and part of its provenance.
 std::string specimen_recipe(const Scene &scene);

@@ -2,13 +2,13 @@
 #include "dem/rve/rve.hpp"
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -16,10 +16,9 @@ namespace isostat
 {
 namespace
 {
-constexpr double rate_interval = 50;
-constexpr std::uint64_t servo_interval = 20;
+constexpr std::uint64_t rate_interval = 50, servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
-constexpr int settled = 3;                          ///< looks in a row with stresses on target
+constexpr int settled = 3;                          ///< checks in a row with stresses on target
 constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
@@ -36,7 +35,7 @@ double strain_measure(const Mat3 &gradient)
 const Snapshot &periodic(const Snapshot &specimen)
 {
   if (!specimen.cell)
-    throw InputError("a representative volume element wants a periodic packing, but this one stands in a box. Prepare "
+    throw InputError("a representative volume element needs a periodic packing, but this one is in a box. Prepare "
                      "it with specimen.domain = \"periodic-cell\".");
   return specimen;
 }
@@ -56,13 +55,12 @@ void RveSettings::check() const
                                  min_steps, max_steps));
 }
 
-Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
+Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
+    : settings_(settings), assembly_(periodic(specimen), {.damping = settings.motion.damping})
 {
   settings_.check();
-  assembly_.damping = settings_.motion.damping;
-  assembly_.threads = 1; // a host runs elements side by side
-  drive_.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
-  update_time_step(settings_.motion, true, assembly_, drive_);
+  drive_.pace.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
+  update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
   keep_safe();
@@ -92,15 +90,15 @@ double Rve::saturated_density(double water) const
 
 void Rve::review()
 {
-  if (std::fmod(drive_.steps_in_stage, rate_interval) == 0)
-    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_);
-  update_time_step(settings_.motion, true, assembly_, drive_);
+  if (drive_.steps % rate_interval == 0)
+    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_.p0, drive_.pace);
+  update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
 }
 
 void Rve::step(const Mat3 &own_gradient)
 {
   assembly_.deform(own_gradient);
-  drive_.steps_in_stage += 1;
+  ++drive_.steps;
   ++cost_.steps;
   assembly_.compute_forces();
 }
@@ -112,10 +110,10 @@ void Rve::run_strain(const Mat3 &own_gradient)
   for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
       review();
-      const double whole = std::max(left * size / (drive_.rate * assembly_.time_step), minimum);
+      const double whole = std::max(left * size / (drive_.pace.rate * assembly_.settings.time_step), minimum);
       if (!(whole < static_cast<double>(settings_.max_steps)))
         throw RunFailure(fmt::format("an increment of strain {:.3g} at {:.3g} 1/s would take {:.3g} steps", left * size,
-                                     drive_.rate, whole));
+                                     drive_.pace.rate, whole));
       const double part = left / std::max(1.0, std::ceil(whole));
       last = part == left;
       left -= part;
@@ -130,8 +128,8 @@ void Rve::run_mixed(const MixedIncrement &own)
   const Mat3 prescribed = own.gradient - Mat3(symmetric.array() * free);
   const double size = strain_measure(prescribed);
   double left = prescribed.isZero(0) ? 0 : 1;
-  drive_.servo_step.setZero();
-  drive_.servo_shear.setZero();
+  drive_.servo.step.setZero();
+  drive_.servo.shear.setZero();
   int on_target = 0;
   for (std::uint64_t n = 0;; ++n)
     {
@@ -145,9 +143,11 @@ void Rve::run_mixed(const MixedIncrement &own)
       if (n >= settings_.max_steps)
         throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
       const double part =
-          left == 0 ? 0 : left / std::max(1.0, std::ceil(left * size / (drive_.rate * assembly_.time_step)));
+          left == 0 ? 0
+                    : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.settings.time_step)));
       left = part == left ? 0 : left - part;
-      step(part * prescribed + stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.rate, drive_));
+      step(part * prescribed +
+           stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.pace.rate, drive_.steps, drive_.servo));
     }
 }
 
@@ -157,7 +157,7 @@ void Rve::roll_back()
   const std::vector<Mat3> done = std::move(since_safe_);
   restore(safe);
   for (const Mat3 &own_gradient : done)
-    run_strain(own_gradient); // as before, to the bit
+    run_strain(own_gradient); // bitwise as before
   since_safe_ = done;
 }
 
@@ -167,11 +167,11 @@ RveResponse Rve::guarded(double size, const Run &run)
   RveResponse response;
   const double before = assembly_.stress().trace() / 3;
   const std::uint64_t steps = cost_.steps;
-  const auto begin = std::chrono::steady_clock::now();
+  const TimedScope timed(cost_.seconds);
   try
     {
       if (!std::isfinite(size))
-        response.reason = "the increment asked for is not a number";
+        response.reason = "the increment is not a number";
       else if (!(size <= settings_.max_increment))
         response.reason =
             fmt::format("an increment of {:.3g} is larger than {:g}, the largest one accepted. Divide it.", size,
@@ -189,12 +189,11 @@ RveResponse Rve::guarded(double size, const Run &run)
       response.outcome = RveOutcome::rejected;
       cost_.steps = steps;
     }
-  cost_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ++cost_.advances;
   response.steps = cost_.steps - steps;
   response.stress = stress();
   response.mean_stress_change = assembly_.stress().trace() / 3 - before;
-  response.indicator = drive_.indicator;
+  response.indicator = drive_.pace.indicator;
   return response;
 }
 
@@ -219,12 +218,12 @@ RveResponse Rve::advance(const MixedIncrement &increment)
 {
   return guarded(increment.gradient.norm(), [&] {
     if (increment.controlled != increment.controlled.transpose())
-      throw RunFailure("stress control must be asked for symmetrically: controlled(i,j) = controlled(j,i)");
+      throw RunFailure("stress control must be symmetric: controlled(i,j) = controlled(j,i)");
     if (!(increment.stress.allFinite() && increment.tolerance > 0))
-      throw RunFailure("the stress asked for is not a number, or its tolerance is not positive");
+      throw RunFailure("the target stress is not a number, or its tolerance is not positive");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
-          "mixed control works along the axes of the specimen: it wants an element whose frame is identity");
+          "mixed control works along the axes of the specimen: it needs an element whose frame is identity");
     run_mixed(increment);
     keep_safe();
   });

@@ -2,8 +2,8 @@
 #pragma once
 #include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
+#include "dem/drive/motion_spec.hpp"
 #include "dem/measure/stiffness.hpp"
-#include "dem/scene/scene.hpp"
 
 #include <span>
 #include <string>
@@ -25,26 +25,26 @@ struct RveSettings
   void check() const; ///< @throws InputError  frame is no rotation, a limit is not positive
 };
 
-/// Strain where it is given, stress where it is wanted: one increment of a laboratory test.
+/// Prescribed strain in some components, target stress in the others: one increment of a laboratory test.
 struct MixedIncrement
 {
   Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; symmetric parts under stress control are ignored
-  Mat3 stress = Mat3::Zero();   ///< wanted Cauchy effective stress, Pa, tension positive, where `controlled`
+  Mat3 stress = Mat3::Zero();   ///< target Cauchy effective stress, Pa, tension positive, where `controlled`
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false); ///< symmetric
-  double tolerance = 1e-3; ///< |stress - wanted| / max(p', 0.05 p0) at the end
+  double tolerance = 1e-3; ///< |stress - target| / max(p', 0.05 p0) at the end
 };
 
 enum class RveOutcome
 {
   accepted,
-  rejected ///< nothing has changed: the state is that before the call
+  rejected ///< the state is that before the call
 };
 
 /// What an increment gave.
 struct RveResponse
 {
   RveOutcome outcome = RveOutcome::accepted;
-  std::string reason;         ///< why it was rejected, in words; empty otherwise
+  std::string reason;         ///< why it was rejected; empty otherwise
   Mat3 stress = Mat3::Zero(); ///< Cauchy effective stress after it, Pa, tension positive, laboratory, symmetric
   /// tr(stress)/3 minus what it was before, Pa, tension positive. An undrained element under constant total mean stress
   /// changes its pore pressure (compression positive) by just this much.
@@ -60,23 +60,39 @@ struct RveCost
   double seconds = 0; ///< wall clock in advance() and undrained()
 };
 
-/// All that an element goes on from. Of the size of 15 numbers a grain and 13 a contact.
+/// What the rate control and the servo of an element remember.
+struct RveDrive
+{
+  Pace pace;
+  ServoState servo;
+  double p0 = 0;           ///< mean effective stress it was made with, Pa
+  std::uint64_t steps = 0; ///< time steps since then: what the intervals of control and servo count from
+
+  template <class Self, class F>
+  static void for_each(Self &self, F &&f)
+  {
+    auto &[pace_, servo_, p0_, steps_] = self;
+    f("pace", pace_), f("servo", servo_), f("p0", p0_), f("steps", steps_);
+  }
+};
+
+/// The complete state of an element. Of the size of 15 numbers a grain and 13 a contact.
 struct RveState
 {
   AssemblyState grains;
-  DriveState drive;
-  std::size_t bytes() const { return grains.bytes() + sizeof(DriveState); }
+  RveDrive drive;
+  std::size_t bytes() const { return grains.bytes() + sizeof(RveDrive); }
 };
 
 /// Representative volume element: a periodic packing as a material point, the only door through which others (finite
-/// elements, any host code) see grains.
+/// elements, any host code) use grains.
 ///
 ///     dH ---> [ n steps of dH/n, n from the rate control ] ---> sigma'
 ///
-/// It stands still between calls, contact forces in force: what a call returns is the stress of the grains as they are.
+/// Nothing moves between calls: the stress that a call returns is that of the grains as they are.
 /// Every step is that of the element tests: the same contact loop, damping, critical step (reviewed every 2,000 steps)
-/// and rate control (every 50 steps). The strain of a call is passed on as the strain rate gamma_1 - gamma_3 (largest
-/// minus smallest principal stretching; in simple shear d gamma/dt) that the rate control asks for, in equal steps.
+/// and rate control (every 50 steps). The strain of a call is applied in equal steps, at the strain rate gamma_1 - gamma_3 (largest
+/// minus smallest principal stretching; in simple shear d gamma/dt) of the rate control.
 /// Results depend on nothing but the sequence of calls: not on the lists, on saving, restoring or moving the element.
 /// @throws RunFailure  never from advance(): a failed run is a rejected increment
 /// tested: tests/dem/rve/rve_test.cpp, tests/verification/rve_*_test.cpp, tests/hard/rve_hard_cases_test.cpp
@@ -93,7 +109,7 @@ public:
   RveResponse advance(const Mat3 &displacement_gradient);
   /// The same without the volumetric part of ln(I + dH): an element whose pores are closed.
   RveResponse undrained(const Mat3 &displacement_gradient);
-  /// Prescribed strain and wanted stress side by side: drained, K0, constant p' and other tests.
+  /// Prescribed strain and target stress: drained, K0, constant p' and other tests.
   RveResponse advance(const MixedIncrement &increment);
 
   /// Cauchy effective stress, Pa, tension positive, laboratory.
@@ -135,9 +151,9 @@ private:
 
   RveSettings settings_;
   Assembly assembly_;
-  DriveState drive_;
+  RveDrive drive_;
   RveCost cost_;
-  /// What a failed increment goes back to: a copy made every 500 steps, and the strains taken since, to be run again.
+  /// State before a failed increment: a copy made every 500 steps, and the strains since, which are run again.
   RveState safe_;
   std::vector<Mat3> since_safe_;
 };

@@ -5,6 +5,7 @@
 //     and inertias | grains, contacts, cell | driver's numbers | cost
 #include "dem/rve/rve.hpp"
 
+#include "base/fields.hpp"
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "dem/contact/law_parameters.hpp"
@@ -17,7 +18,7 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t magic = 0x4556525453495349;
-constexpr std::uint64_t default_law = 1, named_law = 2; ///< version: does the law need its name?
+constexpr std::uint64_t default_law = 3, named_law = 4; ///< version: does the law need its name?
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return Hash().words(bytes).value(); }
 
@@ -33,8 +34,8 @@ struct Archive
     bytes.value(value);
   }
   template <typename M>
-  requires std::is_same_v<std::remove_const_t<M>, Mat3>
-  void operator()(M &m)
+  requires(std::is_same_v<std::remove_const_t<M>, Mat3> || std::is_same_v<std::remove_const_t<M>, Vec3>) void
+  operator()(M &m)
   {
     for (auto &x : m.reshaped())
       bytes.value(x);
@@ -82,7 +83,7 @@ std::vector<std::byte> Rve::pack() const
     body(std::vector<char>(name.begin(), name.end()));
   fixed_part(body, law, assembly_.packing());
   moving_part(body, state);
-  state.drive.for_each([&](const std::string &, double &value) { body(value); });
+  for_each_leaf(state.drive, body);
   body(cost_);
   const std::vector<std::byte> content = bytes.take();
   ByteWriter packed;
@@ -113,7 +114,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
     }
   fixed_part(body, start.law, start.grains);
   moving_part(body, state);
-  state.drive.for_each([&](const std::string &, double &value) { body(value); });
+  for_each_leaf(state.drive, body);
   body(cost);
   start.cell = state.grains.cell;
   Rve rve(start, settings);

@@ -45,7 +45,7 @@ void check_contact(const SceneDocument &document, const Scene &scene)
         key.kind == Kind::table && document.find(path) && !document.find("contact.friction"))
       document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    if (scene.stages[i].friction > 0 && !(scene.contact->friction > 0))
+    if (const auto *set = as<Friction>(scene.stages[i]); set && set->friction > 0 && !(scene.contact->friction > 0))
       document.refuse(fmt::format("stage.{}.friction", i),
                       "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
 }
@@ -53,16 +53,8 @@ void check_contact(const SceneDocument &document, const Scene &scene)
 void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    switch (scene.stages[i].kind)
-      {
-      case StageKind::k0_compress:
-      case StageKind::undrained_simple_shear:
-      case StageKind::undrained_cyclic_simple_shear:
-        need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
-        break;
-      default:
-        break;
-      }
+    if (behaviour(scene.stages[i]).needs_cell())
+      need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
 }
 
 void check_motion(const SceneDocument &document, const MotionSpec &motion)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/law.hpp"
+#include "dem/drive/programme.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace isostat
 {
-/// Grain sizes and the random cloud they start from (DESIGN 5).
+/// Grain sizes and the random cloud they start from.
 struct GradingSpec
 {
   std::string curve = "karlsruhe-fine-sand";    ///< name of a built-in curve; empty when `table` is given
@@ -27,19 +28,17 @@ struct GradingSpec
 };
 
 /// How the specimen is made. Exactly one of relative_density, void_ratio, preparation_friction, file is set.
-struct SpecimenSpec
+struct SpecimenSpec : ServoSpec
 {
   std::string domain = "rigid-box";
   std::string consolidation = "isotropic"; ///< or "k0": vertical stress `pressure`, no lateral strain; cell only
-  double pressure = 200e3;                 ///< p0'; with "k0" the vertical effective stress, Pa
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
   std::string file;                           ///< a specimen (.h5), "library.h5#entry", or a folder of text tables
   double e_min = 0.568, e_max = 0.841;        ///< limits that define the relative density
   double density_tolerance = 0.01;            ///< on D_r
   double damping = 0.3;                       ///< local damping during preparation
-  double compaction_rate = 30;     ///< wall strain-rate ceiling of the servo while the cloud is compacted, 1/s
-  std::string cache = "specimens"; ///< folder of cached specimens, relative to the output folder's parent
+  std::string cache = "specimens";            ///< folder of cached specimens, relative to the output folder's parent
 
   bool operator==(const SpecimenSpec &) const = default;
 };
@@ -51,81 +50,10 @@ struct SpecimenPlace
 };
 SpecimenPlace specimen_place(const std::string &file);
 
-struct MotionSpec
+/// What is written, and how often.
+struct OutputSpec : RecordSpec
 {
-  double damping = 0.2;                      ///< local (non-viscous) damping coefficient [-]
-  std::optional<double> strain_rate;         ///< fixed axial rate, 1/s; instead of the tolerance
-  std::optional<double> inertial_number;     ///< fixed I, the rate follows p'; instead of the tolerance
-  double quasi_static_tolerance = 0.01;      ///< error indicator to be kept, see dem/drive/rate_control.hpp
-  double rate_floor = 0.2, rate_ceiling = 2; ///< 1/s, bounds of the controlled rate
-  double time_step_safety = 0.8;             ///< fraction of the critical step
-  std::optional<double> time_step;           ///< fixed, s; checked against the critical step
-
-  bool operator==(const MotionSpec &) const = default;
-};
-
-enum class StageKind
-{
-  compress,  ///< isotropic servo compression to `pressure`
-  friction,  ///< set the intergranular friction
-  rebalance, ///< keep the pressure until forces are in balance
-  undrained_monotonic,
-  undrained_cyclic,
-  drained,                      ///< axial strain, lateral stresses kept
-  constant_p,                   ///< axial strain, mean stress kept
-  hold,                         ///< walls at rest
-  k0_compress,                  ///< axial stress to `pressure`, no lateral strain: periodic cell only, as the next two
-  undrained_simple_shear,       ///< shear strain gamma_xy at constant volume and shape otherwise
-  undrained_cyclic_simple_shear ///< the same between +-stress_ratio times the initial vertical stress
-};
-
-/// Which family a kind of stage belongs to.
-inline bool is_simple_shear(StageKind kind)
-{
-  return kind == StageKind::undrained_simple_shear || kind == StageKind::undrained_cyclic_simple_shear;
-}
-inline bool is_cyclic(StageKind kind)
-{
-  return kind == StageKind::undrained_cyclic || kind == StageKind::undrained_cyclic_simple_shear;
-}
-inline bool is_undrained(StageKind kind)
-{
-  return is_cyclic(kind) || kind == StageKind::undrained_monotonic || kind == StageKind::undrained_simple_shear;
-}
-inline bool is_shear(StageKind kind)
-{
-  return is_undrained(kind) || kind == StageKind::drained || kind == StageKind::constant_p;
-}
-
-/// One stage of the programme; which keys a kind takes is in the schema (dem/scene/schema.cpp).
-struct Stage
-{
-  StageKind kind = StageKind::hold;
-  double pressure = 0;              ///< Pa: compress, rebalance, k0-compress (0: the specimen's pressure)
-  double friction = 0;              ///< tan(phi): friction
-  bool extension = false;           ///< first loading direction; simple shear: gamma_xy falls first
-  double strain = 0;                ///< axial, in simple shear gamma_xy: its amount ends a stage [-]
-  double deviator_amplitude = 60e3; ///< q_amp, Pa: undrained-cyclic
-  double stress_ratio = 0.15;       ///< CSR = tau_amp / sigma'_v0 [-]: undrained-cyclic-simple-shear
-  double liquefaction_ratio = 0.01; ///< p'/p0 below which the specimen counts as liquefied
-  std::uint64_t max_cycles = 200;   ///< a cyclic stage ends after so many
-  std::uint64_t reversals_after_liquefaction = 10; ///< ... or so many reversals after initial liquefaction
-  double max_strain = 0.15;                        ///< ... or when |axial strain| or |gamma_xy| exceeds this
-  std::uint64_t max_steps = 0;                     ///< any stage: stop after so many steps (0: no limit)
-  double balance = 1e-4;                           ///< unbalanced-force ratio that ends compress, rebalance, hold
-  std::optional<double> strain_rate;               ///< fixed rate (axial or of gamma_xy), 1/s, instead of [motion]
-
-  bool operator==(const Stage &) const = default;
-};
-
-struct OutputSpec
-{
-  std::string folder;                  ///< default: results/<scene file name>
-  double record_stress = 1e3;          ///< a history row whenever p' or q has moved by this much, Pa
-  double record_strain = 1e-4;         ///< ... or the axial strain by this much
-  std::uint64_t record_steps = 5000;   ///< ... or after so many steps
-  std::string snapshots = "reversals"; ///< "none", "reversals" (and stage ends), "strain"
-  double snapshot_strain = 0.01;       ///< spacing for "strain"
+  std::string folder; ///< default: results/<scene file name>
   bool paraview = true;
   bool energy = false; ///< energy balance (a loop with dissipation sums)
   double checkpoint_minutes = 5;
@@ -144,6 +72,8 @@ struct Scene
   std::vector<Stage> stages;
   OutputSpec output;
 
+  /// The part of it that is run on a specimen.
+  Programme programme() const { return {motion, specimen, output, stages}; }
   bool operator==(const Scene &) const = default; ///< bit for bit, every field
 };
 

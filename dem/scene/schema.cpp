@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a scene file. A new key is one entry here, one field in dem/scene/scene.hpp and, if it takes part in a
-// rule that binds several keys, a line in dem/scene/checks.cpp.
-// The keys of a contact law are in its folder.
+// The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage stand beside their structs
+// and are spliced in. A new one of the others is an entry here and a field in dem/scene/scene.hpp. Rules that bind several
+// keys are in dem/scene/checks.cpp.
 #include "dem/scene/schema.hpp"
 
 #include "base/scene/fragment.hpp"
+#include "base/scene/ranges.hpp"
 
 #include <algorithm>
 
@@ -16,18 +17,6 @@ constexpr const char *curve_choices[] = {"karlsruhe-fine-sand"};
 constexpr const char *domain_choices[] = {"rigid-box", "periodic-cell"};
 constexpr const char *consolidation_choices[] = {"isotropic", "k0"};
 constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
-constexpr const char *direction_choices[] = {"compression", "extension"};
-constexpr const char *kind_choices[] = {"compress",
-                                        "friction",
-                                        "rebalance",
-                                        "undrained-monotonic",
-                                        "undrained-cyclic",
-                                        "drained",
-                                        "constant-p",
-                                        "hold",
-                                        "k0-compress",
-                                        "undrained-simple-shear",
-                                        "undrained-cyclic-simple-shear"};
 
 constexpr Section fixed_sections[] = {
     {.name = "grading",
@@ -56,28 +45,7 @@ constexpr Section fixed_sections[] = {
     {.name = "output", .text = "What is written, and how often. Output never changes a trajectory."},
 };
 
-constexpr unsigned bit(StageKind kind) { return 1u << static_cast<unsigned>(kind); }
-constexpr unsigned axial_cyclic = bit(StageKind::undrained_cyclic);
-constexpr unsigned axial_monotonic =
-    bit(StageKind::undrained_monotonic) | bit(StageKind::drained) | bit(StageKind::constant_p);
-constexpr unsigned simple_cyclic = bit(StageKind::undrained_cyclic_simple_shear);
-constexpr unsigned simple_monotonic = bit(StageKind::undrained_simple_shear);
-constexpr unsigned cyclic = axial_cyclic | simple_cyclic;
-constexpr unsigned undrained = bit(StageKind::undrained_monotonic) | simple_monotonic | cyclic;
-constexpr unsigned shear = axial_monotonic | simple_monotonic | cyclic;
-constexpr unsigned pressed = bit(StageKind::compress) | bit(StageKind::rebalance) | bit(StageKind::k0_compress);
-constexpr unsigned balanced = pressed | bit(StageKind::hold);
-constexpr unsigned stepped = shear | balanced;
-constexpr unsigned any_kind = stepped | bit(StageKind::friction);
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Range positive{0, infinity, true};
-constexpr Range fraction{0, 1, true, true};      // (0, 1)
-constexpr Range to_one{0, 1, true, false};       // (0, 1]
-constexpr Range to_ten{0, 10, true, false};      // (0, 10]
-constexpr Range right_angle{0, 90, false, true}; // degrees
-constexpr const char *because_tan = "because tan() is used";
-constexpr const char *because_shear_strain = "because this is a shear strain, not percent: 1 is 100 percent";
+using ranges::because_tan, ranges::fraction, ranges::positive, ranges::right_angle;
 constexpr const char *because_damping = "because at 1 no grain would get moving";
 
 // clang-format off
@@ -117,7 +85,7 @@ constexpr Key first_keys[] = {
    .field = [](Scene &s) -> Field { return &s.grading.seed; }},
 };
 
-constexpr Key later_keys[] = {
+constexpr Key specimen_keys[] = {
   {.path = "specimen.domain", .kind = Kind::choice, .value = "rigid-box", .choices = domain_choices,
    .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z.",
    .field = [](Scene &s) -> Field { return &s.specimen.domain; }},
@@ -160,101 +128,9 @@ constexpr Key later_keys[] = {
   {.path = "specimen.cache", .kind = Kind::text, .value = "specimens",
    .text = "Folder of prepared specimens, counted from the parent of the output folder.",
    .field = [](Scene &s) -> Field { return &s.specimen.cache; }},
+};
 
-  {.path = "motion.damping", .value = "0.2", .range = {0, 1, false, true}, .reason = because_damping,
-   .text = "Local (non-viscous) damping coefficient.",
-   .field = [](Scene &s) -> Field { return &s.motion.damping; }},
-  {.path = "motion.quasi_static_tolerance", .value = "0.01", .range = fraction, .group = "rate",
-   .text = "Error that inertia may add to the stresses; the rate of loading is chosen to keep it.",
-   .field = [](Scene &s) -> Field { return &s.motion.quasi_static_tolerance; }},
-  {.path = "motion.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .group = "rate",
-   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the tolerance.",
-   .field = [](Scene &s) -> Field { return &s.motion.strain_rate; }},
-  {.path = "motion.inertial_number", .presence = Presence::optional, .value = "1e-4", .range = fraction,
-   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
-   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate (in simple shear that of "
-           "gamma_xy) is I sqrt(p_r / density) / d50 with p_r = max(p', 0.05 p0'), renewed every 50 steps, without "
-           "floor or ceiling.",
-   .field = [](Scene &s) -> Field { return &s.motion.inertial_number; }},
-  {.path = "motion.rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "0.2 1/s", .range = positive, .text = "Lowest rate the tolerance may lead to.",
-   .field = [](Scene &s) -> Field { return &s.motion.rate_floor; }},
-  {.path = "motion.rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "2 1/s", .range = positive, .text = "Highest rate the tolerance may lead to.",
-   .field = [](Scene &s) -> Field { return &s.motion.rate_ceiling; }},
-  {.path = "motion.time_step_safety", .value = "0.8", .range = to_one,
-   .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",
-   .field = [](Scene &s) -> Field { return &s.motion.time_step_safety; }},
-  {.path = "motion.time_step", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "ns",
-   .presence = Presence::optional, .value = "50 ns", .range = positive,
-   .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts.",
-   .field = [](Scene &s) -> Field { return &s.motion.time_step; }},
-
-  {.path = "stage.kind", .kind = Kind::choice, .presence = Presence::required, .value = "undrained-monotonic",
-   .choices = kind_choices, .kinds = any_kind,
-   .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain periodic-cell.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.kind; }},
-  {.path = "stage.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .presence = Presence::optional, .value = "200 kPa", .range = positive, .kinds = pressed,
-   .text = "Isotropic pressure of the servo; in k0-compress the vertical effective stress; left out: that of the "
-           "specimen.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.pressure; }},
-  {.path = "stage.friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
-   .presence = Presence::required, .value = "18 deg", .range = right_angle, .reason = because_tan,
-   .kinds = bit(StageKind::friction), .text = "Angle of friction between grains from here on.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.friction; }},
-  {.path = "stage.direction", .kind = Kind::choice, .value = "compression", .choices = direction_choices,
-   .kinds = shear,
-   .text = "First direction of axial loading; in simple shear compression is towards positive gamma_xy, extension "
-           "towards negative.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.extension; }},
-  {.path = "stage.strain", .presence = Presence::required, .value = "0.05", .range = to_one,
-   .reason = "because this is a strain, not percent; the sign comes from direction", .kinds = axial_monotonic,
-   .text = "Axial strain (logarithmic, its amount) at which the stage ends.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
-  {.path = "stage.strain", .presence = Presence::required, .value = "0.2", .range = to_ten,
-   .reason = because_shear_strain, .kinds = simple_monotonic,
-   .text = "Shear strain gamma_xy (its amount) at which the stage ends.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain; }},
-  {.path = "stage.deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "60 kPa", .range = positive, .kinds = axial_cyclic, .text = "q_amp: loading turns when |q| reaches it.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.deviator_amplitude; }},
-  {.path = "stage.stress_ratio", .value = "0.15", .range = to_one,
-   .reason = "because this is a ratio of stresses that friction has to carry", .kinds = simple_cyclic,
-   .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns when |tau| "
-           "reaches tau_amp.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.stress_ratio; }},
-  {.path = "stage.liquefaction_ratio", .value = "0.01", .range = fraction, .kinds = undrained,
-   .text = "p'/p0' below which the specimen counts as liquefied.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.liquefaction_ratio; }},
-  {.path = "stage.until", .kind = Kind::table, .presence = Presence::optional,
-   .value = "{ reversals_after_liquefaction = 10 }", .kinds = cyclic,
-   .text = "When the stage ends: at whichever of its conditions comes first.",
-   .field = [](Scene &, Stage &) -> Field { return {}; }},
-  {.path = "stage.until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9}, .kinds = cyclic,
-   .text = "After so many cycles.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_cycles; }},
-  {.path = "stage.until.reversals_after_liquefaction", .kind = Kind::integer, .value = "10", .kinds = cyclic,
-   .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.reversals_after_liquefaction; }},
-  {.path = "stage.until.strain", .value = "0.15", .range = to_one, .reason = "because this is a strain, not percent",
-   .kinds = axial_cyclic, .text = "When the amount of the axial strain exceeds this.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
-  {.path = "stage.until.strain", .value = "0.15", .range = to_ten, .reason = because_shear_strain,
-   .kinds = simple_cyclic, .text = "When the amount of the shear strain gamma_xy exceeds this.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_strain; }},
-  {.path = "stage.balance", .value = "1e-4", .range = fraction, .kinds = balanced,
-   .text = "Unbalanced-force ratio at which the stage ends.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.balance; }},
-  {.path = "stage.strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .presence = Presence::optional, .value = "0.5 1/s", .range = positive, .kinds = shear,
-   .text = "Fixed axial strain rate of this stage, in simple shear that of gamma_xy, instead of what `[motion]` says.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.strain_rate; }},
-  {.path = "stage.max_steps", .kind = Kind::integer, .value = "0", .kinds = stepped,
-   .text = "Ends the stage after so many time steps; 0: no limit.",
-   .field = [](Scene &, Stage &stage) -> Field { return &stage.max_steps; }},
-
+constexpr Key output_keys[] = {
   {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
    .text = "Folder of the run; left out: results/ and the name of the scene file.",
    .field = [](Scene &s) -> Field { return &s.output.folder; }},
@@ -339,7 +215,7 @@ void set_law(void *place, std::size_t number) { *static_cast<Law *>(place) = reg
 struct WholeSchema
 {
   std::vector<const char *> law_names;
-  std::vector<Key> law_keys;
+  std::vector<Key> law_keys, kind_key;
   std::vector<Section> sections{std::begin(fixed_sections), std::end(fixed_sections)};
   std::optional<KeyTable> table;
   SceneSchema schema;
@@ -359,7 +235,22 @@ struct WholeSchema
     for (std::size_t i = 0; i < laws.size(); ++i)
       runs.push_back({laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
                       [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); }});
-    runs.push_back(later_keys);
+    const auto kinds = stage_kind_names();
+    kind_key = {{.path = "stage.kind",
+                 .kind = Kind::choice,
+                 .presence = Presence::required,
+                 .value = "undrained-monotonic",
+                 .choices = kinds,
+                 .kinds = (1u << kinds.size()) - 1,
+                 .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain "
+                         "periodic-cell.",
+                 .field = [](Scene &, Stage &stage) -> Field { return EnumField(&stage); }}};
+    runs.push_back(specimen_keys);
+    runs.push_back(splice("motion", motion_keys(), 0, [](Scene &s) -> MotionSpec & { return s.motion; }));
+    runs.push_back({kind_key, "", 0, {}});
+    runs.push_back(
+        splice("stage", stage_keys(), 0, [](Scene &, Stage &stage) -> StageBehaviour & { return behaviour(stage); }));
+    runs.push_back(output_keys);
     table.emplace(std::span<const KeyRun>(runs));
     for (Section &section : sections)
       if (laws.size() > 1 && std::string_view(section.name) == "contact")
@@ -381,5 +272,4 @@ const SceneSchema &scene_schema()
   static const WholeSchema whole;
   return whole.schema;
 }
-std::span<const char *const> stage_kind_names() { return kind_choices; }
 } // namespace isostat

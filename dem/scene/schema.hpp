@@ -8,7 +8,6 @@ namespace isostat
 /// The keys of an element test: fields are those of a Scene, and of a Stage below [[stage]].
 /// tested: tests/dem/scene/scene_test.cpp (defaults equal those of the structs, every key has a sentence)
 const SceneSchema &scene_schema();
-std::span<const char *const> stage_kind_names(); ///< in the order of StageKind
 
 /// Rules that bind several keys: those that exclude each other, limits in order, what needs the periodic cell.
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp

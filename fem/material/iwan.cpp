@@ -3,6 +3,7 @@
 
 #include "base/files/bytes.hpp"
 #include "fem/material/elastic.hpp"
+#include "fem/material/iwan_scene.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -13,17 +14,20 @@ namespace isostat
 namespace
 {
 constexpr double root3 = 1.7320508075688772;
-std::array<double, 16> as_numbers(const IwanParameters &p)
+/// All parameters, in the order of their keys.
+std::vector<double> as_numbers(IwanParameters p)
 {
-  return {p.shear_modulus,      p.poisson_ratio,     p.exponent,
-          p.reference_pressure, p.strength_ratio,    p.phase_transformation_ratio,
-          p.contraction,        p.dilation,          p.fabric_limit,
-          p.fabric_rate,        p.critical_pressure, p.residual_ratio,
-          p.min_pressure,       p.loosening_limit,   p.substep,
-          double(p.elements)};
+  std::vector<double> numbers;
+  for (const Key &key : all_iwan_keys().keys)
+    {
+      const Field field = key.field(&p, nullptr);
+      const auto *const *real = std::get_if<double *>(&field);
+      numbers.push_back(real ? **real : *std::get<unsigned *>(field));
+    }
+  return numbers;
 }
 
-void require(bool holds, const char *name, double value, const char *range)
+void require(bool holds, const char *name, double value, const std::string &range)
 {
   if (!holds || !std::isfinite(value))
     throw InputError(std::string("iwan: ") + name + " = " + std::to_string(value) + "; must be " + range);
@@ -31,22 +35,13 @@ void require(bool holds, const char *name, double value, const char *range)
 
 void check(const IwanParameters &p)
 {
-  require(p.shear_modulus > 0, "shear_modulus", p.shear_modulus, "above 0 Pa");
-  require(p.poisson_ratio > -1 && p.poisson_ratio < 0.5, "poisson_ratio", p.poisson_ratio, "in (-1, 0.5)");
-  require(p.exponent >= 0 && p.exponent <= 1, "exponent", p.exponent, "in [0, 1]");
-  require(p.reference_pressure > 0, "reference_pressure", p.reference_pressure, "above 0 Pa");
-  require(p.strength_ratio > 0, "strength_ratio", p.strength_ratio, "above 0");
-  require(p.phase_transformation_ratio > 0, "phase_transformation_ratio", p.phase_transformation_ratio, "above 0");
-  require(p.contraction >= 0, "contraction", p.contraction, "0 or more");
-  require(p.dilation >= 0 && p.dilation <= 1, "dilation", p.dilation,
-          "in [0, 1] because plastic work would be negative above");
-  require(p.fabric_limit >= 0, "fabric_limit", p.fabric_limit, "0 or more");
-  require(p.fabric_rate >= 0, "fabric_rate", p.fabric_rate, "0 or more");
-  require(p.critical_pressure > 0, "critical_pressure", p.critical_pressure, "above 0 Pa");
-  require(p.residual_ratio >= 0 && p.residual_ratio < 1, "residual_ratio", p.residual_ratio, "in [0, 1)");
-  require(p.min_pressure > 0, "min_pressure", p.min_pressure, "above 0 Pa because moduli are divided by it");
-  require(p.loosening_limit >= 0, "loosening_limit", p.loosening_limit, "0 or more");
-  require(p.substep >= 1e-6 && p.substep <= 1e-3, "substep", p.substep, "in [1e-6, 1e-3]");
+  const std::vector<double> values = as_numbers(p);
+  for (std::size_t i = 0; const Key &key : all_iwan_keys().keys)
+    {
+      require(key.range.contains(values[i]), key.path, values[i],
+              range_text(key) + (*key.reason ? " " : "") + key.reason);
+      ++i;
+    }
 }
 
 std::string at_point(std::size_t i) { return "iwan: point " + std::to_string(i) + ": "; }
@@ -182,7 +177,7 @@ void Iwan::unpack(std::span<const std::byte> bytes)
 {
   ByteReader in(bytes, name());
   in.expect(in.text(), name());
-  auto stored = as_numbers(parameters_);
+  std::vector<double> stored = as_numbers(parameters_);
   in.numbers(stored, "parameters");
   if (stored != as_numbers(parameters_))
     in.fail("its parameters are others");

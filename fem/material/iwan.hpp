@@ -5,7 +5,8 @@
 namespace isostat
 {
 /// A sand for Iwan. p' is the mean effective stress, compression positive; tau = sqrt(J2) is the shear stress of simple
-/// shear; eta = tau/p'. The defaults are a loose sand.
+/// shear; eta = tau/p'. The defaults are a loose sand. Ranges are in fem/material/iwan_scene.cpp, from which the keys of
+/// scenes, the checks and the bytes of Iwan follow.
 struct IwanParameters
 {
   double shear_modulus = 50e6;             ///< G at small strain and p' = reference_pressure, Pa
@@ -24,6 +25,8 @@ struct IwanParameters
   double loosening_limit = 0.01;           ///< volumetric strain kept at most as loosening (see Iwan) [-]
   double substep = 2e-5;                   ///< strain of one sub-step at most [-]
   unsigned elements = 12;                  ///< 4 ... 32; the error of the backbone is 1.8 % with 12, 1.2 % with 16
+
+  bool operator==(const IwanParameters &) const = default;
 };
 
 /// tau/tau_max = sum over k of weight_k min(x, yield_strain_k), x = strain / gamma_r: a hyperbola in straight pieces.

@@ -2,33 +2,42 @@
 #include "fem/material/soil.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isostat
 {
+unsigned Layer::n_cells() const
+{
+  if (cells > 0 || !(cell_size > 0))
+    return cells;
+  // 10 m in cells of 0.1 m are 100, whatever the rounding of 10/0.1
+  return std::max(1u, static_cast<unsigned>(std::ceil(thickness / cell_size * (1 - 1e-12))));
+}
+
 double SoilProfile::height() const
 {
   double sum = 0;
-  for (const Layer &layer : layers)
-    sum += layer.thickness;
+  for (std::size_t k = layers.size(); k-- > 0;)
+    sum += layers[k].thickness;
   return sum;
 }
 
 std::size_t SoilProfile::layer_at(double z) const
 {
   double top = 0;
-  for (std::size_t k = 0; k < layers.size(); ++k)
+  for (std::size_t k = layers.size(); k-- > 0;)
     {
       top += layers[k].thickness;
       if (z < top)
         return k;
     }
-  return layers.size() - 1;
+  return 0;
 }
 
 double SoilProfile::vertical_effective_stress(double z, double surcharge) const
 {
   double stress = surcharge, bottom = height();
-  for (std::size_t k = layers.size(); k-- > 0 && bottom > z;)
+  for (std::size_t k = 0; k < layers.size() && bottom > z; ++k)
     {
       const double top = bottom;
       bottom -= layers[k].thickness;

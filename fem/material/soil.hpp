@@ -15,7 +15,11 @@ struct Layer
   double porosity = 0.4;   ///< [-]
   double permeability = 0; ///< hydraulic conductivity k, m/s; 0: no water moves
   double k0 = 0.5;         ///< sigma'_h / sigma'_v in situ [-]
-  unsigned cells = 1;      ///< elements through its thickness
+  unsigned cells = 0;      ///< elements through its thickness; 0: from cell_size
+  double cell_size = 0;    ///< largest height of an element, m
+
+  unsigned n_cells() const; ///< whichever of the two was given; 0 if none was
+  bool operator==(const Layer &) const = default;
 };
 
 /// What the pore water does.
@@ -35,16 +39,18 @@ struct Water
 
   /// Mobility kb = k/(rho_f g), m2/(Pa s).
   double mobility(double permeability) const { return permeability / (density * gravity); }
+  bool operator==(const Water &) const = default;
 };
 
-/// Layers from the base up; z = 0 at the base, upwards positive, water table at the surface.
+/// Layers from the surface down, as a borehole log reads; the one order of layers and their numbers everywhere. Heights:
+/// z = 0 at the base, upwards positive, water table at the surface.
 /// tested: tests/fem/material/soil_test.cpp
 struct SoilProfile
 {
   std::vector<Layer> layers;
   Water water;
 
-  double height() const;
+  double height() const;                ///< summed from the base up, m
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
   /// Vertical effective stress of the soil's own weight and of a uniform load on the surface, compression positive. Pa
   double vertical_effective_stress(double z, double surcharge = 0) const;

@@ -79,12 +79,12 @@ template <int dim>
 void Dynamics<dim>::make_coefficients()
 {
   const std::size_t n = u_.locally_owned_size();
-  if (settings_.base.compliant)
+  if (settings_.base.compliant())
     {
       dashpot_ = space_.face_area(Face::base);
       for (std::size_t i = 0; i < n; ++i)
         dashpot_.local_element(i) *=
-            settings_.base.density * (i % 3 == 2 ? settings_.base.p_velocity : settings_.base.shear_velocity);
+            settings_.base.density * (i % 3 == 2 ? settings_.base.rock_p_velocity() : settings_.base.shear_velocity);
     }
   if (settings_.surface_traction)
     surface_ = space_.face_area(Face::surface);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
 #include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
@@ -10,16 +11,6 @@ namespace isostat
 {
 template <int dim>
 class PressureSystem;
-
-/// What lies under the mesh.
-struct Base
-{
-  bool compliant = false;       ///< false: the base has the given motion. true: elastic rock behind a dashpot
-  double density = 2300;        ///< rho_r, kg/m3
-  double shear_velocity = 800;  ///< V_r, m/s
-  double p_velocity = 1600;     ///< m/s
-  std::array<Motion, 3> motion; ///< along x, y, z: of the base, or of the rock's outcrop if compliant
-};
 
 /// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
 using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
@@ -32,6 +23,7 @@ struct DynamicsSettings
   Drainage drainage = Drainage::dry;
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
   Base base = {};
+  std::array<Motion, 3> motion = {};     ///< along x, y, z: of the base, or of the rock's outcrop if compliant
   SurfaceTraction surface_traction = {}; ///< none: free
 };
 

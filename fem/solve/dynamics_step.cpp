@@ -19,13 +19,13 @@ void Dynamics<dim>::find_loads()
   const Base &base = settings_.base;
   frame_ = {}; // -a_base of a rigid base: M frame_ is its inertia in (4)
   for (int axis = 0; axis < 3; ++axis)
-    if (!base.compliant)
-      frame_[axis] = -base.motion[axis].acceleration(t);
+    if (!base.compliant())
+      frame_[axis] = -settings_.motion[axis].acceleration(t);
   for (unsigned i : loaded_)
     load_.local_element(i) = 0;
-  if (base.compliant) // (13): rho_r V_r A v_outcrop; its counterpart -rho_r V_r A v_base is in C
+  if (base.compliant()) // (13): rho_r V_r A v_outcrop; its counterpart -rho_r V_r A v_base is in C
     for (unsigned i : loaded_)
-      load_.local_element(i) += dashpot_.local_element(i) * base.motion[i % 3].velocity(t);
+      load_.local_element(i) += dashpot_.local_element(i) * settings_.motion[i % 3].velocity(t);
   if (settings_.surface_traction)
     {
       const std::array<double, 3> traction = settings_.surface_traction(t);

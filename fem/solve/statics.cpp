@@ -73,7 +73,7 @@ void Statics<dim>::advance(double duration, bool flow)
 {
   if (!(duration >= 0) || !std::isfinite(duration))
     throw InputError(fmt::format("step of {} s; must be >= 0", duration));
-  const double start_time = time_, smallest = std::ldexp(1.0, -static_cast<int>(settings_.max_halvings));
+  const double start_time = time_, smallest = std::ldexp(1.0, -static_cast<int>(settings_.newton.max_halvings));
   const Vector load_start = load_, held_start = u_;
   Vector load_end = load_, held_end = u_;
   find_loads(time_ + duration, load_end, held_end);
@@ -139,8 +139,8 @@ void Statics<dim>::fail(double size) const
                                "{:.3g} N, tolerance {:.3g}) in a sub-step of {:.3g} of the step, the smallest that is "
                                "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps; "
                                "the load may be more than the soil bears",
-                               step_ + 1, time_, reason_, residual_, trial_scale_, settings_.tolerance, size, time_,
-                               step_));
+                               step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size,
+                               time_, step_));
 }
 
 template <int dim>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/solve/newton_settings.hpp"
 #include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
 
@@ -33,12 +34,9 @@ struct StaticsSettings
   bool pore_water = false; ///< consolidation; false: dry or fully drained, time is only what loads depend on
   std::vector<FaceTraction> tractions = {};
   std::vector<FaceDisplacement> displacements =
-      {};                  ///< components that are fixed and not named here stay where they are
-  double tolerance = 1e-8; ///< of the residual, in units of the force scale (see Statics)
-  double min_force = 0;    ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
-  unsigned max_iterations = 25;        ///< of Newton, per sub-step
-  unsigned iterations_per_tangent = 1; ///< 1: Newton. More: the tangent is kept (modified Newton), within a sub-step
-  unsigned max_halvings = 12;          ///< the smallest sub-step is the step times 2^-max_halvings
+      {}; ///< components that are fixed and not named here stay where they are
+  NewtonSettings newton = {};
+  double min_force = 0; ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
 };
 
 /// What the last step took.

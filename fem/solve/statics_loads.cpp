@@ -43,14 +43,14 @@ void Statics<dim>::check_settings() const
                                      "those that move together",
                                      name_of(given.of)));
     }
-  if (!(settings_.tolerance > 0) || settings_.tolerance >= 1)
-    throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.tolerance));
+  if (!(settings_.newton.tolerance > 0) || settings_.newton.tolerance >= 1)
+    throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.newton.tolerance));
   if (!(settings_.min_force >= 0))
     throw InputError(fmt::format("smallest force = {} N; must be >= 0", settings_.min_force));
-  if (settings_.max_iterations == 0 || settings_.iterations_per_tangent == 0)
+  if (settings_.newton.max_iterations == 0 || settings_.newton.iterations_per_tangent == 0)
     throw InputError("max iterations and iterations per tangent must be >= 1");
-  if (settings_.max_halvings > 40)
-    throw InputError(fmt::format("max halvings = {}; must be <= 40", settings_.max_halvings));
+  if (settings_.newton.max_halvings > 40)
+    throw InputError(fmt::format("max halvings = {}; must be <= 40", settings_.newton.max_halvings));
 }
 
 /// Owned unknowns of a component on a face. A rank need not have a cell at all.

@@ -25,14 +25,14 @@ template <int dim>
 bool Statics<dim>::solve_substep(double duration)
 {
   start_substep(duration);
-  for (unsigned iteration = 0; iteration <= settings_.max_iterations; ++iteration)
+  for (unsigned iteration = 0; iteration <= settings_.newton.max_iterations; ++iteration)
     {
-      if (left_ == 0 && merit(0) <= settings_.tolerance * trial_scale_)
+      if (left_ == 0 && merit(0) <= settings_.newton.tolerance * trial_scale_)
         return true;
-      if (iteration < settings_.max_iterations && !iterate(iteration))
+      if (iteration < settings_.newton.max_iterations && !iterate(iteration))
         return false;
     }
-  reason_ = fmt::format("Newton's method has not converged in {} iterations", settings_.max_iterations);
+  reason_ = fmt::format("Newton's method has not converged in {} iterations", settings_.newton.max_iterations);
   return false;
 }
 
@@ -67,7 +67,7 @@ template <int dim>
 bool Statics<dim>::iterate(unsigned iteration)
 {
   bool good = true;
-  if (iteration % settings_.iterations_per_tangent == 0)
+  if (iteration % settings_.newton.iterations_per_tangent == 0)
     {
       material_.stiffness(tangents_);
       try
@@ -107,7 +107,7 @@ bool Statics<dim>::search_line(double merit_before)
       set_part(part);
       const double after = evaluate() ? merit(1 - part) : std::numeric_limits<double>::infinity();
       residual_ = after / trial_scale_;
-      if (after <= std::max((1 - min_gain * part) * merit_before, settings_.tolerance * trial_scale_))
+      if (after <= std::max((1 - min_gain * part) * merit_before, settings_.newton.tolerance * trial_scale_))
         {
           left_ *= 1 - part;
           return true;

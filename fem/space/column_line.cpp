@@ -68,12 +68,12 @@ ColumnLine column_line(const Discretisation<dim> &space)
   double top = 0;
   add_node(0);
   const unsigned degree = space.mesh().degree;
-  for (auto layer = soil.layers.rbegin(); layer != soil.layers.rend(); ++layer)
+  for (const Layer &layer : soil.layers)
     {
-      const unsigned n = layer->cells * degree;
+      const unsigned n = layer.n_cells() * degree;
       for (unsigned k = 1; k <= n; ++k)
-        add_node(k == n ? top + layer->thickness : top + layer->thickness * k / n);
-      top += layer->thickness;
+        add_node(k == n ? top + layer.thickness : top + layer.thickness * k / n);
+      top += layer.thickness;
     }
   return line;
 }

@@ -23,7 +23,7 @@ void check(const MeshSpec &mesh, int dim)
     {
       if (!(layer.thickness > 0))
         throw InputError(fmt::format("layer {}: thickness = {} m; must be > 0", layer.name, layer.thickness));
-      if (layer.cells == 0)
+      if (layer.n_cells() == 0)
         throw InputError(fmt::format("layer {}: no cells; give at least one", layer.name));
       if (!(layer.density > 0))
         throw InputError(fmt::format("layer {}: density = {} kg/m3; must be > 0", layer.name, layer.density));
@@ -40,8 +40,8 @@ void check(const MeshSpec &mesh, int dim)
 std::vector<double> cell_heights(const SoilProfile &soil)
 {
   std::vector<double> heights;
-  for (const Layer &layer : soil.layers)
-    heights.insert(heights.end(), layer.cells, layer.thickness / layer.cells);
+  for (auto layer = soil.layers.rbegin(); layer != soil.layers.rend(); ++layer)
+    heights.insert(heights.end(), layer->n_cells(), layer->thickness / layer->n_cells());
   return heights;
 }
 

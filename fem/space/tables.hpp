@@ -28,7 +28,7 @@ struct CellTables
   std::vector<Place> position;           ///< of a point
   std::vector<Place> corner;             ///< [cell][corner], x fastest
   std::vector<std::size_t> point_id;     ///< number of a point in the whole mesh, for any partition
-  std::vector<unsigned> cell_layer;      ///< layer of a cell, counted from the base
+  std::vector<unsigned> cell_layer;      ///< number of a cell's layer in MeshSpec::soil, from the surface down
 
   std::size_t n_cells() const { return cell_layer.size(); }
   std::size_t n_points() const { return weight.size(); }

@@ -24,12 +24,12 @@ struct BiotCell
 };
 
 /// @param layer  coefficients of the cell's layer
-/// tested: tests/fem/water/pressure_system_test.cpp, tests/fem/solve/consolidation_test.cpp
+/// tested: tests/fem/water/pressure_system_test.cpp, tests/verification/consolidation_test.cpp
 template <int dim>
 BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, std::size_t cell);
 
 /// The integrals of all cells, and their products with vectors. Displacements and pressures of other ranks are fetched
-/// and results brought home.   tested: tests/fem/solve/consolidation_test.cpp, tests/fem/solve/mandel_test.cpp
+/// and results brought home.   tested: tests/verification/consolidation_test.cpp, tests/verification/mandel_test.cpp
 template <int dim>
 class BiotOperator
 {

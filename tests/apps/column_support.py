@@ -46,7 +46,7 @@ duration = "1 s"
 [output]
 depths = ["1 m", "5 m"]
 """
-NO_FILES = {"provenance.txt"}  # time of the run, number of ranks
+NO_FILES = {"provenance.txt", "times.json"}  # time of the run, number of ranks
 
 
 def settings(**values):

@@ -19,7 +19,10 @@ namespace
 class Shear
 {
 public:
-  explicit Shear(const Snapshot &initial) : assembly(initial), path_{initial.box} { assembly.measure_energy = true; }
+  explicit Shear(const Snapshot &initial) : assembly(initial), path_{initial.box}
+  {
+    assembly.settings.measure_energy = true;
+  }
 
   void to(double axial, double rate)
   {
@@ -27,11 +30,11 @@ public:
     for (int k = 0; direction * (axial - axial_) > 0; ++k)
       {
         if (k % 500 == 0)
-          assembly.time_step =
+          assembly.settings.time_step =
               0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
         assembly.compute_forces();
         min_p = std::min(min_p, invariants(assembly.wall_stress()).p);
-        axial_ += direction * rate * assembly.time_step;
+        axial_ += direction * rate * assembly.settings.time_step;
         assembly.move(path_.box(isochoric(axial_)));
       }
     assembly.compute_forces();
@@ -104,8 +107,8 @@ TEST(HardCases, RattlersOnlyCarryNoStress)
 {
   const Snapshot s = loosened(test::specimen(500, 10), 0.5);
   Assembly a(s);
-  a.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts());
-  EXPECT_TRUE(std::isfinite(a.time_step));
+  a.settings.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts());
+  EXPECT_TRUE(std::isfinite(a.settings.time_step));
   for (int k = 0; k < 100; ++k)
     {
       a.compute_forces();
@@ -144,7 +147,7 @@ TEST(HardCases, TenTimesStifferGrains)
       critical_step_bound(test::specimen(500, 10).law, s.grains, &s.box, Assembly(test::specimen(500, 10)).contacts());
   Shear shear(s); // the same overlaps now mean ten times the stress
   shear.to(1e-4, 1);
-  EXPECT_NEAR_BECAUSE(shear.assembly.time_step / soft, std::sqrt(0.1), 0.1,
+  EXPECT_NEAR_BECAUSE(shear.assembly.settings.time_step / soft, std::sqrt(0.1), 0.1,
                       "the same network, whose critical step falls with the root of the stiffness; the safety differs");
   EXPECT_GT(shear.look().p_wall, 1e6);
 }
@@ -159,7 +162,7 @@ TEST(HardCases, ANotANumberStopsTheRunAndNamesTheGrain)
   ASSERT_LT(rattler, s.grains.n_grains());
   s.grains.set_linear_velocity(rattler, Vec3(NAN, 0, 0));
   Assembly a(s);
-  a.time_step = 4e-8;
+  a.settings.time_step = 4e-8;
   a.compute_forces();
   try
     {

@@ -2,9 +2,9 @@
 // The states and inputs in which representative volume elements break. Each test asserts what must come out: which
 // increments are taken, that volume is kept to 1e-12, what stress results, and that what is refused changes no bit.
 #include "base/error.hpp"
-#include "dem/rve/rve.hpp"
+#include "base/fields.hpp"
 #include "tests/support/near.hpp"
-#include "tests/support/periodic.hpp"
+#include "tests/support/rve_paths.hpp"
 
 #include <cstring>
 
@@ -12,17 +12,11 @@ namespace isostat
 {
 namespace
 {
+using test::simple_shear;
 using testing::HasSubstr;
 
 constexpr std::uint64_t grains = 400;
 constexpr double p0 = 200e3;
-
-Mat3 simple_shear(double gamma)
-{
-  Mat3 gradient = Mat3::Zero();
-  gradient(0, 1) = gamma;
-  return gradient;
-}
 
 double mean_stress(const Rve &rve) { return -rve.stress().trace() / 3; } // compression positive
 
@@ -87,15 +81,22 @@ bool same(const RveState &a, const RveState &b)
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) == 0;
   };
   const AssemblyState &g = a.grains, &h = b.grains;
-  std::vector<double> drive_a, drive_b;
-  DriveState da = a.drive, db = b.drive;
-  da.for_each([&](const std::string &, double &value) { drive_a.push_back(value); });
-  db.for_each([&](const std::string &, double &value) { drive_b.push_back(value); });
-  return bits(g.grains, h.grains) && g.pairs == h.pairs && bits(g.history, h.history) && bits(drive_a, drive_b) &&
-         g.cell.edges == h.cell.edges && g.cell.deformation == h.cell.deformation &&
-         g.cell.rotation == h.cell.rotation && g.cell.strain_step == h.cell.strain_step &&
-         g.cell.volume_strain == h.cell.volume_strain && g.virial == h.virial && g.time == h.time &&
-         g.time_step == h.time_step && g.step == h.step;
+  const auto drive = [](const RveDrive &state) {
+    std::vector<double> numbers;
+    const auto note = [&](const auto &field) {
+      if constexpr (std::is_same_v<decltype(field), const Vec3 &>)
+        numbers.insert(numbers.end(), field.begin(), field.end());
+      else
+        numbers.push_back(static_cast<double>(field));
+    };
+    for_each_leaf(state, note);
+    return numbers;
+  };
+  return bits(g.grains, h.grains) && g.pairs == h.pairs && bits(g.history, h.history) &&
+         bits(drive(a.drive), drive(b.drive)) && g.cell.edges == h.cell.edges &&
+         g.cell.deformation == h.cell.deformation && g.cell.rotation == h.cell.rotation &&
+         g.cell.strain_step == h.cell.strain_step && g.cell.volume_strain == h.cell.volume_strain &&
+         g.virial == h.virial && g.time == h.time && g.time_step == h.time_step && g.step == h.step;
 }
 
 /// A refused increment: says why, changes nothing, and the element goes on as one that was never asked.
@@ -196,7 +197,7 @@ TEST(RveHardCases, GrainsTenTimesStiffer)
   };
   Rve stiff = element(1e11), normal = element(1e10);
   EXPECT_NEAR_BECAUSE(mean_stress(stiff) / p0, 1, prepared);
-  EXPECT_NEAR_BECAUSE(stiff.assembly().time_step / normal.assembly().time_step, std::sqrt(0.1), 0.05,
+  EXPECT_NEAR_BECAUSE(stiff.assembly().settings.time_step / normal.assembly().settings.time_step, std::sqrt(0.1), 0.05,
                       "the root of the stiffness; the stiffer packing has fewer contacts");
   const double ratio = stiff.stiffness()(5, 5) / normal.stiffness()(5, 5);
   std::printf("ten times stiffer grains: G %.2f times as large\n", ratio);
@@ -356,7 +357,7 @@ TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
 {
   RveSettings settings;
   Rve reference(test::periodic_specimen(grains, 10), settings);
-  settings.motion.time_step = 20 * reference.assembly().time_step;
+  settings.motion.time_step = 20 * reference.assembly().settings.time_step;
   EXPECT_THROW(Rve(test::periodic_specimen(grains, 10), settings), RunFailure);
   Rve rve(rattlers(3e-3), settings);
   const Mat3 squeeze = -2e-3 * Mat3::Identity();
@@ -378,7 +379,7 @@ TEST(RveHardCases, ATimeStepThatBecomesUnstableIsRefused)
 TEST(RveHardCases, AGrainThatSnapsOffIsTaken)
 {
   Snapshot s = rattlers(0.1);
-  const double time_step = Rve(s, {}).assembly().time_step;
+  const double time_step = Rve(s, {}).assembly().settings.time_step;
   s.grains.set_linear_velocity(7, Vec3(0.02 * s.grains.min_radius() / time_step, 0, 0));
   Rve rve(s, {});
   const RveResponse r = rve.advance(simple_shear(1e-5));

@@ -22,8 +22,8 @@ double shared(double value, bool mine)
 template <int dim>
 void run(Drainage drainage)
 {
-  MeshSpec mesh{.soil = {.layers = {{.name = "stiff", .thickness = 6, .permeability = 1e-4, .cells = 3},
-                                    {.name = "soft", .thickness = 4, .permeability = 1e-3, .cells = 3}},
+  MeshSpec mesh{.soil = {.layers = {{.name = "soft", .thickness = 4, .permeability = 1e-3, .cells = 3},
+                                    {.name = "stiff", .thickness = 6, .permeability = 1e-4, .cells = 3}},
                          .water = {}},
                 .width = {4, 3},
                 .cells_across = {2, 2}};
@@ -31,7 +31,7 @@ void run(Drainage drainage)
   Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
   DynamicsSettings settings{.time_step = 5e-4, .drainage = drainage};
   for (int axis = 0; axis < 3; ++axis)
-    settings.base.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, 0.1, 1e-3);
+    settings.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, 0.1, 1e-3);
   Dynamics<dim> run(space, material, settings);
   for (int k = 0; k < 400; ++k)
     run.step();

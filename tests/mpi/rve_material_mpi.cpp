@@ -77,8 +77,7 @@ void run_and_move(const RveMaterialSettings &settings)
 {
   RveMaterial still(specimens(), settings, MPI_COMM_WORLD), moved(specimens(), settings, MPI_COMM_WORLD);
   RveMaterialSettings restless = settings;
-  restless.balance = {1.0, 0.0};
-  restless.balance_interval = 2;
+  restless.balance = {1.0, 0.0, 2};
   RveMaterial balanced(specimens(), restless, MPI_COMM_WORLD);
   for (int k = 0; k < 24; k += 4)
     {
@@ -133,25 +132,25 @@ void start_in_situ(RveMaterialSettings settings, const std::filesystem::path &fo
     test::write_library(settings.library);
   MPI_Barrier(MPI_COMM_WORLD);
   std::vector<SpecimenRequest> requests(n_points);
-  std::vector<Stress> wanted(n_points);
+  std::vector<Stress> target(n_points);
   for (std::size_t i = 0; i < n_points; ++i)
     {
       requests[i].realisation = i % 2;
-      wanted[i] = test::in_situ(20e3 + 10e3 * static_cast<double>(i / 2), 0.6);
+      target[i] = test::in_situ(20e3 + 10e3 * static_cast<double>(i / 2), 0.6);
     }
   RveMaterial prepared(requests, settings, MPI_COMM_WORLD), cached(requests, settings, MPI_COMM_WORLD);
-  prepared.set_initial_stress(wanted);
+  prepared.set_initial_stress(target);
   MPI_Barrier(MPI_COMM_WORLD); // the cache is written
-  cached.set_initial_stress(wanted);
+  cached.set_initial_stress(target);
   const std::uint64_t bytes = common_hash(prepared.pack());
   expect(bytes == common_hash(cached.pack()), "the cache gives other elements");
   expect(list_library(settings.cache).size() == n_points, "the cache lacks elements");
   say(fmt::format("in situ                 {:016x}", bytes));
-  wanted[2] = test::in_situ(50, 0.6);
+  target[2] = test::in_situ(50, 0.6);
   std::string message;
   try
     {
-      cached.set_initial_stress(wanted);
+      cached.set_initial_stress(target);
     }
   catch (const InputError &error)
     {

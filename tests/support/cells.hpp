@@ -20,7 +20,7 @@ inline Mat3 simple_shear(double step)
 /// What the drivers do every 2,000 steps: a packing that stiffens needs a shorter step.
 inline void review_time_step(Assembly &a)
 {
-  a.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), nullptr, a.contacts());
+  a.settings.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), nullptr, a.contacts());
 }
 
 /// So many steps of the same displacement gradient, and the forces after them.

@@ -23,7 +23,7 @@ inline Snapshot prepare_in_cell(const CellRecipe &recipe)
   spec.pressure = recipe.pressure;
   spec.consolidation = recipe.consolidation;
   const double friction = std::tan(recipe.degrees * M_PI / 180);
-  const Snapshot compacted = compact(make_cloud(recipe.grading), recipe.law, friction, spec, nobody);
-  return rebalance(compacted, recipe.law, spec, nobody);
+  const Snapshot compacted = compact(make_cloud(recipe.grading), recipe.law, friction, {spec, nobody});
+  return rebalance(compacted, recipe.law, {spec, nobody});
 }
 } // namespace isostat::test

@@ -43,8 +43,9 @@ inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees
       SpecimenSpec spec;
       spec.domain = domain;
       const isostat::Cloud cloud = make_cloud(small_grading(grains));
-      const Snapshot compacted = compact(cloud, paper_law(), std::tan(preparation_degrees * M_PI / 180), spec, nobody);
-      made[key] = rebalance(compacted, paper_law(), spec, nobody);
+      const Snapshot compacted =
+          compact(cloud, paper_law(), std::tan(preparation_degrees * M_PI / 180), {spec, nobody});
+      made[key] = rebalance(compacted, paper_law(), {spec, nobody});
     }
   return made[key];
 }

@@ -28,8 +28,8 @@ Mat3 gradient_at(int step)
 Outcome sheared(const Snapshot &initial, int threads, int steps, int look_every)
 {
   Assembly a(initial);
-  a.threads = threads;
-  a.time_step = dt;
+  a.settings.threads = threads;
+  a.settings.time_step = dt;
   Outcome out;
   for (int step = 0; step < steps; ++step)
     {
@@ -48,8 +48,8 @@ const Snapshot &long_cell()
 {
   static const Snapshot sheared = [] {
     Assembly a(row_of_periods(periodic_specimen(500, 5), 6));
-    a.threads = 1;
-    a.time_step = dt;
+    a.settings.threads = 1;
+    a.settings.time_step = dt;
     const auto lean = [&] {
       return a.cell()->edges.col(0).dot(a.cell()->edges.col(1)) / a.cell()->edges.col(1).squaredNorm();
     };
@@ -123,7 +123,7 @@ TEST(CellThreads, LookingAtForcesChangesNoBit)
 TEST(CellCheckpoint, GoesOnToTheSameBitsAlsoRightAfterAFlip)
 {
   Assembly a(before_flip(5e-5));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   std::vector<Snapshot> checkpoints;
   std::vector<Mat3> stresses; // of the step that follows
   std::uint64_t flips = 0;
@@ -148,7 +148,7 @@ TEST(CellCheckpoint, GoesOnToTheSameBitsAlsoRightAfterAFlip)
     {
       SCOPED_TRACE(c);
       Assembly b(checkpoints[c]);
-      b.time_step = dt;
+      b.settings.time_step = dt;
       b.compute_forces();
       EXPECT_TRUE(same_bits(b.stress(), stresses[c]));
       while (b.step() < end.step)
@@ -163,7 +163,7 @@ TEST(CellCheckpoint, GoesOnToTheSameBitsAlsoRightAfterAFlip)
 TEST(CellState, RestoredGoesOnToTheSameBitsAlsoAcrossAFlip)
 {
   Assembly a(before_flip(5e-5));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   a.compute_forces();
   const AssemblyState start = a.save();
   const AssemblyState end = after(a, start, 1000);
@@ -183,7 +183,7 @@ TEST(CellState, RestoredAfterOtherFlipsIsTheSame)
 {
   // two ways from one state, each with one flip, but not the same one
   Assembly a(before_flip(5e-5));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   a.compute_forces();
   const AssemblyState start = a.save();
   const auto flipped = [&](const Mat3 &gradient) {
@@ -210,7 +210,7 @@ TEST(CellState, RestoredAfterOtherFlipsIsTheSame)
 TEST(CellState, IsSmall)
 {
   Assembly a(periodic_specimen(500, 5));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   a.compute_forces();
   const AssemblyState state = a.save();
   const double grains = 500, z = 2 * static_cast<double>(state.pairs.size()) / grains,

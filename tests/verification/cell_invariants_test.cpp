@@ -45,7 +45,7 @@ double size_of_momentum(const Packing &grains)
 Assembly at_rest(int steps)
 {
   Assembly a(periodic_specimen(500, 5));
-  a.time_step = 5e-8;
+  a.settings.time_step = 5e-8;
   strain(a, Mat3::Zero(), steps);
   return a;
 }
@@ -74,8 +74,8 @@ TEST(PeriodicPacking, MomentumOfTheFluctuationsIsKeptToRoundOff)
   for (std::size_t i = 0; i < 500; ++i)
     s.grains.set_linear_velocity(i, s.grains.linear_velocity(i) - mean);
   Assembly a(s);
-  a.time_step = 5e-8;
-  a.damping = 0;
+  a.settings.time_step = 5e-8;
+  a.settings.damping = 0;
   Mat3 gradient = 2e-6 * Mat3::Random();
   double worst = 0;
   for (int look = 0; look < 50; ++look)
@@ -101,7 +101,7 @@ TEST(PeriodicPacking, PlaceAndImagesOfGrainsDoNotMatter)
       moved.grains.set_centre(i, start.grains.centre(i) + shift + start.cell->edges * whole);
     }
   Assembly a(start), b(moved);
-  a.time_step = b.time_step = 5e-8;
+  a.settings.time_step = b.settings.time_step = 5e-8;
   a.compute_forces();
   b.compute_forces();
   const ForceMisfit at_once = misfit_of_forces(a.snapshot(), b.snapshot());
@@ -124,7 +124,7 @@ namespace
 Assembly at_rest_without_motion()
 {
   Assembly a = at_rest(1);
-  a.damping = 0.7;
+  a.settings.damping = 0.7;
   strain(a, Mat3::Zero(), 20'000);
   Snapshot s = a.checkpoint();
   for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
@@ -133,7 +133,7 @@ Assembly at_rest_without_motion()
       s.grains.set_angular_velocity(i, Vec3::Zero());
     }
   Assembly b(s);
-  b.time_step = 5e-8;
+  b.settings.time_step = 5e-8;
   b.compute_forces();
   return b;
 }
@@ -142,7 +142,7 @@ Assembly at_rest_without_motion()
 TEST(RigidRotation, ChangesNoBitOfThePacking)
 {
   Assembly held(periodic_specimen(500, 5)), turned(periodic_specimen(500, 5));
-  held.time_step = turned.time_step = 5e-8;
+  held.settings.time_step = turned.settings.time_step = 5e-8;
   Mat3 spin;
   spin << 0, -3e-4, 2e-4, 3e-4, 0, -5e-4, -2e-4, 5e-4, 0;
   strain(held, Mat3::Zero(), 2000);
@@ -210,8 +210,8 @@ TEST(RigidRotation, ATurnedPackingShearedInTheTurnedDirectionGivesTheTurnedStres
   for (const double damping : {0.0, 0.2}) // damping goes component by component: it knows the axes
     {
       Assembly a(start), b(turned_packing(start, q));
-      a.time_step = b.time_step = 5e-8;
-      a.damping = b.damping = damping;
+      a.settings.time_step = b.settings.time_step = 5e-8;
+      a.settings.damping = b.settings.damping = damping;
       const Mat3 gradient = simple_shear(5e-4 / 10'000);
       double worst = 0;
       for (int look = 0; look <= 10; ++look) // a first one before contacts that open and close amplify round-off

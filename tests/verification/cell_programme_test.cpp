@@ -35,12 +35,11 @@ struct Watcher : RunObserver
   std::uint64_t stop_at = 0;
 };
 
-Stage stage_of(StageKind kind, double strain)
+template <class Kind>
+Kind sheared_to(double strain)
 {
-  Stage stage;
-  stage.kind = kind;
-  stage.strain = strain;
-  stage.reversals_after_liquefaction = 1;
+  Kind stage;
+  stage.strain_end = strain;
   return stage;
 }
 
@@ -51,18 +50,16 @@ struct Result
   Snapshot end;
 };
 
-OutputSpec recorded_every(std::uint64_t steps)
+Programme programme(const Stage &stage, std::uint64_t records = 200)
 {
-  OutputSpec output;
-  output.record_steps = steps;
-  return output;
+  return {.record = {.record_steps = records}, .stages = {stage}};
 }
 
 Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 200)
 {
   Result result;
   Assembly assembly(initial);
-  run_programme({}, {}, recorded_every(records), {stage}, assembly, result.state, result.watcher);
+  run_programme(programme(stage, records), assembly, result.state, result.watcher);
   result.end = assembly.checkpoint();
   return result;
 }
@@ -73,7 +70,7 @@ const Snapshot &medium() { return test::periodic_specimen(500, 8); }
 TEST(CellSpecimen, IsAtItsPressureAndInBalance)
 {
   Assembly assembly(medium());
-  assembly.time_step = 1e-9;
+  assembly.settings.time_step = 1e-9;
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   for (int k = 0; k < 3; ++k)
@@ -91,7 +88,7 @@ TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
   recipe.consolidation = "k0";
   const Snapshot specimen = test::prepare_in_cell(recipe);
   Assembly assembly(specimen);
-  assembly.time_step = 1e-9;
+  assembly.settings.time_step = 1e-9;
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   const double k0 = 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1);
@@ -103,7 +100,7 @@ TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
 
 TEST(CellK0, OnlyTheVerticalEdgeMoves)
 {
-  Stage stage = stage_of(StageKind::k0_compress, 0);
+  K0Compress stage;
   stage.pressure = 300e3;
   stage.balance = 2e-3;
   const Result result = run(stage, medium());
@@ -119,7 +116,7 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
 
 TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 {
-  const Result result = run(stage_of(StageKind::undrained_monotonic, 5e-3), test::periodic_specimen(500, 4));
+  const Result result = run(sheared_to<UndrainedMonotonic>(5e-3), test::periodic_specimen(500, 4));
   EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
                        "round-off of some 1e4 steps; the volume is set from its logarithm");
   EXPECT_NEAR_BECAUSE(result.watcher.rows.back().seen.axial, 5e-3, 1e-6,
@@ -130,7 +127,7 @@ TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 
 TEST(CellDrained, LateralStressesStay)
 {
-  const Result result = run(stage_of(StageKind::drained, 3e-3), medium());
+  const Result result = run(sheared_to<Drained>(3e-3), medium());
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max({worst, std::abs(row.stress(0, 0) / 200e3 - 1), std::abs(row.stress(2, 2) / 200e3 - 1)});
@@ -142,7 +139,7 @@ TEST(CellDrained, LateralStressesStay)
 
 TEST(CellConstantP, MeanStressStays)
 {
-  const Result result = run(stage_of(StageKind::constant_p, 3e-3), medium());
+  const Result result = run(sheared_to<ConstantP>(3e-3), medium());
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.seen.p / 200e3 - 1));
@@ -153,15 +150,15 @@ TEST(CellConstantP, MeanStressStays)
 TEST(CellSimpleShear, OnlyGammaMoves)
 {
   const Snapshot &dense = test::periodic_specimen(500, 4);
-  const Result result = run(stage_of(StageKind::undrained_simple_shear, 5e-3), dense);
+  const Result result = run(sheared_to<UndrainedSimpleShear>(5e-3), dense);
   EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
                        "round-off of some 1e4 steps; the volume is set from its logarithm");
   const PeriodicCell &cell = *result.end.cell;
   Mat3 sheared = Mat3::Identity();
-  sheared(0, 1) = result.state.gamma;
+  sheared(0, 1) = result.state.path.gamma;
   EXPECT_BELOW_BECAUSE((cell.rotation * cell.edges - sheared * dense.cell->edges).norm(), 1e-9 * cell.edges.norm(),
                        "round-off of some 1e4 multiplications by the growth of a step");
-  EXPECT_NEAR_BECAUSE(result.state.gamma, 5e-3, 1e-6, "the last step overshoots: 1e-6 are several steps");
+  EXPECT_NEAR_BECAUSE(result.state.path.gamma, 5e-3, 1e-6, "the last step overshoots: 1e-6 are several steps");
   EXPECT_GT(result.watcher.rows.back().seen.tau, 10e3);
   for (const auto &row : result.watcher.rows)
     EXPECT_EQ(row.seen.axial, 0);
@@ -169,15 +166,17 @@ TEST(CellSimpleShear, OnlyGammaMoves)
 
 TEST(CellSimpleShear, TurnsAtItsStressRatio)
 {
-  Stage stage = stage_of(StageKind::undrained_cyclic_simple_shear, 0);
+  UndrainedCyclicSimpleShear stage;
+  stage.reversals_after_liquefaction = 1;
   stage.stress_ratio = 0.12;
   stage.max_cycles = 3;
   const Result result = run(stage, medium(), 20);
-  std::printf("cyclic simple shear: %g reversals, overshoot %.1f Pa, volume within %.1e\n", result.state.reversals,
-              result.state.worst_overshoot, result.watcher.max_change_of_volume());
-  EXPECT_EQ(result.state.reversals, 6);
-  EXPECT_GE(result.state.worst_overshoot, 0);
-  EXPECT_LT(result.state.worst_overshoot, 500);
+  std::printf("cyclic simple shear: %g reversals, overshoot %.1f Pa, volume within %.1e\n",
+              static_cast<double>(result.state.undrained.reversals), result.state.undrained.worst_overshoot,
+              result.watcher.max_change_of_volume());
+  EXPECT_EQ(result.state.undrained.reversals, 6u);
+  EXPECT_GE(result.state.undrained.worst_overshoot, 0);
+  EXPECT_LT(result.state.undrained.worst_overshoot, 500);
   EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
                        "round-off of some 1e4 steps; the volume is set from its logarithm");
   double maximum = 0;
@@ -189,16 +188,16 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
 
 TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)
 {
-  const Stage stage = stage_of(StageKind::undrained_simple_shear, 2e-3);
+  const Stage stage = sheared_to<UndrainedSimpleShear>(2e-3);
   const Result whole = run(stage, medium());
   Assembly first(medium());
   DriveState state;
   Watcher watcher;
   watcher.stop_at = whole.end.step / 2;
-  ASSERT_EQ(run_programme({}, {}, recorded_every(200), {stage}, first, state, watcher), RunOutcome::interrupted);
+  ASSERT_EQ(run_programme(programme(stage), first, state, watcher), RunOutcome::interrupted);
   Assembly second(first.checkpoint());
   watcher.stop_at = 0;
-  ASSERT_EQ(run_programme({}, {}, recorded_every(200), {stage}, second, state, watcher), RunOutcome::finished);
+  ASSERT_EQ(run_programme(programme(stage), second, state, watcher), RunOutcome::finished);
   const Snapshot end = second.checkpoint();
   EXPECT_EQ(end.grains.position, whole.end.grains.position);
   EXPECT_EQ(end.grains.spin, whole.end.grains.spin);

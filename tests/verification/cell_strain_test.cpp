@@ -68,7 +68,7 @@ TEST(SimpleShear, AHundredPercentAtConstantVolumePassWithoutIncident)
 TEST(SimpleShear, OfQuasiStaticSpeedHasSymmetricStress)
 {
   Assembly a(periodic_specimen(500, 5));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   double skew = 0;
   for (int look = 0; look < 50; ++look)
     {
@@ -87,7 +87,7 @@ TEST(Flip, ChangesForcesToRoundOffAndKeepsContactsAndHistories)
 {
   const double step = 2e-5;
   Assembly a(before_flip(step));
-  a.time_step = dt;
+  a.settings.time_step = dt;
   Snapshot last;
   while (a.cell()->flips == 0)
     {
@@ -102,7 +102,7 @@ TEST(Flip, ChangesForcesToRoundOffAndKeepsContactsAndHistories)
                       "a matrix of small integers, up to round-off of a product of three");
   last.cell->edges = (last.cell->edges * combination).eval();
   Assembly b(last);
-  b.time_step = dt;
+  b.settings.time_step = dt;
   b.compute_forces();
   b.deform(simple_shear(step));
   ASSERT_EQ(b.cell()->flips, 0u);
@@ -131,8 +131,8 @@ namespace
 EnergyBalance strained(double time_step, const Mat3 &direction, double strain, double rate)
 {
   Assembly a(periodic_specimen(500, 5));
-  a.time_step = time_step;
-  a.measure_energy = true;
+  a.settings.time_step = time_step;
+  a.settings.measure_energy = true;
   double total = 0, now = 0;
   while (total < strain)
     {

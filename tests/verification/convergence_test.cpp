@@ -89,14 +89,14 @@ Snapshot leapfrog_start(const Snapshot &at_zero, double time_step, double dampin
   Snapshot start = at_zero, resting = at_zero;
   set_velocities(resting.grains, at_zero.grains, -1, at_zero.grains);
   Assembly kick(resting);
-  kick.time_step = time_step;
-  kick.damping = damping;
+  kick.settings.time_step = time_step;
+  kick.settings.damping = damping;
   kick.compute_forces();
   kick.move(kick.box());
   set_velocities(start.grains, at_zero.grains, -0.5, kick.packing()); // v(0) - dt/2 A(0)
 
   Assembly forward(start);
-  forward.time_step = time_step;
+  forward.settings.time_step = time_step;
   forward.compute_forces();
   std::map<std::pair<std::uint32_t, std::uint32_t>, ContactHistory> next;
   for (const Contact &c : forward.snapshot().contacts)
@@ -126,8 +126,8 @@ Assembly run(const Snapshot &at_zero, const Drive &drive, int n_steps)
 {
   const double dt = drive.duration / n_steps;
   Assembly a(leapfrog_start(at_zero, dt, drive.damping));
-  a.time_step = dt;
-  a.damping = drive.damping;
+  a.settings.time_step = dt;
+  a.settings.damping = drive.damping;
   for (int k = 1; k <= n_steps; ++k)
     {
       a.compute_forces();
@@ -189,8 +189,8 @@ TEST(Convergence, NormalOscillationIsOfSecondOrder)
           start.grains.set_linear_velocity(i, Vec3(speed(i, -0.5 * dt), 0, 0));
         }
       Assembly pair(start);
-      pair.time_step = dt;
-      pair.damping = 0;
+      pair.settings.time_step = dt;
+      pair.settings.damping = 0;
       for (int k = 0; k < n_steps; ++k)
         {
           pair.compute_forces();
@@ -335,7 +335,7 @@ PackingSeries sheared_packing(const std::string &title, const Snapshot &s, doubl
   for (int n_steps = 200; n_steps <= 3200; n_steps *= 2)
     runs.push_back(run(s, {box, duration, damping}, n_steps));
   Assembly zero(s);
-  zero.time_step = 1e-8;
+  zero.settings.time_step = 1e-8;
   zero.compute_forces();
   const double way = distance(runs.back().packing(), s.grains);
   const double change = (runs.back().wall_stress() - zero.wall_stress()).norm();

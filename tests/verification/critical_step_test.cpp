@@ -83,8 +83,8 @@ Snapshot lattice()
 double speed_growth(double time_step)
 {
   Assembly a(lattice());
-  a.damping = 0;
-  a.time_step = time_step;
+  a.settings.damping = 0;
+  a.settings.time_step = time_step;
   double maximum = 0;
   try
     {
@@ -121,9 +121,8 @@ TEST(CriticalStep, ProgrammeReportsAnUnstableFixedStep)
 {
   Assembly a(test::specimen(1000, 2.0));
   const Steps steps = steps_of(a);
-  Stage stage;
-  stage.kind = StageKind::undrained_monotonic;
-  stage.strain = 1e-4;
+  UndrainedMonotonic stage;
+  stage.strain_end = 1e-4;
   stage.max_steps = 3000;
   test::Unobserved nobody;
   for (const double factor : {0.9, 1.2})
@@ -132,7 +131,7 @@ TEST(CriticalStep, ProgrammeReportsAnUnstableFixedStep)
       MotionSpec motion;
       motion.time_step = factor * (factor < 1 ? steps.bound : steps.true_step);
       DriveState state;
-      const auto go = [&] { run_programme(motion, {}, {}, {stage}, run, state, nobody); };
+      const auto go = [&] { run_programme({.motion = motion, .stages = {stage}}, run, state, nobody); };
       if (factor < 1)
         EXPECT_NO_THROW(go());
       else

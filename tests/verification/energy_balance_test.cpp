@@ -15,8 +15,8 @@ namespace
 EnergyBalance sheared(double time_step, double strain, double rate)
 {
   Assembly a(test::specimen(500, 10.0));
-  a.time_step = time_step;
-  a.measure_energy = true;
+  a.settings.time_step = time_step;
+  a.settings.measure_energy = true;
   const StrainPath path{a.box()};
   double axial = 0, now = 0;
   const double ramp = 2e-5; // s

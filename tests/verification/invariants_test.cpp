@@ -86,7 +86,7 @@ Snapshot reference_packing(const std::string &name)
 Snapshot at_rest(const std::string &name)
 {
   Assembly assembly(reference_packing(name));
-  assembly.time_step = 5e-8;
+  assembly.settings.time_step = 5e-8;
   assembly.compute_forces();
   return assembly.snapshot();
 }
@@ -104,8 +104,8 @@ TEST(Momentum, OfAnIsolatedClusterIsKeptToRoundOff)
   for (const double drift : {0.0, 0.1})
     {
       Assembly assembly(isolated_cluster(drift));
-      assembly.time_step = 1e-8;
-      assembly.damping = 0;
+      assembly.settings.time_step = 1e-8;
+      assembly.settings.damping = 0;
       const Momentum start = momentum(assembly.packing());
       double linear = 0, angular = 0, linear_size = start.linear_size, angular_size = start.angular_size;
       std::size_t collisions = 0;
@@ -135,8 +135,8 @@ TEST(Momentum, SpinsAndVelocitiesDoExchangeIt)
 {
   // the conservation above is no triviality: spin alone is far from being kept
   Assembly assembly(isolated_cluster(0));
-  assembly.time_step = 1e-8;
-  assembly.damping = 0;
+  assembly.settings.time_step = 1e-8;
+  assembly.settings.damping = 0;
   auto spin = [&] {
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < assembly.packing().n_grains(); ++i)
@@ -198,7 +198,7 @@ TEST_P(PackingAtRest, WallStressIsLoveWeberStress)
 TEST_P(PackingAtRest, TraceOfFabricAndBoundOfRedundancyHoldWhileItYields)
 {
   Assembly assembly(reference_packing(GetParam()));
-  assembly.time_step = 5e-8;
+  assembly.settings.time_step = 5e-8;
   for (int step = 0; step < 500; ++step)
     {
       assembly.compute_forces();

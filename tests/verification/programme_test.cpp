@@ -34,11 +34,18 @@ struct Watcher : RunObserver
   std::uint64_t stop_at = 0;
 };
 
-Stage shear(StageKind kind, double strain)
+template <class Kind>
+Kind sheared_to(double strain)
 {
-  Stage stage;
-  stage.kind = kind;
-  stage.strain = strain;
+  Kind stage;
+  stage.strain_end = strain;
+  return stage;
+}
+
+UndrainedCyclic cycles(std::uint64_t n)
+{
+  UndrainedCyclic stage;
+  stage.max_cycles = n;
   stage.reversals_after_liquefaction = 1;
   return stage;
 }
@@ -54,9 +61,7 @@ Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 
 {
   Result result;
   Assembly assembly(initial);
-  OutputSpec output;
-  output.record_steps = records;
-  run_programme({}, {}, output, {stage}, assembly, result.state, result.watcher);
+  run_programme({.record = {.record_steps = records}, .stages = {stage}}, assembly, result.state, result.watcher);
   result.end = assembly.checkpoint();
   return result;
 }
@@ -73,7 +78,7 @@ TEST(Specimen, IsAtItsPressureAndInBalance)
 
 TEST(Drained, LateralStressesStay)
 {
-  const Result result = run(shear(StageKind::drained, 5e-3), test::specimen(1000, 10));
+  const Result result = run(sheared_to<Drained>(5e-3), test::specimen(1000, 10));
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max({worst, std::abs(row.lateral_x / 200e3 - 1), std::abs(row.lateral_z / 200e3 - 1)});
@@ -86,7 +91,7 @@ TEST(Drained, LateralStressesStay)
 
 TEST(ConstantP, MeanStressStays)
 {
-  const Result result = run(shear(StageKind::constant_p, 5e-3), test::specimen(1000, 10));
+  const Result result = run(sheared_to<ConstantP>(5e-3), test::specimen(1000, 10));
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.p / 200e3 - 1));
@@ -96,25 +101,54 @@ TEST(ConstantP, MeanStressStays)
   EXPECT_GT(result.watcher.rows.back().q, 50e3);
 }
 
+/// Friction alone takes no step; a pressure, a rest and a hold follow on one specimen.
+TEST(ServoStages, SetFrictionReachTheirPressureAndComeToRest)
+{
+  Friction friction;
+  friction.friction = 0.4;
+  Compress compress;
+  compress.pressure = 220e3;
+  Assembly assembly(test::specimen(1000, 10));
+  DriveState state;
+  Watcher watcher;
+  run_programme({.record = {}, .stages = {friction, compress, Rebalance()}}, assembly, state, watcher);
+  assembly.compute_forces();
+  EXPECT_EQ(assembly.law()->friction, 0.4);
+  const Vec3 stress = -assembly.wall_stress();
+  for (int k = 0; k < 3; ++k)
+    EXPECT_CLOSE_BECAUSE(stress[k], 200e3, 3e-3, "rebalance goes back to the specimen's own pressure within 0.2 %");
+  double highest = 0;
+  for (const auto &row : watcher.rows)
+    highest = std::max(highest, row.p);
+  EXPECT_NEAR_BECAUSE(highest, 220e3, 5e3, "compress ends within 1 %, and the servo may overshoot by as much");
+}
+
+TEST(Hold, EndsAtRestWithTheBoxUnchanged)
+{
+  const Snapshot &start = test::specimen(1000, 10);
+  const Result result = run(Hold(), start);
+  EXPECT_EQ(result.end.box.upper, start.box.upper);
+  EXPECT_EQ(result.end.box.lower, start.box.lower);
+  EXPECT_GT(result.end.step, start.step);
+}
+
 TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
 {
-  Stage stage = shear(StageKind::undrained_cyclic, 0);
-  stage.max_cycles = 3;
-  const Result result = run(stage, test::specimen(1000, 10), 20);
+  const Result result = run(cycles(3), test::specimen(1000, 10), 20);
   const double volume = result.watcher.rows.front().volume;
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.volume / volume - 1));
-  std::printf("undrained cyclic: %g reversals, overshoot %.1f Pa, volume within %.1e\n", result.state.reversals,
-              result.state.worst_overshoot, worst);
-  EXPECT_EQ(result.state.reversals, 6);
-  EXPECT_LT(result.state.worst_overshoot, 500);
+  std::printf("undrained cyclic: %g reversals, overshoot %.1f Pa, volume within %.1e\n",
+              static_cast<double>(result.state.undrained.reversals), result.state.undrained.worst_overshoot, worst);
+  EXPECT_EQ(result.state.undrained.reversals, 6u);
+  EXPECT_LT(result.state.undrained.worst_overshoot, 500);
   EXPECT_BELOW_BECAUSE(worst, 1e-12, "round-off of a product of three edges in each of some 1e4 steps");
 }
 
 TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
 {
-  Stage stage = shear(StageKind::undrained_monotonic, 1e-3);
+  const Stage stage = sheared_to<UndrainedMonotonic>(1e-3);
   const Result often = run(stage, test::specimen(500, 10), 10), rarely = run(stage, test::specimen(500, 10), 100000);
   EXPECT_EQ(often.end.grains.position, rarely.end.grains.position);
   EXPECT_EQ(often.end.grains.spin, rarely.end.grains.spin);
@@ -123,8 +157,7 @@ TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
 
 TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
 {
-  Stage stage = shear(StageKind::undrained_cyclic, 0);
-  stage.max_cycles = 1;
+  const Stage stage = cycles(1);
   const Result whole = run(stage, test::specimen(500, 10));
   Snapshot kept = test::specimen(500, 10);
   DriveState state;
@@ -133,7 +166,7 @@ TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
     {
       Assembly assembly(kept);
       watcher.stop_at = stop;
-      const RunOutcome outcome = run_programme({}, {}, {}, {stage}, assembly, state, watcher);
+      const RunOutcome outcome = run_programme({.stages = {stage}}, assembly, state, watcher);
       EXPECT_EQ(outcome, stop ? RunOutcome::interrupted : RunOutcome::finished);
       kept = assembly.checkpoint();
     }
@@ -144,12 +177,24 @@ TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
     EXPECT_EQ(kept.contacts[c].history.shear_force, whole.end.contacts[c].history.shear_force);
 }
 
+TEST(Compaction, OfALawWithoutFrictionHasNone)
+{
+  const Cloud cloud = make_cloud(test::small_grading(100));
+  test::Unobserved nobody;
+  LinearRolling frictionless = test::paper_law();
+  frictionless.friction = 0;
+  const Snapshot with_angle = compact(cloud, frictionless, 0.2, {{}, nobody}),
+                 without = compact(cloud, frictionless, 0, {{}, nobody});
+  EXPECT_EQ(with_angle.grains.position, without.grains.position);
+  EXPECT_NE(with_angle.grains.position, compact(cloud, test::paper_law(), 0.2, {{}, nobody}).grains.position);
+}
+
 TEST(RelativeDensity, IsFoundWithinTheTolerance)
 {
   const Cloud cloud = make_cloud(test::small_grading(400));
   test::Unobserved nobody;
   const double tolerance = 0.01 * 0.273;
-  const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {}, nobody);
+  const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {{}, nobody});
   EXPECT_NEAR_BECAUSE(loose.void_ratio, 0.78, tolerance, "that is what was asked for");
   EXPECT_NEAR_BECAUSE(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12,
                       "round-off of two ways to the same ratio");
@@ -164,7 +209,7 @@ TEST(RelativeDensity, SaysWhenItCannotBeReached)
   for (const double impossible : {0.30, 1.60})
     try
       {
-        find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {}, watcher);
+        find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {{}, watcher});
         FAIL() << "void ratio " << impossible << " was reached";
       }
     catch (const InputError &error)

@@ -29,8 +29,8 @@ class ReferenceRun
 public:
   explicit ReferenceRun(const std::string &packing) : assembly_(start(packing))
   {
-    assembly_.time_step = dt;
-    assembly_.damping = 0.2;
+    assembly_.settings.time_step = dt;
+    assembly_.settings.damping = 0.2;
   }
   void step()
   {

@@ -23,7 +23,7 @@ constexpr double probe = 1e-7;
 void relax(Assembly &assembly, double unbalanced)
 {
   constexpr int interval = 200, most = 400'000;
-  assembly.damping = 0.5;
+  assembly.settings.damping = 0.5;
   assembly.compute_forces();
   for (int k = 1; k <= most; ++k)
     {
@@ -51,7 +51,8 @@ Snapshot stopped(Snapshot snapshot)
 Assembly relaxed(double degrees)
 {
   Assembly assembly(stopped(test::periodic_specimen(500, degrees)));
-  assembly.time_step = 0.8 * critical_step_bound(assembly.law(), assembly.packing(), nullptr, assembly.contacts());
+  assembly.settings.time_step =
+      0.8 * critical_step_bound(assembly.law(), assembly.packing(), nullptr, assembly.contacts());
   relax(assembly, 1e-9);
   return assembly;
 }
@@ -178,7 +179,7 @@ TEST(RveStiffness, ClosedCyclesOfSmallShearLoseNoEnergy)
     for (int k = 3; k < 6; ++k)
       {
         assembly.restore(rest);
-        assembly.damping = damping;
+        assembly.settings.damping = damping;
         const CycleWork work = closed_cycle(assembly, unit_strain(k), 10'000);
         const double in_and_out = c(k, k) * probe * probe * assembly.volume(); // 1/2 G gamma^2 V, twice
         std::printf("damping %.1f, shear %d: lost %.1e of the work exchanged, which is %.4f of G gamma^2 V\n", damping,

@@ -21,8 +21,8 @@ struct Outcome
 Outcome sheared(const Snapshot &initial, int threads, int steps, bool look)
 {
   Assembly a(initial);
-  a.threads = threads;
-  a.time_step = 5e-8;
+  a.settings.threads = threads;
+  a.settings.time_step = 5e-8;
   const StrainPath path{a.box()};
   Outcome out;
   for (int step = 0; step < steps; ++step)
@@ -32,7 +32,8 @@ Outcome sheared(const Snapshot &initial, int threads, int steps, bool look)
         a.contact_stress();
       for (double f : a.wall_forces())
         out.wall_force_sum = 0.999 * out.wall_force_sum + f;
-      const double strain = 5 * (step + 1) * a.time_step; // shear, and compression that keeps grains in contact
+      const double strain =
+          5 * (step + 1) * a.settings.time_step; // shear, and compression that keeps grains in contact
       a.move(path.box(isochoric(strain) - Vec3::Constant(0.4 * strain)));
     }
   out.end = a.checkpoint();

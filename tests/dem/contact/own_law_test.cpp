@@ -77,8 +77,8 @@ TEST(OwnLaw, LoopGivesItsEquationOnEveryInstructionSet)
 TEST(OwnLaw, TwoGrainsBounceBackAsFastAsTheyCame)
 {
   Assembly assembly(two_grains(0.1));
-  assembly.damping = 0;
-  assembly.time_step = safe_step(assembly);
+  assembly.settings.damping = 0;
+  assembly.settings.time_step = safe_step(assembly);
   for (bool parted = false; !parted; assembly.move(assembly.box()))
     {
       assembly.compute_forces();
@@ -96,9 +96,9 @@ TEST(OwnLaw, PackingKeepsItsEnergy)
   Snapshot start =
       import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", "comp", "step0", SoftSpheres(), 2650);
   Assembly assembly(start);
-  assembly.damping = 0;
-  assembly.measure_energy = true;
-  assembly.time_step = safe_step(assembly);
+  assembly.settings.damping = 0;
+  assembly.settings.measure_energy = true;
+  assembly.settings.time_step = safe_step(assembly);
   for (int step = 0; step < 200; ++step)
     {
       assembly.compute_forces();

@@ -46,7 +46,7 @@ Snapshot shuffled_lattice()
       s.grains.set_angular_velocity(i, Vec3(1, i, 5));
     }
   Assembly assembly(s);
-  assembly.time_step = 5e-8;
+  assembly.settings.time_step = 5e-8;
   assembly.compute_forces();
   return assembly.snapshot();
 }
@@ -154,7 +154,7 @@ TEST(SortedAlongCurve, GoesOnTheSameWay)
   Assembly a(s), b(sorted_along_curve(s));
   for (Assembly *assembly : {&a, &b})
     {
-      assembly->time_step = 5e-8;
+      assembly->settings.time_step = 5e-8;
       for (int step = 0; step < 20; ++step)
         {
           assembly->compute_forces();

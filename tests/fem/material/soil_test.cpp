@@ -10,11 +10,11 @@ namespace isostat
 {
 namespace
 {
-/// From the base up: 4 m of gravel, 5 m of sand, 1 m of silt.
+/// From the surface down: 1 m of silt, 5 m of sand, 4 m of gravel.
 SoilProfile three_layers()
 {
   SoilProfile soil;
-  soil.layers = {{"gravel", 4, 2200}, {"sand", 5, 2000}, {"silt", 1, 1800}};
+  soil.layers = {{"silt", 1, 1800}, {"sand", 5, 2000}, {"gravel", 4, 2200}};
   soil.water.gravity = 10;
   return soil;
 }
@@ -23,13 +23,13 @@ TEST(SoilProfile, HeightAndLayers)
 {
   const SoilProfile soil = three_layers();
   EXPECT_EQ(soil.height(), 10);
-  EXPECT_EQ(soil.layer_at(0), 0u);
-  EXPECT_EQ(soil.layer_at(3.999), 0u);
+  EXPECT_EQ(soil.layer_at(0), 2u);
+  EXPECT_EQ(soil.layer_at(3.999), 2u);
   EXPECT_EQ(soil.layer_at(4), 1u); // the upper one on an interface
-  EXPECT_EQ(soil.layer_at(9), 2u);
-  EXPECT_EQ(soil.layer_at(10), 2u);
-  EXPECT_EQ(soil.layer_at(-1), 0u); // outside: the nearest
-  EXPECT_EQ(soil.layer_at(11), 2u);
+  EXPECT_EQ(soil.layer_at(9), 0u);
+  EXPECT_EQ(soil.layer_at(10), 0u);
+  EXPECT_EQ(soil.layer_at(-1), 2u); // outside: the nearest
+  EXPECT_EQ(soil.layer_at(11), 0u);
 }
 
 TEST(SoilProfile, EffectiveStressByHand)

@@ -43,8 +43,8 @@ private:
 DynamicsSettings shaken(double peak = 1)
 {
   DynamicsSettings settings;
-  settings.base.motion[0] = ricker_motion(peak, 3, 0.5, 1e-3);
-  settings.base.motion[1] = ricker_motion(0.5 * peak, 5, 0.4, 1e-3);
+  settings.motion[0] = ricker_motion(peak, 3, 0.5, 1e-3);
+  settings.motion[1] = ricker_motion(0.5 * peak, 5, 0.4, 1e-3);
   return settings;
 }
 
@@ -66,7 +66,7 @@ std::array<double, 4> surface_after(Drainage drainage, unsigned across)
   DynamicsSettings settings = shaken();
   settings.drainage = drainage;
   settings.time_step = 8e-4;
-  settings.base.motion[2] = ricker_motion(0.3, 4, 0.5, 1e-3);
+  settings.motion[2] = ricker_motion(0.3, 4, 0.5, 1e-3);
   settings.surface_traction = [](double t) { return std::array<double, 3>{0, 0, -1e3 * std::min(1.0, t / 0.2)}; };
   Dynamics<dim> run(space, material, settings);
   for (int k = 0; k < 1500; ++k)

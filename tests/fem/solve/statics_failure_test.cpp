@@ -115,8 +115,9 @@ TEST(StaticsFailure, Mistakes)
   free.displacements = {{{Face::surface, 0}, [](double, const Place &) { return 1.0; }}};
   EXPECT_THAT([&] { Statics<1>(space, soil, free); },
               ThrowsMessage<InputError>(HasSubstr("u_x of face surface, which is free")));
-  EXPECT_THAT([&] { Statics<1>(space, soil, {.tolerance = 0}); }, ThrowsMessage<InputError>(HasSubstr("tolerance")));
-  EXPECT_THROW(Statics<1>(space, soil, {.max_iterations = 0}), InputError);
+  EXPECT_THAT([&] { Statics<1>(space, soil, {.newton = {.tolerance = 0}}); },
+              ThrowsMessage<InputError>(HasSubstr("tolerance")));
+  EXPECT_THROW(Statics<1>(space, soil, {.newton = {.max_iterations = 0}}), InputError);
   MeshSpec linear = sheared_column_mesh();
   linear.degree = 1;
   const Discretisation<1> coarse(linear, fixed_base());

@@ -18,7 +18,7 @@ struct Sand
   {
     StaticsSettings settings;
     settings.pore_water = true;
-    settings.tolerance = 1e-6;
+    settings.newton.tolerance = 1e-6;
     settings.tractions = {{Face::surface, [](double t, const Place &) {
                              return Place{20e3 * std::sin(2 * std::numbers::pi * t), 0, -5e3 * t};
                            }}};

@@ -16,7 +16,7 @@ template <int dim>
 MeshSpec block(unsigned degree)
 {
   MeshSpec mesh;
-  mesh.soil.layers = {{.name = "lower", .thickness = 1.3, .cells = 2}, {.name = "upper", .thickness = 0.4, .cells = 1}};
+  mesh.soil.layers = {{.name = "upper", .thickness = 0.4, .cells = 1}, {.name = "lower", .thickness = 1.3, .cells = 2}};
   mesh.width = {1.5, 2.0};
   mesh.cells_across = {3, 2};
   mesh.degree = degree;
@@ -160,7 +160,7 @@ TEST(Statics, NewtonConvergesQuadraticallyTowardsAHyperbola)
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
   SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
   StaticsSettings settings = sheared(0.95e5);
-  settings.tolerance = 1e-12;
+  settings.newton.tolerance = 1e-12;
   Statics<1> statics(space, soil, settings);
   statics.step(1);
   const double exact = 0.95e5 / 5e7 / (1 - 0.95);
@@ -194,9 +194,9 @@ TEST(Statics, KeptTangentGivesTheSameAnswer)
     const Discretisation<1> space(sheared_column_mesh(), fixed_base());
     SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
     StaticsSettings settings = sheared(0.5e5);
-    settings.iterations_per_tangent = iterations_per_tangent;
-    settings.tolerance = 1e-10;
-    settings.max_iterations = 100;
+    settings.newton.iterations_per_tangent = iterations_per_tangent;
+    settings.newton.tolerance = 1e-10;
+    settings.newton.max_iterations = 100;
     Statics<1> statics(space, soil, settings);
     statics.step(1);
     std::printf("tangent kept for %u iterations: %u iterations\n", iterations_per_tangent, statics.effort().iterations);

@@ -15,8 +15,8 @@ namespace
 {
 MeshSpec uneven(unsigned degree)
 {
-  return {.soil = {.layers = {{.name = "low", .thickness = 3, .density = 2100, .cells = 2},
-                              {.name = "high", .thickness = 2, .density = 1800, .cells = 3}},
+  return {.soil = {.layers = {{.name = "high", .thickness = 2, .density = 1800, .cells = 3},
+                              {.name = "low", .thickness = 3, .density = 2100, .cells = 2}},
                    .water = {}},
           .width = {4, 2.5},
           .cells_across = {3, 2},
@@ -102,7 +102,7 @@ TEST(Discretisation, PointsOfAColumnRiseThroughTheLayers)
   for (std::size_t q = 0; q < space.n_points(); ++q)
     {
       EXPECT_EQ(space.point_id[q], q);
-      EXPECT_EQ(space.cell_layer[q / 2], q < 4 ? 0u : 1u);
+      EXPECT_EQ(space.cell_layer[q / 2], q < 4 ? 1u : 0u);
       if (q > 0)
         {
           EXPECT_GT(space.position[q][2], space.position[q - 1][2]);

@@ -43,12 +43,12 @@ std::array<double, 2> response(const Regime &regime)
 {
   SoilProfile soil;
   for (const auto &[thickness, cells] : regime.mesh)
-    soil.layers.push_back({.name = "soil",
-                           .thickness = thickness,
-                           .density = 2000,
-                           .porosity = 0.33,
-                           .permeability = regime.permeability,
-                           .cells = static_cast<unsigned>(cells)});
+    soil.layers.insert(soil.layers.begin(), Layer{.name = "soil",
+                                                  .thickness = thickness,
+                                                  .density = 2000,
+                                                  .porosity = 0.33,
+                                                  .permeability = regime.permeability,
+                                                  .cells = static_cast<unsigned>(cells)});
   const Discretisation<1> space({.soil = soil}, shaken_supports<1>(false));
   Elastic material({.shear_modulus = 0.375e8, .poisson_ratio = 0.2}, space.n_points()); // D = K + 4G/3 = 1e8
   DynamicsSettings settings{.drainage = Drainage::coupled};
@@ -113,7 +113,7 @@ Shaken shake(Drainage drainage, double permeability, double water_modulus, bool 
     }
   material.set_initial_stress(initial);
   DynamicsSettings settings{.time_step = 2e-4, .drainage = drainage, .lagged_compressibility = lagged};
-  settings.base.motion[0] = harmonic_motion(0.5, 2, 3, 1, 1e-3);
+  settings.motion[0] = harmonic_motion(0.5, 2, 3, 1, 1e-3);
   Dynamics<1> run(space, material, settings);
   const long top = space.find_dof({0, 0, 10}, 0);
   Shaken found;

@@ -26,14 +26,14 @@ double transfer_error(const ShearLayer &layer, const Setting &setting)
   const Discretisation<1> space({.soil = soil, .degree = setting.degree}, shaken_supports<1>(setting.compliant));
   Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
   DynamicsSettings settings{.time_step = setting.time_step, .mass_damping = layer.mass_damping};
-  settings.base.compliant = setting.compliant;
-  settings.base.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
+  settings.base.kind = setting.compliant ? BaseKind::compliant : BaseKind::rigid;
+  settings.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
   Dynamics<1> run(space, material, settings);
   const long surface = space.find_dof({0, 0, layer.height}, 0);
   std::vector<double> top, below;
   while (run.time() < setting.duration)
     {
-      const double input = settings.base.motion[0].acceleration(run.time());
+      const double input = settings.motion[0].acceleration(run.time());
       run.step();
       top.push_back(run.acceleration().local_element(surface) + (setting.compliant ? 0 : input));
       below.push_back(input);
@@ -116,8 +116,9 @@ TEST(ShearLayer, AbsorbingBaseReturnsNothing)
   const Discretisation<1> space({.soil = one_layer(layer.height, layer.density, 80)}, shaken_supports<1>(true));
   Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
   DynamicsSettings settings;
-  settings.base = {.compliant = true, .density = layer.density, .shear_velocity = layer.velocity, .motion = {}};
-  settings.base.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
+  settings.base = {
+      .kind = BaseKind::compliant, .density = layer.density, .shear_velocity = layer.velocity, .p_velocity = {}};
+  settings.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
   Dynamics<1> run(space, material, settings);
   const long surface = space.find_dof({0, 0, layer.height}, 0);
   const double travel = layer.height / layer.velocity;
@@ -126,7 +127,7 @@ TEST(ShearLayer, AbsorbingBaseReturnsNothing)
     {
       run.step();
       const double found = run.velocity().local_element(surface), t = run.time() - run.time_step() / 2;
-      const double outcrop = settings.base.motion[0].velocity(t - travel); // surface = outcrop, delayed
+      const double outcrop = settings.motion[0].velocity(t - travel); // surface = outcrop, delayed
       peak = std::max(peak, std::abs(outcrop));
       worst = std::max(worst, std::abs(found - outcrop));
       if (t > 1.0 + 2.5 * travel) // the pulse has gone down through the base

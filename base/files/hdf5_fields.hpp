@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/fields.hpp"
+#include "base/files/hdf5.hpp"
+#include "base/types.hpp"
+
+#include <optional>
+#include <type_traits>
+
+namespace isostat::hdf5
+{
+namespace detail
+{
+inline constexpr const char *axis_names[] = {"_x", "_y", "_z"};
+} // namespace detail
+
+/// Stores a field in a group under its name: numbers as attributes of their own type (truth values and enumerations as
+/// whole numbers), vectors as three, a struct that lists its fields (for_each) as a group. An optional one is left out
+/// when it is empty.
+/// tested: tests/dem/io/checkpoint_test.cpp
+template <class T>
+void write_field(Group &group, const std::string &name, const T &value)
+{
+  if constexpr (Listed<const T>)
+    {
+      Group below = group.create_group(name);
+      T::for_each(value, [&](const char *field, const auto &x) { write_field(below, field, x); });
+    }
+  else if constexpr (std::is_same_v<T, double>)
+    group.set_attribute(name, value);
+  else if constexpr (std::is_same_v<T, Vec3>)
+    for (int axis = 0; axis < 3; ++axis)
+      group.set_attribute(name + detail::axis_names[axis], value[axis]);
+  else
+    group.set_attribute(name, static_cast<std::uint64_t>(value));
+}
+template <class T>
+void write_field(Group &group, const std::string &name, const std::optional<T> &value)
+{
+  if (value)
+    write_field(group, name, *value);
+}
+
+/// The way back.  @throws InputError naming the field that is missing or of another type
+template <class T>
+void read_field(const Group &group, const std::string &name, T &value)
+{
+  if constexpr (Listed<T>)
+    {
+      const Group below = group.group(name);
+      T::for_each(value, [&](const char *field, auto &x) { read_field(below, field, x); });
+    }
+  else if constexpr (std::is_same_v<T, double>)
+    value = group.attribute<double>(name);
+  else if constexpr (std::is_same_v<T, Vec3>)
+    for (int axis = 0; axis < 3; ++axis)
+      value[axis] = group.attribute<double>(name + detail::axis_names[axis]);
+  else
+    value = static_cast<T>(group.attribute<std::uint64_t>(name));
+}
+template <class T>
+void read_field(const Group &group, const std::string &name, std::optional<T> &value)
+{
+  value.reset();
+  if (group.has(name) || group.has_attribute(name))
+    read_field(group, name, value.emplace());
+}
+} // namespace isostat::hdf5

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the sources of base/files/hdf5.hpp share; nobody else includes it.
+#pragma once
+#include "base/files/hdf5.hpp"
+
+#include <hdf5.h>
+#include <utility>
+
+namespace isostat::hdf5
+{
+/// An open file. What is written goes to a file aside until File::commit().
+/// tested: tests/base/files/hdf5_test.cpp
+struct FileState
+{
+  std::filesystem::path path, aside; ///< aside: where the bytes go until commit(); empty when reading
+  hid_t id = -1;
+
+  bool writing() const { return !aside.empty(); }
+  void close();
+  /// Room on the disk for all that HDF5 has yet to write: it keeps a file whose last bytes it could not write, and
+  /// crashes on it when it is shut down (MPI does that at its end). @return errno, 0 if there is
+  int reserve() const;
+  /// Closes the file and removes what was not committed.
+  void abandon();
+  ~FileState() { abandon(); }
+
+private:
+  int descriptor() const;
+};
+
+/// What went wrong, with the reason of the library.
+/// @throws RunFailure  the file is being written    @throws InputError  it is being read
+[[noreturn]] void fail(const FileState &file, const std::string &item, const std::string &what);
+
+/// Owner of one HDF5 identifier.
+class Handle
+{
+public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle &&other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle &operator=(Handle &&) = delete;
+  ~Handle()
+  {
+    if (id_ >= 0)
+      close_(id_);
+  }
+  operator hid_t() const { return id_; }
+
+private:
+  hid_t id_;
+  Close close_;
+};
+
+/// @throws as fail() if `id` is negative
+inline Handle checked(hid_t id, Handle::Close close, const FileState &file, const std::string &item, const char *what)
+{
+  if (id < 0)
+    fail(file, item, what);
+  return {id, close};
+}
+} // namespace isostat::hdf5

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/in_situ/specimen_request.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+namespace isostat
+{
+namespace
+{
+constexpr double density_reach = 0.05;
+constexpr std::size_t lines_in_message = 40;
+} // namespace
+
+const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
+                                  double vertical, double horizontal)
+{
+  const bool any = !request.relative_density;
+  const auto offset = [&](const LibraryEntry &e) {
+    return any ? 0.0 : std::abs(e.number("relative_density") - *request.relative_density);
+  };
+  std::vector<const LibraryEntry *> fits;
+  std::vector<double> seeds;
+  for (const LibraryEntry &e : entries)
+    if (offset(e) <= density_reach && e.number("vertical_stress_Pa") > 0 && e.number("K0") > 0 && e.number("seed") >= 0)
+      {
+        fits.push_back(&e);
+        seeds.push_back(e.number("seed"));
+      }
+  std::sort(seeds.begin(), seeds.end());
+  seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+  if (request.realisation >= seeds.size())
+    throw InputError(fmt::format(
+        "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append. It has:\n{}",
+        seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, *request.relative_density),
+        request.realisation + 1, library_table(entries, lines_in_message)));
+  const auto distance = [&](const LibraryEntry *e) {
+    const double v = e->number("vertical_stress_Pa"), h = v * e->number("K0");
+    return 100 * std::round(100 * offset(*e)) + std::abs(std::log(v / vertical)) + std::abs(std::log(h / horizontal));
+  };
+  std::erase_if(fits, [&](const LibraryEntry *e) { return e->number("seed") != seeds[request.realisation]; });
+  return **std::min_element(fits.begin(), fits.end(), [&](auto *a, auto *b) { return distance(a) < distance(b); });
+}
+
+NearestSpecimens::NearestSpecimens(std::filesystem::path library)
+    : library_(std::move(library)), entries_(list_library(library_))
+{}
+
+std::shared_ptr<const StartingSpecimen> NearestSpecimens::find(const SpecimenRequest &request, double vertical,
+                                                               double horizontal)
+{
+  const std::string &name = nearest_entry(entries_, request, vertical, horizontal).name;
+  auto &specimen = read_[name];
+  if (!specimen)
+    specimen = std::make_shared<StartingSpecimen>(StartingSpecimen{read_library_entry(library_, name).state, name});
+  return specimen;
+}
+} // namespace isostat

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/io/specimen_library.hpp"
+
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace isostat
+{
+/// Which specimens of a library a point is made of.
+struct SpecimenRequest
+{
+  /// D_r of the soil [-]; left out: the library holds one density only. The library's nearest one is taken.
+  std::optional<double> relative_density;
+  std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
+
+  bool operator==(const SpecimenRequest &) const = default;
+};
+
+/// The library entry of that density and seed with the nearest stress: smallest |ln(sigma_v/vertical)| +
+/// |ln(sigma_h/horizontal)|, the first by name among equals.
+/// @param vertical, horizontal  target effective stress, compression positive, Pa
+/// @throws InputError  no density within 0.05, fewer seeds, entries that do not say seed or stress: shows the library
+/// tested: tests/coupling/in_situ/specimen_request_test.cpp
+const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
+                                  double vertical, double horizontal);
+
+/// The packing from which a specimen is brought to its stress in situ.
+struct StartingSpecimen
+{
+  Snapshot state;
+  std::string source; ///< entry of the library it came from; empty: it came from none
+};
+
+/// Specimens of a library, each read once.
+/// tested: tests/coupling/in_situ/specimen_request_test.cpp
+class NearestSpecimens
+{
+public:
+  /// @throws InputError  not a specimen library
+  explicit NearestSpecimens(std::filesystem::path library);
+
+  /// That of nearest_entry().
+  std::shared_ptr<const StartingSpecimen> find(const SpecimenRequest &request, double vertical, double horizontal);
+
+private:
+  std::filesystem::path library_;
+  std::vector<LibraryEntry> entries_;
+  std::map<std::string, std::shared_ptr<const StartingSpecimen>> read_; ///< by name of the entry
+};
+} // namespace isostat

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/scene/packings.hpp"
+
+#include "base/scene/document.hpp"
+#include "base/scene/ranges.hpp"
+
+namespace isostat
+{
+namespace
+{
+using namespace ranges;
+constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
+
+// clang-format off
+constexpr Key packings[] = {
+  {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
+   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file. Needed by soil of "
+           "grains.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.library; }},
+  {.path = "cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
+   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
+           "directory. Left out: none are kept.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.cache; }},
+  {.path = "in_situ", .kind = Kind::choice, .value = "all-stresses", .choices = in_situ_choices,
+   .text = "Packings start at the vertical and horizontal stress that the soil has in situ (in a column its weight and "
+           "`layer.k0` say it), or, without lateral strain, at the horizontal stress that they give themselves.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.in_situ.path; }},
+  {.path = "realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
+   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.realisations; }},
+  {.path = "quasi_static_tolerance", .value = "0.01", .range = {0, 1, true, true},
+   .text = "Error that inertia of grains may add, as in element tests.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.quasi_static_tolerance; }},
+  {.path = "rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
+   .range = positive, .text = "Smallest strain rate inside a packing.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.rate_floor; }},
+  {.path = "rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
+   .range = positive, .text = "Largest strain rate inside a packing.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.rate_ceiling; }},
+  {.path = "min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
+   .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in one or "
+           "two, before the grains find their places.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.min_steps; }},
+  {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
+   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.damping; }},
+};
+
+constexpr Key specimens[] = {
+  {.path = "relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2},
+   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.relative_density; }},
+  {.path = "realisation", .kind = Kind::integer, .value = "0",
+   .text = "Which seed of the library, counted from 0; with several realisations the first of them.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.realisation; }},
+};
+// clang-format on
+} // namespace
+
+SceneFragment<RveMaterialSettings> packing_keys() { return {packings}; }
+SceneFragment<SpecimenRequest> specimen_keys() { return {specimens}; }
+
+void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings)
+{
+  if (packings.library.empty())
+    document.refuse(section + ".library", "is missing; soil of grains is made of its specimens. Give library = "
+                                          "\"library.h5\", made by specimen_library.");
+  if (packings.motion.rate_floor > packings.motion.rate_ceiling)
+    document.refuse(section + ".rate_floor", "must not exceed rate_ceiling. Correct one of them.");
+}
+} // namespace isostat

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one table of how packings run, for every kind of scene that has them.
+#pragma once
+#include "base/scene/fragment.hpp"
+#include "coupling/batch/rve_material_settings.hpp"
+#include "coupling/in_situ/specimen_request.hpp"
+
+namespace isostat
+{
+class SceneDocument;
+
+/// What users choose of how packings run: library, cache, in_situ, realisations, quasi_static_tolerance, rate_floor,
+/// rate_ceiling, min_steps, damping. Drainage and threads are set by the program.
+SceneFragment<RveMaterialSettings> packing_keys();
+/// Which specimens a soil is made of: relative_density, realisation.
+SceneFragment<SpecimenRequest> specimen_keys();
+
+/// What binds several of these keys.
+/// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
+/// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/biaxial_test.py
+void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);
+} // namespace isostat

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For files of dem/assembly alone, which are compiled with OpenMP.
+// tested: tests/verification/threads_test.cpp
+#pragma once
+#include "dem/assembly/contact_forces.hpp"
+
+#include <chrono>
+#include <omp.h>
+#include <utility>
+
+namespace isostat
+{
+/// Calls work(chunk) for all chunks: in order on one thread, in shares side by side on several.
+template <typename Work>
+void ContactForces::for_chunks(int n_threads, const Work &work)
+{
+  const Partition &partition = list_.partition();
+  if (n_threads == 1)
+    {
+      for (std::size_t chunk = 0; chunk < partition.n_chunks; ++chunk)
+        work(chunk);
+      return;
+    }
+  shares_.update(n_threads, partition.n_chunks, [&](std::size_t chunk) { // a block of pairs costs as much as 16 grains
+    return 16.0 * list_.first_block(chunk) + partition.begin(chunk);
+  });
+#pragma omp parallel num_threads(n_threads)
+  {
+    const int thread = omp_get_thread_num();
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t chunk = shares_.begin(thread); chunk < shares_.begin(thread + 1); ++chunk)
+      work(chunk);
+    shares_.add_time(thread, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+}
+
+template <typename Before>
+void ContactForces::begin_step(const Input &in, const Before &before)
+{
+  resize(in);
+  const int n = n_threads(in.settings);
+  for_chunks(n, [&](std::size_t chunk) {
+    before(chunk);
+    if (n > 1)
+      evaluate_pairs(chunk, in);
+  });
+  pending_ = n > 1 ? Pending::ghosts : Pending::pairs;
+}
+
+template <typename Move>
+void ContactForces::finish_step(const Input &in, const Move &move)
+{
+  const int n = n_threads(in.settings);
+  if (pending_ == Pending::pairs && n > 1) // threads were added since the step began
+    evaluate(in);
+  const Pending pending = std::exchange(pending_, Pending::nothing);
+  for_chunks(n, [&](std::size_t chunk) {
+    // On one thread the chunks come in order. Pairs belong to their first grain, the lower one: once its chunk is
+    // done, no later pair reads or pushes it, and all its ghosts are filled.
+    if (pending == Pending::pairs)
+      evaluate_pairs(chunk, in);
+    if (pending != Pending::nothing)
+      add_ghosts(chunk);
+    move(chunk);
+  });
+}
+} // namespace isostat

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/scene/fragment.hpp"
+#include "dem/assembly/assembly.hpp"
+#include "dem/drive/drive_state.hpp"
+#include "dem/drive/motion_spec.hpp"
+#include "dem/drive/observation.hpp"
+
+namespace isostat
+{
+/// The pressure that a specimen is prepared at, and how fast the servo may go there.
+struct ServoSpec
+{
+  double pressure = 200e3;     ///< p0'; consolidated without lateral strain: the vertical effective stress, Pa
+  double compaction_rate = 30; ///< strain-rate ceiling of the servo while the cloud is compacted, 1/s
+
+  bool operator==(const ServoSpec &) const = default;
+};
+
+/// What a stage works with. Its own settings are in the stage, what it remembers is in `state`.
+struct StageContext
+{
+  const MotionSpec &motion;
+  const ServoSpec &servo;
+  Assembly &assembly;
+  DriveState &state;
+};
+
+/// One stage of a programme, as the run loop (dem/drive/programme.hpp) sees it. A kind of stage is a class of its own
+/// in a file of its own: its settings, its keys in a scene, and what it does when it is asked. The kinds are listed in
+/// dem/drive/stages/stages.hpp.
+///
+///     begin -> { begin_shear (first step) -> judge -> next_box or next_gradient }  each step, until the verdict is finished
+///
+/// The defaults are those of a specimen that is left alone. Nothing here may change the trajectory but through the box
+/// or gradient that is returned, the state, and begin().
+class StageBehaviour
+{
+public:
+  virtual ~StageBehaviour() = default;
+  bool operator==(const StageBehaviour &) const = default;
+
+  virtual const char *kind() const = 0;             ///< its word in a scene: "drained"
+  virtual bool needs_cell() const { return false; } ///< cannot be done between rigid walls
+  virtual bool takes_steps() const { return true; } ///< false: done with begin()
+  /// It shears: strains, p0' and liquefaction count from the first such stage, and snapshots are taken.
+  virtual bool shears() const { return false; }
+
+  virtual void begin(const StageContext &) const {}
+  /// At the first look of a stage that shears.    @param stress  Pa, tension positive
+  virtual void begin_shear(const StageContext &, const Mat3 & /*stress*/) const {}
+  virtual Verdict judge(const StageContext &, const Observation &) const = 0;
+
+  /// Walls after this step.
+  virtual RigidBox next_box(const StageContext &c, const Observation &) const { return c.assembly.box(); }
+  /// Displacement gradient of this step of a periodic cell, L dt, tension positive [-].
+  virtual Mat3 next_gradient(const StageContext &, const Observation &) const { return Mat3::Zero(); }
+
+  /// The stress that it drives (Pa), and the strain since the start of shearing [-]: what rows are recorded by.
+  virtual double load(const Observation &seen) const { return seen.q; }
+  virtual double strain(const Observation &seen) const { return seen.axial; }
+
+  /// How much of it is done, 0..1; nothing if that cannot be told.
+  virtual std::optional<double> fraction_done(const DriveState &) const { return std::nullopt; }
+};
+
+/// A stage that takes steps, and may be limited to so many.
+class SteppedStage : public StageBehaviour
+{
+public:
+  std::uint64_t max_steps = 0; ///< 0: no limit
+
+  bool operator==(const SteppedStage &) const = default;
+  Verdict judge(const StageContext &c, const Observation &seen) const final
+  {
+    Verdict verdict = reached(c, seen);
+    if (max_steps > 0 && c.state.place.steps + 1 >= max_steps)
+      verdict.finished = true;
+    return verdict;
+  }
+
+protected:
+  /// Whether the stage has come to its end by itself.
+  virtual Verdict reached(const StageContext &, const Observation &) const = 0;
+  static Key max_steps_key();
+};
+
+/// Access to a setting of a kind, or of a family of kinds, for its scene key: `.field = InStage<&Drained::strain>{}`.
+template <auto setting>
+struct InStage;
+template <class Part, class T, T Part::*setting>
+/// tested: tests/verification/programme_test.cpp
+struct InStage<setting>
+{
+  Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }
+};
+
+/// A box of these edges about the centre of the one that the stage began with.
+RigidBox about_centre(const DriveState &state, const Vec3 &edges);
+} // namespace isostat

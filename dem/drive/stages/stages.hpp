@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kinds of stage there are. A new one is a file in this folder and its line in `Stage`.
+#pragma once
+#include "dem/drive/stages/compress.hpp"
+#include "dem/drive/stages/constant_p.hpp"
+#include "dem/drive/stages/drained.hpp"
+#include "dem/drive/stages/friction.hpp"
+#include "dem/drive/stages/hold.hpp"
+#include "dem/drive/stages/k0_compress.hpp"
+#include "dem/drive/stages/rebalance.hpp"
+#include "dem/drive/stages/undrained_cyclic.hpp"
+#include "dem/drive/stages/undrained_cyclic_simple_shear.hpp"
+#include "dem/drive/stages/undrained_monotonic.hpp"
+#include "dem/drive/stages/undrained_simple_shear.hpp"
+
+#include <variant>
+
+namespace isostat
+{
+/// One stage of a programme, in the order of the words in messages and manual.
+using Stage = std::variant<Compress, Friction, Rebalance, UndrainedMonotonic, UndrainedCyclic, Drained, ConstantP, Hold,
+                           K0Compress, UndrainedSimpleShear, UndrainedCyclicSimpleShear>;
+
+StageBehaviour &behaviour(Stage &stage);
+const StageBehaviour &behaviour(const Stage &stage);
+
+/// A stage as one of a family (ShearStage, CyclicConstantVolume ...), null if it is none.
+template <class Family>
+const Family *as(const Stage &stage)
+{
+  return dynamic_cast<const Family *>(&behaviour(stage));
+}
+template <class Family>
+Family *as(Stage &stage)
+{
+  return dynamic_cast<Family *>(&behaviour(stage));
+}
+
+/// Words of the kinds in a scene, in the order of `Stage`.
+std::span<const char *const> stage_kind_names();
+/// Keys of all kinds below [[stage]] but the kind itself.   tested: tests/dem/scene/scene_test.cpp
+SceneFragment<StageBehaviour> stage_keys();
+} // namespace isostat

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything there is to know of each parameter of Iwan: name, unit, range, meaning.
+#include "fem/material/iwan_scene.hpp"
+
+#include "base/scene/document.hpp"
+#include "base/scene/ranges.hpp"
+
+namespace isostat
+{
+namespace
+{
+using namespace ranges;
+
+// clang-format off
+constexpr Key keys[] = {
+  {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "100 kPa", .range = positive,
+   .text = "Mean effective stress p_r at which the stiffness is given.",
+   .field = [](IwanParameters &p) -> Field { return &p.reference_pressure; }},
+  {.path = "exponent", .value = "0.5", .range = {0, 1},
+   .text = "n of the small-strain stiffness G (p'/p_r)^n.",
+   .field = [](IwanParameters &p) -> Field { return &p.exponent; }},
+  {.path = "strength_ratio", .value = "0.55", .range = positive,
+   .text = "M: shear strength over p', shear stress as sqrt(J2), which in simple shear is tau.",
+   .field = [](IwanParameters &p) -> Field { return &p.strength_ratio; }},
+  {.path = "phase_transformation_ratio", .value = "0.4", .range = positive,
+   .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`.",
+   .field = [](IwanParameters &p) -> Field { return &p.phase_transformation_ratio; }},
+  {.path = "contraction", .value = "0.5", .range = not_negative,
+   .text = "Rate of contraction per plastic shear strain; 0 here and for `dilation`: p' feels no shear.",
+   .field = [](IwanParameters &p) -> Field { return &p.contraction; }},
+  {.path = "dilation", .value = "0.3", .range = {0, 1}, .reason = "because plastic work would be negative above",
+   .text = "Rate of dilation per plastic shear strain.",
+   .field = [](IwanParameters &p) -> Field { return &p.dilation; }},
+  {.path = "fabric_limit", .value = "8", .range = not_negative,
+   .text = "After much dilation the soil contracts 1 + this times as fast.",
+   .field = [](IwanParameters &p) -> Field { return &p.fabric_limit; }},
+  {.path = "fabric_rate", .value = "1000", .range = not_negative,
+   .text = "How soon that limit is reached, per volumetric strain of dilation.",
+   .field = [](IwanParameters &p) -> Field { return &p.fabric_rate; }},
+  {.path = "critical_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .value = "1000 kPa", .range = positive, .text = "Mean effective stress at which dilation ends.",
+   .field = [](IwanParameters &p) -> Field { return &p.critical_pressure; }},
+  {.path = "elements", .kind = Kind::integer, .value = "12", .range = {4, 32},
+   .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
+   .field = [](IwanParameters &p) -> Field { return &p.elements; }},
+
+  // not in scenes
+  {.path = "shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
+   .field = [](IwanParameters &p) -> Field { return &p.shear_modulus; }},
+  {.path = "poisson_ratio", .range = {-1, 0.5, true, true}, .field = [](IwanParameters &p) -> Field { return &p.poisson_ratio; }},
+  {.path = "residual_ratio", .range = {0, 1, false, true}, .field = [](IwanParameters &p) -> Field { return &p.residual_ratio; }},
+  {.path = "min_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
+   .reason = "because moduli are divided by it", .field = [](IwanParameters &p) -> Field { return &p.min_pressure; }},
+  {.path = "loosening_limit", .range = not_negative, .field = [](IwanParameters &p) -> Field { return &p.loosening_limit; }},
+  {.path = "substep", .range = {1e-6, 1e-3}, .field = [](IwanParameters &p) -> Field { return &p.substep; }},
+};
+// clang-format on
+constexpr std::size_t n_in_scenes = 10;
+} // namespace
+
+SceneFragment<IwanParameters> iwan_keys() { return {std::span(keys).first(n_in_scenes)}; }
+SceneFragment<IwanParameters> all_iwan_keys() { return {keys}; }
+
+void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand)
+{
+  if (sand.phase_transformation_ratio > sand.strength_ratio)
+    document.refuse(prefix + ".phase_transformation_ratio",
+                    "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
+}
+} // namespace isostat

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "base/scene/fragment.hpp"
+#include "fem/material/iwan.hpp"
+
+namespace isostat
+{
+class SceneDocument;
+
+/// The keys of a sand that a scene has; its small-strain stiffness is that of its layer.
+SceneFragment<IwanParameters> iwan_keys();
+/// Those and all other parameters: what bytes and checks are made of.
+SceneFragment<IwanParameters> all_iwan_keys();
+
+/// @param prefix  where the keys of the sand are, "layer.0"   @throws InputError  phase transformation above the strength
+/// tested: tests/apps/deposit/scene_error_test.cpp
+void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand);
+} // namespace isostat

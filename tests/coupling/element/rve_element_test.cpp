@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupling/element/rve_element.hpp"
+
+#include "tests/coupling/rve_column.hpp"
+
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+RveElement element(bool undrained, unsigned halvings = 6)
+{
+  return {Rve(test::soft_specimen(4), {}), {{}, undrained, halvings}};
+}
+
+Mat3 shear(double size)
+{
+  Mat3 h = Mat3::Zero();
+  h(0, 1) = size;
+  return h;
+}
+} // namespace
+
+TEST(RveElement, EachTrialStartsFromTheCommittedState)
+{
+  RveElement tried = element(true), straight = element(true);
+  for (int k = 0; k < 60; ++k) // beyond the 500 steps after which the way back is shortened
+    {
+      const Mat3 h = shear(2e-5 * std::sin(0.9 * k));
+      tried.trial(shear(1e-4));
+      EXPECT_EQ(tried.trial(h).stress, straight.trial(h).stress) << k;
+      tried.commit(), straight.commit();
+    }
+  EXPECT_GT(straight.rve().assembly().step(), 500u);
+  EXPECT_EQ(tried.pack(), straight.pack());
+}
+
+TEST(RveElement, RollbackLeavesNoTrace)
+{
+  RveElement tried = element(true), straight = element(true);
+  tried.trial(shear(1e-4));
+  EXPECT_NE(tried.rve().stress(), straight.rve().stress());
+  tried.rollback();
+  EXPECT_EQ(tried.rve().stress(), straight.rve().stress());
+  tried.commit(); // nothing to commit
+  EXPECT_EQ(tried.pack(), straight.pack());
+}
+
+TEST(RveElement, ItsCommittedStateIsMeasuredDuringATrial)
+{
+  RveElement tried = element(true);
+  const Mat3 committed = tried.rve().stress();
+  const Mat3 stress = tried.trial(shear(1e-4)).stress;
+  EXPECT_EQ(tried.at_committed([](const Rve &rve) { return rve.stress(); }), committed);
+  EXPECT_EQ(tried.rve().stress(), stress);
+}
+
+TEST(RveElement, RejectedIncrementsAreTakenInParts)
+{
+  RveElement tried = element(false);
+  Rve alone(test::soft_specimen(4), {});
+  const Mat3 large = shear(0.03); // beyond what an element takes at once
+  const Mat3 stress = tried.trial(large).stress;
+  for (int k = 0; k < 4; ++k)
+    alone.advance(Mat3(large / 4)); // simple shear: powers of H vanish
+  EXPECT_EQ(stress, alone.stress());
+  tried.trial(shear(1e-5));
+  EXPECT_EQ(tried.trial(large).stress, stress);
+}
+
+TEST(RveElement, SaysWhatItCannotTake)
+{
+  RveElement tried = element(true, 1);
+  const ElementTrial trial = tried.trial(shear(0.9));
+  EXPECT_FALSE(trial.accepted);
+  EXPECT_THAT(trial.reason, testing::StartsWith("an increment of displacement gradient of 0.9 cannot be taken, in 2 "));
+  EXPECT_FALSE(tried.trial(shear(std::nan(""))).accepted);
+  EXPECT_TRUE(tried.trial(shear(1e-5)).accepted);
+}
+} // namespace isostat

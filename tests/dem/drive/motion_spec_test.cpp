@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/drive/motion_spec.hpp"
+
+#include <gtest/gtest.h>
+#include <map>
+
+namespace isostat
+{
+namespace
+{
+TEST(MotionSpec, EveryFieldHasItsKey)
+{
+  MotionSpec motion;
+  std::map<std::string, const void *> listed, keyed;
+  MotionSpec::for_each(motion, [&](const char *name, auto &field) { listed[name] = &field; });
+  for (const Key &key : motion_keys().keys)
+    std::visit(
+        [&](auto place) {
+          if constexpr (std::is_pointer_v<decltype(place)>)
+            keyed[key.path] = place;
+        },
+        key.field(&motion, nullptr));
+  EXPECT_EQ(listed, keyed);
+}
+
+TEST(MotionSpec, RecipeTellsEveryFieldApart)
+{
+  const MotionSpec usual;
+  EXPECT_EQ(recipe_text(usual), "0.20000000000000001 no no 0.01 0.20000000000000001 2 0.80000000000000004 no");
+  for (int changed = 0; changed < 8; ++changed)
+    {
+      MotionSpec motion;
+      int k = 0;
+      MotionSpec::for_each(motion, [&](const char *, auto &field) {
+        if (k++ == changed)
+          field = 0.123;
+      });
+      EXPECT_NE(recipe_text(motion), recipe_text(usual)) << changed;
+    }
+}
+} // namespace
+} // namespace isostat
