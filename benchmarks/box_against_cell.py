@@ -13,12 +13,12 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "apps"))
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-from plots_common import STYLE, read_history  # noqa: E402
+from figures.common import STYLE, read_history  # noqa: E402
 
 STRAINS = (1e-4, 1e-3, 5e-3, 1e-2)
 COLOURS = ("#1a1a1a", "#0072b2", "#d55e00", "#009e73", "#e69f00")

@@ -14,7 +14,7 @@ build/release/bin/element_test apps/scenes/quick_cyclic_liquefies.toml --output 
 # The application draws its own figures; draw them here if it could not.
 for figure in fig_stress_path fig_redundancy fig_contact_fractions fig_fabric; do
   if [[ ! -s "$results/figures/$figure.png" ]]; then
-    /usr/bin/python3 scripts/plots.py "$results"
+    PYTHONPATH=apps /usr/bin/python3 -m figures element_test "$results"
     break
   fi
 done

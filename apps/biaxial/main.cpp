@@ -32,8 +32,8 @@ void run_scene(const SceneOptions &options)
   const std::string times =
       fmt::format("  time                {}: packings {}, their tangents {}\n", duration_text(summary.wall_seconds),
                   duration_text(summary.material_seconds), duration_text(summary.tangent_seconds));
-  leave_summary(request.folder, to_json(summary, request.scene), to_text(summary, request.scene), times,
-                "plots_biaxial.py", options.no_figures);
+  leave_summary(request.folder, to_json(summary, request.scene), to_text(summary, request.scene), times, "biaxial",
+                options.no_figures);
   if (!summary.complete)
     throw RunFailure(summary.failure);
 }

@@ -2,10 +2,12 @@
 #include "apps/common/command_line.hpp"
 
 #include "base/error.hpp"
+#include "base/record/installation.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 namespace isostat
@@ -57,6 +59,15 @@ Option &Option::excludes(const Option &other)
 Option &Option::shows_default()
 {
   option_->capture_default_str();
+  return *this;
+}
+
+Option &Option::shipped_in(const std::string &folder)
+{
+  option_->transform([folder](const std::string &file) {
+    const std::filesystem::path shipped = shared_folder() / folder / file;
+    return !std::filesystem::exists(file) && std::filesystem::is_regular_file(shipped) ? shipped.string() : file;
+  });
   return *this;
 }
 

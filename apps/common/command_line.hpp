@@ -32,6 +32,8 @@ public:
     Option &one_of(const std::vector<std::string> &values);
     Option &excludes(const Option &other);
     Option &shows_default();
+    /// A file, looked for in this folder of the installation as well (base/record/installation.hpp).
+    Option &shipped_in(const std::string &folder);
 
   private:
     CLI::Option *option_;

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/installation.hpp"
 #include "dem/contact/loop.hpp"
 
 #include <cstdlib>
@@ -83,11 +84,10 @@ void write_provenance(const fs::path &folder, const std::string &scene_text, con
                       const std::vector<std::pair<std::string, std::string>> &more)
 {
   write_replacing(folder / "scene.toml", scene_text);
-  std::string text =
-      fmt::format("command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen "
-                  "{}.{}.{}, fmt {}\n",
-                  command_line, ISOSTAT_VERSION, __VERSION__, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                  EIGEN_MINOR_VERSION, FMT_VERSION);
+  std::string text = fmt::format(
+      "command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen "
+      "{}.{}.{}, fmt {}\n",
+      command_line, version(), __VERSION__, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION);
   for (const auto &[name, value] : more)
     text += fmt::format("{:<18}{}\n", name, value);
   text += fmt::format("started           {:%Y-%m-%d %H:%M:%S} UTC\n", fmt::gmtime(std::time(nullptr)));
@@ -100,11 +100,11 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
                    {{"instruction set", instruction_set()}, {"seed", std::to_string(scene.grading.seed)}});
 }
 
-std::string draw_figures(const fs::path &folder, const std::string &script)
+std::string draw_figures(const fs::path &folder, const std::string &program)
 {
-  const fs::path path = fs::path(ISOSTAT_SOURCE_DIR) / "scripts" / script, log = folder / "figures.log";
-  const std::string command =
-      fmt::format("/usr/bin/python3 {} {} > {} 2>&1", quoted(path), quoted(folder), quoted(log));
+  const fs::path log = folder / "figures.log";
+  const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m figures {} {} > {} 2>&1",
+                                          quoted(shared_folder()), program, quoted(folder), quoted(log));
   if (std::system(command.c_str()) != 0)
     return fmt::format("figures were not drawn; see {}", log.string());
   return fmt::format("figures in {}", (folder / "figures").string());

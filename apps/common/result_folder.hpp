@@ -37,6 +37,7 @@ void write_provenance(const std::filesystem::path &folder, const std::string &sc
 /// The same of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
-/// Draws the figures of a results folder with a script of scripts/. @return a line for the summary; never fails a run
-std::string draw_figures(const std::filesystem::path &folder, const std::string &script = "plots.py");
+/// Draws the figures of a results folder with the Python package `figures`.   @param program  that left the folder
+/// @return a line for the summary; never fails a run
+std::string draw_figures(const std::filesystem::path &folder, const std::string &program);
 } // namespace isostat

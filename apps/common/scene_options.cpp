@@ -5,7 +5,7 @@ namespace isostat
 {
 void add_scene_options(CommandLine &line, SceneOptions &o, const SceneOptionTexts &texts)
 {
-  line.option("scene", o.scene, texts.scene);
+  line.option("scene", o.scene, texts.scene).shipped_in("scenes");
   line.option("-o,--output", o.output, "results folder (default: results/<scene name>)");
   line.option("--set", o.set, std::string("override a key, e.g. --set ") + texts.example + " (repeatable)");
   line.flag("--validate", o.validate, "check the scene, print it with every key, and stop");

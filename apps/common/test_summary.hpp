@@ -49,6 +49,6 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
 
 /// For the terminal.
 std::string to_text(const TestSummary &summary, const Scene &scene);
-/// summary.json, which the figures read.
+/// summary.json, read by apps/figures/element_test.py.
 void write_json(const std::filesystem::path &path, const TestSummary &summary);
 } // namespace isostat

@@ -53,12 +53,12 @@ int run_program(const GroundProgram &program, int argc, char **argv)
 }
 
 void leave_summary(const std::filesystem::path &folder, const Json &summary, const std::string &text,
-                   const std::string &times, const char *figures, bool no_figures)
+                   const std::string &times, const char *program, bool no_figures)
 {
   write_json(folder / "summary.json", summary);
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}{}", text, times);
   if (!no_figures)
-    fmt::print("  {}\n", draw_figures(folder, figures));
+    fmt::print("  {}\n", draw_figures(folder, program));
 }
 } // namespace isostat

@@ -43,7 +43,7 @@ struct GroundProgram
 /// From the command line to the exit code. PETSc reads no option from it, and signals are ours.
 int run_program(const GroundProgram &program, int argc, char **argv);
 
-/// Leaves summary.json and summary.txt, prints the text and `times`, and draws the figures.
+/// Leaves summary.json and summary.txt, prints the text and `times`, and draws the figures of this program.
 void leave_summary(const std::filesystem::path &folder, const Json &summary, const std::string &text,
-                   const std::string &times, const char *figures, bool no_figures);
+                   const std::string &times, const char *program, bool no_figures);
 } // namespace isostat

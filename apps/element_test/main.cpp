@@ -111,7 +111,7 @@ void run_test(const SceneOptions &options)
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}", text);
   if (!options.no_figures)
-    fmt::print("  {}\n", draw_figures(folder));
+    fmt::print("  {}\n", draw_figures(folder, "element_test"));
 }
 
 int run_command(int argc, char **argv)

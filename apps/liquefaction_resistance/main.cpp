@@ -173,7 +173,7 @@ void find_resistance(Options options)
   const std::string text = write_report(campaign, options.plan);
   fmt::print("{}", text);
   if (!options.no_figures && fit_power_law(campaign.results()))
-    fmt::print("  {}\n", draw_figures(campaign.folder(), "plots_resistance.py"));
+    fmt::print("  {}\n", draw_figures(campaign.folder(), "liquefaction_resistance"));
   if (!complete)
     throw Interrupted("interrupted; finished runs are kept, the same command goes on");
   for (const RunResult &result : campaign.results())
@@ -186,6 +186,7 @@ int run_command(int argc, char **argv)
   CommandLine line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction", argc, argv);
   Options options;
   line.option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
+      .shipped_in("scenes")
       .required();
   line.option("--ratios", options.ratios,
               "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "

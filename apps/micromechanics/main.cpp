@@ -184,7 +184,7 @@ void analyse(const Options &options)
     write_tables(output, tables);
   fmt::print("{}tables in {}\n", summary(tables), output.string());
   if (!only_table && !options.no_figures)
-    fmt::print("{}\n", draw_figures(output, "plots_micromechanics.py"));
+    fmt::print("{}\n", draw_figures(output, "micromechanics"));
 }
 
 int run_command(int argc, char **argv)

@@ -63,7 +63,7 @@ void run(const Options &options)
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}  wall time                {:.2f} s\n", text, result.seconds);
   if (!options.no_figures)
-    fmt::print("  {}\n", draw_figures(folder, "plots_rve_replay.py"));
+    fmt::print("  {}\n", draw_figures(folder, "rve_replay"));
 }
 } // namespace
 

@@ -55,7 +55,7 @@ void run_scene(const SceneOptions &options)
     return;
   write_json(request.folder / "times.json", to_json(result.times));
   leave_summary(request.folder, to_json(result.summary, request.scene), to_text(result.summary, request.scene),
-                to_text(result.times), "plots_soil_column.py", options.no_figures);
+                to_text(result.times), "soil_column", options.no_figures);
 }
 
 constexpr GroundProgram soil_column{

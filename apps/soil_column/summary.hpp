@@ -42,7 +42,7 @@ struct RunTimes
 /// For the terminal and summary.txt.
 std::string to_text(const ColumnSummary &summary, const ColumnScene &scene);
 std::string to_text(const RunTimes &times);
-/// For summary.json, which the figures read.
+/// For summary.json, read by apps/figures/soil_column.py.
 Json to_json(const ColumnSummary &summary, const ColumnScene &scene);
 /// For times.json, which benchmarks read: times in s.
 Json to_json(const RunTimes &times);

@@ -257,7 +257,8 @@ int run_command(int argc, char **argv)
   CommandLine line("A library of periodic specimens: realisations at several pressures and densities in one file", argc,
                    argv);
   Options options;
-  line.option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run");
+  line.option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run")
+      .shipped_in("scenes");
   line.option("-o,--output", options.output, "library (default: results/<scene name>.h5)");
   line.option("-n,--realisations", options.realisations,
               "seeds at each pressure and density, from grading.seed of the scene on (default 1)")

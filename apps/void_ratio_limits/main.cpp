@@ -209,7 +209,7 @@ int run_command(int argc, char **argv)
   CommandLine line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)",
                    argc, argv);
   Options options;
-  line.option("scene", options.scene, "scene file (TOML) without stages").required();
+  line.option("scene", options.scene, "scene file (TOML) without stages").required().shipped_in("scenes");
   line.option("-o,--output", options.output, "results folder (default: results/<scene name>)");
   line.option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
   line.option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");

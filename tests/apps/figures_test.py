@@ -3,6 +3,7 @@
 """The figures of the soil column: their analysis against closed forms, and that a run gets those it has data for."""
 import contextlib
 import io
+import os
 import pathlib
 import re
 import shutil
@@ -13,13 +14,13 @@ import unittest
 
 import numpy as np
 
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path[:0] = [str(SCRIPTS)]
+APPS = pathlib.Path(__file__).resolve().parents[2] / "apps"
+sys.path[:0] = [str(APPS)]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
-from column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
-from column_results import Column, quantity  # noqa: E402
-from plots_column_grains import first  # noqa: E402
-from plots_column_soil import outline  # noqa: E402
+from figures.column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
+from figures.column_results import Column, quantity  # noqa: E402
+from figures.column_grains import first  # noqa: E402
+from figures.column_soil import outline  # noqa: E402
 from support import PATIENCE, ToleranceTest, main  # noqa: E402
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
@@ -120,8 +121,8 @@ class Figures(ToleranceTest):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def draw(self, folder, *arguments):
-        return subprocess.run([sys.executable, str(SCRIPTS / "plots_soil_column.py"), str(folder), *arguments],
-                              capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
+        return subprocess.run([sys.executable, "-m", "figures", "soil_column", str(folder), *arguments],
+                              env={**os.environ, "PYTHONPATH": str(APPS)}, capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
 
     def expect(self, folder, *names):
         result = self.draw(folder)

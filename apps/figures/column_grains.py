@@ -5,9 +5,9 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from plots_column_soil import (LEAST_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
+from .column_soil import (LEAST_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
                                pore_pressure_ratio, time_bar, time_norm, times_of_motion)
-from plots_common import BLACK, BLUE, GREEN, ORANGE, RED, panel_letter, plt
+from .common import BLACK, BLUE, GREEN, ORANGE, RED, panel_letter, plt
 
 ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
 LEAST_Z = 2  # coordination number below which the fabric of the few contacts left means nothing

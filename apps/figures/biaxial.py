@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a run of biaxial from its history.csv, maps.h5 and summary.json.
 
-    plots_biaxial.py RESULTS_FOLDER [--out DIR] [--beside OTHER_RUN ...]    default DIR: RESULTS_FOLDER/figures
+    python3 -m figures biaxial RESULTS [--beside OTHER ...]
 
 fig_stress_strain.png   axial stress and volumetric strain against axial strain, and the scatter of the shear strain
 fig_shear_maps.png      shear strain since the start over the block at several axial strains
@@ -13,15 +12,11 @@ fig_grain_maps.png      void ratio and redundancy index at the end, of packings
 Of fig_rate_maps the last map is asked for the inclination of a band: the direction of least spread of the points with
 the greatest shear strain, printed with their number. Compression is positive.
 """
-import argparse
-import pathlib
-import sys
-
 import h5py
 import numpy as np
 
-from plots_common import BLACK, BLUE, GREEN, ORANGE, BadInput, note, plt, read_history, read_summary
-from plots_main import save_figures
+from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, plt, read_history, read_summary
+from .drawing import Drawing
 
 PANELS = 5
 
@@ -182,25 +177,4 @@ FIGURES = {
     "fig_grain_maps": grain_maps,
 }
 
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=pathlib.Path, help="folder with history.csv, maps.h5, summary.json")
-    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
-    parser.add_argument("--beside", type=pathlib.Path, nargs="*", default=[],
-                        help="runs whose axial stress fig_band shows too")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "figures"
-    try:
-        block = Block(arguments.results)
-        block.beside = [Block(folder) for folder in arguments.beside]
-        out.mkdir(parents=True, exist_ok=True)
-    except (BadInput, OSError, KeyError, ValueError) as error:
-        note(error)
-        return 2
-    save_figures(block, FIGURES, out)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+DRAWING = Drawing(Block, FIGURES)

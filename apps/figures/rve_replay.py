@@ -1,18 +1,15 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a run of rve_replay from its history.csv and grain_history.
 
-    plots_rve_replay.py RESULTS_FOLDER [--out DIR]           default DIR: RESULTS_FOLDER/figures
+    python3 -m figures rve_replay RESULTS
 
 fig_path.png     stress path, stress against strain and effective pressure over time, in the column and alone
 fig_grains.png   redundancy index and coordination number over time, below the pressure
 """
-import sys
-
 import numpy as np
 
-from plots_common import BLACK, BLUE, ORANGE, RED, panel_letter, plt, read_history, read_summary
-from plots_main import draw_results
+from .common import BLACK, BLUE, ORANGE, RED, panel_letter, plt, read_history, read_summary
+from .drawing import Drawing
 
 
 class Replay:
@@ -66,6 +63,4 @@ def grains(run):
 
 
 FIGURES = {"fig_path": path, "fig_grains": grains}
-
-if __name__ == "__main__":
-    sys.exit(draw_results(__doc__.splitlines()[0], "history.csv, grain_history and summary.json", Replay, FIGURES))
+DRAWING = Drawing(Replay, FIGURES)

@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import MaxNLocator
 
-from plots_common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
 
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
 EARLY = 0.25  # of the motion: half of its squared acceleration by then is early

@@ -2,8 +2,8 @@
 """Figures of the motion of a soil column: accelerations, response spectra, transfer function."""
 import numpy as np
 
-from column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
-from plots_common import BLACK, BLUE, GREY, ORANGE, note, panel_letter, plt
+from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
+from .common import BLACK, BLUE, GREY, ORANGE, note, panel_letter, plt
 
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}

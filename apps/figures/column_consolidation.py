@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.colors import LogNorm
 
-from column_analysis import Terzaghi
-from plots_column_soil import TIMES, depth_axis, time_bar
-from plots_common import BLACK, BLUE, note, plt
+from .column_analysis import Terzaghi
+from .column_soil import TIMES, depth_axis, time_bar
+from .common import BLACK, BLUE, note, plt
 
 TIME_FACTORS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5)
 LEAST_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front

@@ -51,7 +51,7 @@ class BadInput(Exception):
 
 
 def note(text):
-    print(f"plots: {text}", file=sys.stderr)
+    print(f"figures: {text}", file=sys.stderr)
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------

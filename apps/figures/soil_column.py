@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a run of soil_column from its history.csv, profiles.h5, scene.toml and summary.json.
 
-    plots_soil_column.py RESULTS_FOLDER [--out DIR]          default DIR: RESULTS_FOLDER/figures
+    python3 -m figures soil_column RESULTS
 
 fig_motions.png       acceleration of input and surface, for each direction that moves
 fig_spectra.png       response spectra of input and surface, and their ratio
@@ -22,14 +21,12 @@ What the run does not have is left out: a dry soil has no r_u, a base at rest no
 The input is the motion of a rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in
 compression.
 """
-import sys
-
-from column_results import Column
-from plots_column_consolidation import isochrones, settlement
-from plots_column_grains import grains_history, grains_map, grains_profiles
-from plots_column_motion import motions, spectra, transfer
-from plots_column_soil import histories, loops, profiles, ru_map
-from plots_main import draw_results
+from .column_results import Column
+from .column_consolidation import isochrones, settlement
+from .column_grains import grains_history, grains_map, grains_profiles
+from .column_motion import motions, spectra, transfer
+from .column_soil import histories, loops, profiles, ru_map
+from .drawing import Drawing
 
 FIGURES = {
     "fig_motions": motions,
@@ -46,6 +43,4 @@ FIGURES = {
     "fig_grains_history": grains_history,
 }
 
-
-if __name__ == "__main__":
-    sys.exit(draw_results(__doc__.splitlines()[0], "history.csv, profiles.h5, scene.toml", Column, FIGURES))
+DRAWING = Drawing(Column, FIGURES)

@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a run from its history.csv and summary.json.
 
-    plots.py RESULTS_FOLDER [--out DIR]          default DIR: RESULTS_FOLDER/figures
+    python3 -m figures element_test RESULTS
 
 fig_stress_path.png        (a) q against p', (b) q against axial strain;
                            in simple shear tau against (a) sigma'_v, (b) p', (c) gamma
@@ -17,15 +16,13 @@ half a cycle each, and inside a half cycle the strain, which runs one way there,
 tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles after the onset of liquefaction than before,
 they get half of the x axis, and its label says so. A column that is missing costs its curve or panel, with a note.
 """
-import sys
-
 import numpy as np
 
-from plots_common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, curves, draw_path,
+from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, curves, draw_path,
                           explain_median, legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt,
                           two_rows)
-from plots_main import draw_results
-from plots_simple_shear import rotation, shear_path
+from .drawing import Drawing
+from .simple_shear import rotation, shear_path
 
 
 def stress_path(run):
@@ -126,5 +123,4 @@ def undrawn(name, run):
         note(f"{name}: none of its columns is there; not drawn")
 
 
-if __name__ == "__main__":
-    sys.exit(draw_results(__doc__.splitlines()[0], "history.csv and summary.json", Run, FIGURES, undrawn))
+DRAWING = Drawing(Run, FIGURES, undrawn)

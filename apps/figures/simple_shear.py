@@ -2,7 +2,7 @@
 """Figures of simple shear in a periodic cell: stress path, stress-strain curve, rotation of principal stresses."""
 import numpy as np
 
-from plots_common import (BLACK, GREY, coloured_parts, draw_path, legend_below, mark_onset, panel_letter, plt,
+from .common import (BLACK, GREY, coloured_parts, draw_path, legend_below, mark_onset, panel_letter, plt,
                           progress_axes)
 
 FAINT = 1e-3  # p'/p0' below which a handful of contacts carries the stress: it has no direction to speak of

@@ -1,22 +1,19 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the liquefaction resistance that `liquefaction_resistance` found.
 
-    plots_resistance.py FOLDER [--out DIR]          default DIR: FOLDER/figures
+    python3 -m figures liquefaction_resistance RESULTS
 
 resistance.png   cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that did
                  not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
 """
-import argparse
 import csv
 import json
-import pathlib
-import sys
 
 import numpy as np
 from matplotlib.transforms import ScaledTranslation
 
-from plots_common import BLACK, BLUE, GREY, ORANGE, RED, STYLE, note, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, plt
+from .drawing import Drawing
 
 LEAST_CYCLES = 0.25  # liquefaction before the first reversal
 REFERENCE = 15  # cycles that stand for an earthquake of magnitude 7.5
@@ -73,7 +70,8 @@ def draw_fit(axes, fit, low, high):
               label=f"CSR at {REFERENCE} cycles: {fit['CSR_15']:.3f}")
 
 
-def resistance(runs, summary):
+def resistance(campaign):
+    runs, summary = campaign.runs, campaign.summary
     figure, axes = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
     axes.set_xscale("log")
     cycles = [n or max(applied, LEAST_CYCLES) for _, n, applied, status in runs if status not in ("missing", "failed")]
@@ -88,32 +86,18 @@ def resistance(runs, summary):
     axes.set_xlabel(rf"Cycles to initial liquefaction $N$ ($p^\prime/p_0^\prime < {summary['liquefaction_ratio']:g}$)")
     axes.set_ylabel(f"Cyclic stress ratio {RATIO_NAMES[summary['test']]}")
     axes.legend(loc="upper right")
-    figure.suptitle(summary["title"], fontsize=9.5, x=0.01, ha="left")
     return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=pathlib.Path, help="folder with resistance.csv and resistance.json")
-    parser.add_argument("--out", type=pathlib.Path, help="folder of the figure; default: RESULTS/figures")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.results / "figures"
-    try:
-        runs = read_runs(arguments.results / "resistance.csv")
-        summary = json.loads((arguments.results / "resistance.json").read_text(encoding="utf-8"))
-        out.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError, KeyError) as error:
-        note(f"{arguments.results}: no results of liquefaction_resistance that can be drawn ({error})")
-        return 2
-    if all(status in ("missing", "failed") for _, _, _, status in runs):
-        note("no run has ended; nothing to draw")
-        return 2
-    plt.rcParams.update(STYLE)
-    figure = resistance(runs, summary)
-    figure.savefig(out / "resistance.png")
-    print(out / "resistance.png")
-    return 0
+class Campaign:
+    """What liquefaction_resistance left in a folder."""
+
+    def __init__(self, folder):
+        self.runs = read_runs(folder / "resistance.csv")
+        self.summary = json.loads((folder / "resistance.json").read_text(encoding="utf-8"))
+        self.title = self.summary["title"]
+        if all(status in ("missing", "failed") for _, _, _, status in self.runs):
+            raise BadInput("no run has ended; nothing to draw")
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+DRAWING = Drawing(Campaign, {"resistance": resistance})

@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of a micromechanical analysis from the tables that `micromechanics` wrote.
 
-    plots_micromechanics.py FOLDER [--out DIR]          default DIR: FOLDER/figures
+    python3 -m figures micromechanics RESULTS
 
 fig_force_distribution.png  probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot
 fig_roses.png               contact normals in the x-y plane and about y: number (bars) and mean force (line)
@@ -10,27 +9,16 @@ fig_anisotropies.png        a_c, a_n, a_t along y, and the fabric of strong and 
 
 Onset is the first snapshot with p'/p0' < 0.01; without one, the snapshot of least p' stands in for it.
 """
-import argparse
 import csv
 import json
-import pathlib
 import re
-import sys
 
 import numpy as np
-import matplotlib
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from plots_common import BLUE, BLACK, GREEN, GREY, ORANGE, RED, STYLE, panel_letter  # noqa: E402
+from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plt
+from .drawing import Drawing
 
 COLOURS = {"first": BLUE, "onset": RED, "least p'": RED, "last": ORANGE}
-
-
-class BadInput(Exception):
-    """The folder holds no tables that can be drawn."""
 
 
 def read_table(path):
@@ -49,6 +37,8 @@ def read_table(path):
 
 class Analysis:
     """The tables of a folder, and which snapshots stand for first, onset and last."""
+
+    title = None
 
     def __init__(self, folder):
         self.rows = read_table(folder / "micromechanics.csv")
@@ -155,28 +145,4 @@ def anisotropies(analysis):
 
 FIGURES = {"fig_force_distribution": force_distribution, "fig_roses": roses, "fig_anisotropies": anisotropies}
 
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="folder with micromechanics.csv")
-    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: FOLDER/figures")
-    arguments = parser.parse_args()
-    out = arguments.out or arguments.folder / "figures"
-    try:
-        analysis = Analysis(arguments.folder)
-        out.mkdir(parents=True, exist_ok=True)
-    except (BadInput, OSError, ValueError, KeyError) as error:
-        print(f"plots_micromechanics: {error}", file=sys.stderr)
-        return 2
-    plt.rcParams.update(STYLE)
-    for name, draw in FIGURES.items():
-        figure = draw(analysis)
-        if figure is not None:
-            figure.savefig(out / f"{name}.png")
-            plt.close(figure)
-            print(out / f"{name}.png")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+DRAWING = Drawing(Analysis, FIGURES)

@@ -7,7 +7,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from plots_common import BadInput, note, read_history
+from .common import BadInput, note, read_history
 
 SI = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "1/s": 1, "kg/m3": 1,
       "g/cm3": 1e3, "m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "m/s2": 1, "cm/s2": 1e-2, "g": 9.80665, "Hz": 1, "kHz": 1e3,

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the figures of a finished or running program from the files in its results folder.
+
+    python3 -m figures PROGRAM RESULTS [--out DIR] [--beside OTHER ...]        default DIR: RESULTS/figures
+
+What each program's figures show stands at the top of its module. The exit code is 2 if the folder cannot be drawn.
+"""
+import argparse
+import importlib
+import pathlib
+import sys
+
+PROGRAMS = ("element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay", "biaxial")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="figures", description=__doc__.splitlines()[0])
+    parser.add_argument("program", choices=PROGRAMS, help="whose results they are")
+    parser.add_argument("results", type=pathlib.Path, help="its results folder")
+    parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")
+    parser.add_argument("--beside", type=pathlib.Path, nargs="*", default=[],
+                        help="other results that a figure shows, too (biaxial: fig_band)")
+    arguments = parser.parse_args()
+    drawing = importlib.import_module(f"figures.{arguments.program}").DRAWING
+    return drawing.draw(arguments.results, arguments.out or arguments.results / "figures", arguments.beside)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Isostat as a user has it who installed it: the programs find what they need beside themselves, and the examples are
+built from outside by find_package(isostat) and show what their first lines say."""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "apps")]
+import support  # noqa: E402  (the path comes first)
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+
+
+def run(*command, cwd=None):
+    result = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False,
+                            timeout=200 * support.PATIENCE)
+    if result.returncode != 0:
+        raise AssertionError(f"{command} returned {result.returncode}\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+class Installed(support.ToleranceTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_installed_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.prefix, cls.work = cls.folder / "prefix", cls.folder / "work"
+        cls.work.mkdir()
+        run("cmake", "--install", support.BIN.parent, "--prefix", cls.prefix)
+        cls.build = cls.folder / "build"
+        run("cmake", "-S", EXAMPLES, "-B", cls.build, f"-DCMAKE_PREFIX_PATH={cls.prefix}")
+        run("cmake", "--build", cls.build)
+
+    def element_test(self, *arguments):
+        return run(self.prefix / "bin/element_test", *arguments, cwd=self.work)
+
+    def test_figures_are_those_of_the_installation(self):
+        (self.work / "tiny.toml").write_text(support.tiny_scene(), encoding="utf-8")
+        output = self.element_test("tiny.toml", "--quiet")
+        self.assertIn("figures in", output)
+        self.assertTrue((self.work / "results/tiny/figures/fig_stress_path.png").is_file())
+        figures = self.prefix / "share/isostat/figures"
+        figures.rename(figures.with_name("elsewhere"))
+        self.addCleanup(figures.with_name("elsewhere").rename, figures)
+        self.assertIn("figures were not drawn", self.element_test("tiny.toml", "--quiet", "--overwrite"))
+
+    def test_scenes_are_found_by_their_names(self):
+        scene = self.element_test("quick_cyclic_liquefies.toml", "--validate")
+        self.assertIn('folder = "results/quick_cyclic_liquefies"', scene)
+
+    def rows(self, example):
+        """The table that an example prints, without its head."""
+        lines = run(self.build / example, cwd=self.work).splitlines()[1:]
+        return np.array([[float(word) for word in line.split()] for line in lines])
+
+    def test_rve_path(self):
+        gamma_xy, gamma_zy, tau_xy, tau_zy, p, e = self.rows("rve_path").T
+        self.assert_near(p[0], 200, 4, "compacted to within 1 %, and at rest")
+        self.assertLess(p[-1], 0.95 * p[0])
+        self.assertGreater(np.ptp(tau_xy), 5)
+        self.assertGreater(np.ptp(tau_zy), 5)
+        self.assert_near([gamma_xy[-1], gamma_zy[-1]], [0, 0], 1e-4, "closes: the digits that are printed")
+        self.assert_near(e, e[0], 1e-4, "constant volume, to second order in strains of 0.1 %")
+
+    def test_element_test_in_code(self):
+        axial, p, q, e = self.rows("element_test_in_code").T
+        self.assert_near(axial[-1], 2, 0.05, "rows come each 0.1 %")
+        self.assert_near(p - q / 3, 100, 5, "the lateral stress, which a servo keeps")
+        self.assertGreater(q[-1], p[-1])
+        self.assertLess(e.min(), e[0])
+        self.assertGreater(e[-1], e.min())
+
+    def test_own_material(self):
+        if not (self.prefix / "include/isostat/fem").exists():
+            self.skipTest("the build has no continuum half")
+        output = run(self.build / "own_material", cwd=self.work)
+        ratio = float(output.split()[-1])
+        self.assertGreater(abs(ratio / 5 - 1), 0.1, output)
+
+
+if __name__ == "__main__":
+    support.main()
