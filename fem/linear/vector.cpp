@@ -21,7 +21,7 @@ void Vector::find_values()
 
 Vector::Vector() : of_dealii_(std::make_unique<Values>()) { find_values(); }
 
-Vector::Vector(const Partition &partition) : of_dealii_(std::make_unique<Values>(partition)) { find_values(); }
+Vector::Vector(const VectorPartition &partition) : of_dealii_(std::make_unique<Values>(partition)) { find_values(); }
 
 Vector::Vector(const Vector &other) : of_dealii_(std::make_unique<Values>(*other.of_dealii_)) { find_values(); }
 

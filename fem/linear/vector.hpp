@@ -11,7 +11,7 @@ class Partitioner;
 namespace isostat
 {
 /// Which rank owns which unknown, and which unknowns of other ranks ("ghosts") the cells of this rank use.
-using Partition = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
+using VectorPartition = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
 
 /// One value per unknown, shared out over ranks: the owned values come first in memory, the ghosts behind them. On
 /// MPI_COMM_SELF every unknown is owned and nothing is ever exchanged.
@@ -23,7 +23,7 @@ class Vector
 {
 public:
   Vector(); ///< without unknowns
-  explicit Vector(const Partition &partition);
+  explicit Vector(const VectorPartition &partition);
   Vector(const Vector &other);
   Vector(Vector &&other) noexcept; ///< leaves a vector that may only be assigned to or destroyed
   Vector &operator=(const Vector &other);

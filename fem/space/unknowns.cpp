@@ -43,8 +43,8 @@ Index master_of(const std::map<Index, Index> &masters, Index node)
 
 /// Unknowns that this rank's cells use, one component for each of `masters`.
 template <int dim>
-Partition partition(const dealii::DoFHandler<dim> &nodes, std::span<const std::map<Index, Index>> masters,
-                    MPI_Comm communicator)
+VectorPartition partition(const dealii::DoFHandler<dim> &nodes, std::span<const std::map<Index, Index>> masters,
+                          MPI_Comm communicator)
 {
   const Index n = masters.size(), total = nodes.n_dofs() * n;
   dealii::IndexSet owned(total), used(total);

@@ -16,7 +16,7 @@ namespace isostat
 ///
 /// deal.II counts one unknown per node; component c of node n is then unknown 3 n + c of the whole mesh. A tie replaces
 /// a node by its master, for each component apart: sides that move as one, faces whose nodes move together. What the
-/// ties remove stays as an unknown that no cell has. Local numbers are those of the Partition.
+/// ties remove stays as an unknown that no cell has. Local numbers are those of the VectorPartition.
 /// tested: tests/fem/space/discretisation_test.cpp
 template <int dim>
 class Unknowns
@@ -29,8 +29,8 @@ public:
 
   const dealii::DoFHandler<dim> &nodes() const { return nodes_; } ///< one unknown per displacement node
   const dealii::DoFHandler<dim> &pressure_nodes() const { return pressures_; }
-  const Partition &displacements() const { return displacement_partition_; }
-  const Partition &pressures() const { return pressure_partition_; }
+  const VectorPartition &displacements() const { return displacement_partition_; }
+  const VectorPartition &pressures() const { return pressure_partition_; }
   MPI_Comm communicator() const { return communicator_; }
 
   /// Local unknown of a node, ties resolved.   @pre one of this rank's cells has the node
@@ -50,6 +50,6 @@ private:
   dealii::DoFHandler<dim> nodes_, pressures_;
   std::array<Masters, 3> masters_; ///< of each displacement component
   Masters pressure_masters_;
-  Partition displacement_partition_, pressure_partition_;
+  VectorPartition displacement_partition_, pressure_partition_;
 };
 } // namespace isostat
