@@ -2,6 +2,7 @@
 // The tables of a mesh: patch tests in one, two and three dimensions, volumes, masses, areas, places.
 #include "base/error.hpp"
 #include "fem/space/axes.hpp"
+#include "fem/space/discretisation.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
 
