@@ -31,8 +31,8 @@ int main()
   const double preparation_friction = std::tan(2 * M_PI / 180); // little friction makes a dense packing
 
   Printer printer;
-  const Snapshot loose = compact(make_cloud(grading), law, preparation_friction, specimen, printer);
-  Assembly assembly(rebalance(loose, law, specimen, printer));
+  const Snapshot loose = compact(make_cloud(grading), law, preparation_friction, {specimen, printer});
+  Assembly assembly(rebalance(loose, law, {specimen, printer}));
 
   Drained drained;
   drained.strain_end = 0.02;

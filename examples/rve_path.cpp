@@ -26,7 +26,8 @@ Snapshot prepare()
   Nobody nobody;
   const Law law;
   const double preparation_friction = std::tan(10 * M_PI / 180);
-  return rebalance(compact(make_cloud(grading), law, preparation_friction, specimen, nobody), law, specimen, nobody);
+  return rebalance(compact(make_cloud(grading), law, preparation_friction, {specimen, nobody}), law,
+                   {specimen, nobody});
 }
 
 int main()

@@ -14,8 +14,9 @@ import unittest
 
 import numpy as np
 
-APPS = pathlib.Path(__file__).resolve().parents[2] / "apps"
-sys.path[:0] = [str(APPS)]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+APPS = ROOT / "apps"
+sys.path[:0] = [str(APPS), str(ROOT / "scripts")]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
 from figures.column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
 from figures.column_results import Column, quantity  # noqa: E402

@@ -276,7 +276,7 @@ class Alone(GrainColumnTest):
         refuse(["--rate-floor 3", "above the ceiling, 2"], "whole/paths/d0", "--rate-floor", 3)
         wrong = self.run_app("rve_replay", "whole/paths/d0", "--min-steps", 0)
         self.assertEqual(wrong.returncode, 2)
-        self.assertIn("least-steps", wrong.stderr)
+        self.assertIn("min-steps", wrong.stderr)
         packing = self.folder / "whole/paths/d0/packing.h5"
         data = bytearray(packing.read_bytes())
         data[len(data) // 2] ^= 1
