@@ -4,6 +4,7 @@
 // transfer function (tests/verification/shear_layer_test.cpp).
 //
 //   column_step [elements]
+#include "fem/libraries.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/solve/dynamics.hpp"
 
@@ -11,7 +12,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <deal.II/base/mpi.h>
 
 namespace
 {
@@ -77,7 +77,7 @@ std::pair<double, double> step_cost(const Case &which, unsigned elements)
 
 int main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const Libraries libraries;
   const unsigned elements = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200;
   const Case cases[] = {{"undrained, degree 1", 1, Drainage::undrained},
                         {"undrained, degree 2", 2, Drainage::undrained},

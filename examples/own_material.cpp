@@ -2,11 +2,11 @@
 // A material of one's own in a soil column: shear stress follows a hyperbola, tau = G gamma / (1 + |gamma| / gamma_r)
 // (Kondner 1963), in each plane by itself and without hysteresis. What to see: under the same wavelet five times as
 // strong the displacement of the surface grows by another factor than five, as the soil softens.
+#include "fem/libraries.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/solve/dynamics.hpp"
 
 #include <cmath>
-#include <deal.II/base/mpi.h>
 #include <fmt/format.h>
 
 using namespace isostat;
@@ -49,9 +49,9 @@ double peak_displacement(double peak_acceleration)
   return peak;
 }
 
-int main(int argc, char **argv)
+int main()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const Libraries libraries;
   const double weak = peak_displacement(1), strong = peak_displacement(5);
   fmt::print("surface, weak: {:.3f} mm, strong: {:.3f} mm, ratio {:.2f}\n", 1e3 * weak, 1e3 * strong, strong / weak);
 }

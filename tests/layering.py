@@ -64,9 +64,11 @@ INNER = {
     "fem": {
         "material": set(),
         "motion": set(),
-        "space": {"material"},
-        "water": {"material", "space"},
-        "solve": {"material", "motion", "space", "water"},
+        "libraries": set(),
+        "linear": set(),
+        "space": {"material", "linear"},
+        "water": {"material", "linear", "space"},
+        "solve": {"material", "motion", "linear", "space", "water"},
     },
     "coupling": {
         "placement": set(),
@@ -99,6 +101,8 @@ MPI = re.compile(r"^(mpi|omp[il]_mpi)\.h$")
 FOREIGN = [
     (("dem", "coupling", "fem/material", "fem/motion"), (DEALII, PETSC), "no deal.II and no PETSc here"),
     (("dem", "fem/material", "fem/motion"), (MPI,), "no MPI call here"),
+    (("fem/water", "fem/solve"), (DEALII,), "deal.II ends at fem/space/tables.hpp and fem/linear/vector.hpp"),
+    (("fem/space", "apps"), (PETSC,), "PETSc is seen by the two linear systems alone"),
 ]
 HDF5 = re.compile(r"^(hdf5|H5\w*|hdf5_hl)\.(h|hpp)$")
 HDF5_HOME = {f"base/files/hdf5_{part}" for part in ("file.cpp", "group.cpp", "handles.hpp")}

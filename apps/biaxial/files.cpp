@@ -42,19 +42,15 @@ void add_array(pugi::xml_node parent, const char *type, const std::string &name,
 void add_corners(const Discretisation<2> &space, const Vector &u, std::string &places, std::string &displacements)
 {
   constexpr unsigned order[] = {0, 1, 3, 2};
-  std::size_t cell = 0;
-  for (const auto &element : space.nodes().active_cell_iterators())
-    {
-      for (unsigned corner : order)
-        {
-          const auto at = element->vertex(corner);
-          const unsigned *dofs = &space.cell_dofs[3 * (cell * space.nodes_per_cell() + corner)];
-          places += fmt::format("{:.9g} 0 {:.9g} ", at[0], at[1]);
-          for (int c = 0; c < 3; ++c)
-            displacements += fmt::format("{:.9g} ", u.local_element(dofs[c]));
-        }
-      ++cell;
-    }
+  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
+    for (unsigned corner : order)
+      {
+        const auto [x, y, z] = space.corner[4 * cell + corner];
+        const unsigned *dofs = &space.cell_dofs[3 * (cell * space.nodes_per_cell() + corner)];
+        places += fmt::format("{:.9g} 0 {:.9g} ", x, z);
+        for (int c = 0; c < 3; ++c)
+          displacements += fmt::format("{:.9g} ", u.local_element(dofs[c]));
+      }
 }
 
 void add_cells(pugi::xml_node cells, std::size_t n)

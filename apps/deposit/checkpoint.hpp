@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/solve/dynamics.hpp"
+#include "fem/solve/solver_state.hpp"
 
 #include <filesystem>
 
@@ -9,7 +9,7 @@ namespace isostat
 /// All that a killed run of a column needs to go on to the same bits.
 struct ColumnCheckpoint
 {
-  DynamicsState state;                                ///< of the solver; of statics the same fields
+  SolverState state;
   std::map<std::string, double> numbers;              ///< rows written, largest values ...
   std::map<std::string, std::vector<double>> vectors; ///< largest values over the depth
   std::string scene;                                  ///< the resolved scene; a resumed run must have the same

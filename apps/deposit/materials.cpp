@@ -2,6 +2,7 @@
 #include "apps/deposit/materials.hpp"
 
 #include "base/error.hpp"
+#include "fem/material/composite.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan.hpp"
 
@@ -53,7 +54,7 @@ std::unique_ptr<Material> column_material(const ColumnScene &scene, const Discre
                                        k, scene.layers[k].name, error.what()));
         }
     }
-  return std::make_unique<LayeredMaterial>(std::move(parts));
+  return stacked(std::move(parts));
 }
 
 #define ISOSTAT_INSTANTIATE(dim) \

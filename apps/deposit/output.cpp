@@ -2,7 +2,7 @@
 #include "apps/deposit/output.hpp"
 
 #include "base/files/replace_file.hpp"
-#include "fem/space/axes.hpp"
+#include "fem/space/unknowns.hpp"
 
 #include <deal.II/base/data_out_base.h>
 
@@ -96,19 +96,19 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
                       std::span<const double> vertical_stress)
 {
   const unsigned degree = space.mesh().degree;
-  const std::vector<unsigned> order = patch_order<dim>(space.nodes(), degree);
+  const std::vector<unsigned> order = patch_order<dim>(space.unknowns().nodes(), degree);
   Elements<dim> elements;
-  std::size_t cell = 0;
-  for (const auto &place : space.nodes().active_cell_iterators())
+  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
       auto &patch = elements.patches.emplace_back();
       patch.patch_index = static_cast<unsigned>(cell);
       patch.n_subdivisions = degree;
       patch.reference_cell = dealii::ReferenceCells::get_hypercube<dim>();
-      for (const unsigned v : place->vertex_indices())
+      const std::size_t n_corners = space.pressure_nodes_per_cell();
+      for (std::size_t v = 0; v < n_corners; ++v)
         {
-          const auto at = place_of<dim>(place->vertex(v));
-          patch.vertices[v] = dealii::Point<3>(at[0], at[1], at[2]);
+          const auto [x, y, z] = space.corner[cell * n_corners + v];
+          patch.vertices[v] = dealii::Point<3>(x, y, z);
         }
       patch.data.reinit(n_fields, static_cast<unsigned>(order.size()));
       const std::array<double, 9> means = cell_means(space, instant, cell, vertical_stress);
@@ -123,7 +123,6 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
           for (unsigned k = 0; k < means.size(); ++k)
             patch.data(3 * n_vectors + k, order[a]) = static_cast<float>(means[k]);
         }
-      ++cell;
     }
   dealii::DataOutBase::VtkFlags flags(instant.time, static_cast<unsigned>(instant.step));
   flags.print_date_and_time = false;

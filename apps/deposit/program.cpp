@@ -6,8 +6,7 @@
 #include "base/error.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
-
-#include <deal.II/base/mpi.h>
+#include "fem/libraries.hpp"
 
 #include <fmt/format.h>
 
@@ -33,10 +32,7 @@ bool print_something(const GroundProgram &program, const SceneOptions &options)
 
 int run_on_ranks(const GroundProgram &program, const SceneOptions &options)
 {
-  std::string name = program.name;
-  char *only_name[] = {name.data(), nullptr}, **arguments = only_name;
-  int n = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n, arguments, 1);
+  const Libraries libraries;
   catch_signals(); // after PETSc, which has handlers of its own
   return guarded([&] {
     silence_others();

@@ -92,8 +92,7 @@ ConsolidationRun<dim>::ConsolidationRun(const ColumnRequest &request)
 {
   if (!resumed_)
     return;
-  DynamicsState &state = resumed_->state;
-  run_.restore({state.step, state.vectors, state.numbers, state.material});
+  run_.restore(resumed_->state);
   follower_.peaks.restore(*resumed_);
   resumed_->get(files_.history().state);
   immediate_settlement_ = resumed_->numbers.at("immediate_settlement");
@@ -102,9 +101,7 @@ ConsolidationRun<dim>::ConsolidationRun(const ColumnRequest &request)
 template <int dim>
 void ConsolidationRun<dim>::save()
 {
-  StaticsState state = run_.save();
-  files_.save({state.step, state.vectors, state.numbers, state.material}, follower_.peaks,
-              {{"immediate_settlement", immediate_settlement_}});
+  files_.save(run_.save(), follower_.peaks, {{"immediate_settlement", immediate_settlement_}});
   since_checkpoint_.restart();
 }
 

@@ -159,7 +159,7 @@ void DynamicRun<dim>::save()
 {
   try
     {
-      DynamicsState state = run_.save();
+      SolverState state = run_.save();
       write([&] { files_.save(std::move(state), follower_.peaks, grain_counters()); });
     }
   catch (const RunFailure &failure)

@@ -95,7 +95,7 @@ void ColumnFiles<dim>::flush()
 }
 
 template <int dim>
-void ColumnFiles<dim>::save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more)
+void ColumnFiles<dim>::save(SolverState state, const ColumnPeaks &peaks, std::map<std::string, double> more)
 {
   if (!recorder_)
     return;

@@ -29,7 +29,7 @@ public:
 
   /// Brings all files up to date, then writes a checkpoint of a state with its peaks.
   /// @param more  numbers that the run wants back
-  void save(DynamicsState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
+  void save(SolverState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
   void flush();
   /// Adds the largest values to the profiles.   @pre the last call
   void finish(const ColumnPeaks &peaks);

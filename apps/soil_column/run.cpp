@@ -4,8 +4,7 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/deposit/ranks.hpp"
-
-#include <deal.II/base/config.h>
+#include "fem/libraries.hpp"
 
 #include <fmt/format.h>
 
@@ -60,9 +59,8 @@ void open_folder(const ColumnRequest &request)
     if (request.use == FolderUse::resume)
       return;
     open_result_folder(request.folder, request.use);
-    write_provenance(
-        request.folder, to_toml(request.scene), request.command_line,
-        {{"finite elements", "deal.II " DEAL_II_PACKAGE_VERSION}, {"ranks", std::to_string(ranks().size)}});
+    write_provenance(request.folder, to_toml(request.scene), request.command_line,
+                     {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
   });
 }
 

@@ -3,113 +3,145 @@
 
 #include "base/files/bytes.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace isostat
 {
 namespace
 {
-template <typename T>
-std::vector<T> gathered(std::span<const T> all, const std::vector<std::size_t> &places)
+/// f(entries of a part): those of `all` themselves if they lie side by side, else a copy in the part's order.
+template <typename Member, typename T, typename F>
+void with_entries(const Member &part, std::span<const T> all, const F &f)
 {
-  std::vector<T> mine(places.size());
-  for (std::size_t k = 0; k < places.size(); ++k)
-    mine[k] = all[places[k]];
-  return mine;
+  if (part.side_by_side)
+    return f(part.places.empty() ? all.first(0) : all.subspan(part.places.front(), part.places.size()));
+  std::vector<T> own;
+  for (std::size_t place : part.places)
+    own.push_back(all[place]);
+  f(std::span<const T>(own));
 }
 
-template <typename T>
-void scatter(const std::vector<T> &mine, const std::vector<std::size_t> &places, std::span<T> all)
+/// As above for entries that f fills.
+template <typename Member, typename T, typename F>
+void fill_entries(const Member &part, std::span<T> all, const F &f)
 {
-  for (std::size_t k = 0; k < places.size(); ++k)
-    all[places[k]] = mine[k];
+  if (part.side_by_side)
+    return f(part.places.empty() ? all.first(0) : all.subspan(part.places.front(), part.places.size()));
+  std::vector<T> own(part.places.size());
+  f(std::span<T>(own));
+  for (std::size_t k = 0; k < own.size(); ++k)
+    all[part.places[k]] = own[k];
 }
-/// Where points of a part are in the mesh, for a message that counts them in the part; empty if they count alike.
-std::string which(const CompositeMaterial::Part &part)
+
+/// For messages: nothing if the part's numbers are the mesh's.
+template <typename Member>
+std::string which(const Member &part)
 {
-  constexpr std::size_t most = 20;
-  bool alike = true;
+  constexpr std::size_t max_named = 20;
+  if (part.side_by_side && (part.places.empty() || part.places.front() == 0))
+    return "";
   std::string places;
-  for (std::size_t k = 0; k < part.places.size(); ++k)
-    {
-      alike &= part.places[k] == k;
-      if (k <= most)
-        places += (k == 0 ? "" : ", ") + (k == most ? "..." : std::to_string(part.places[k]));
-    }
-  return alike ? "" : "material '" + part.material->name() + "', whose points are " + places + " of the mesh: ";
+  if (part.side_by_side)
+    places = std::to_string(part.places.front()) + " to " + std::to_string(part.places.back());
+  else
+    for (std::size_t k = 0; k < std::min(part.places.size(), max_named + 1); ++k)
+      places += (k == 0 ? "" : ", ") + (k == max_named ? "..." : std::to_string(part.places[k]));
+  return "material '" + part.material->name() + "', whose points are " + places + " of the mesh: ";
 }
 } // namespace
 
-CompositeMaterial::CompositeMaterial(std::vector<Part> parts) : parts_(std::move(parts))
+CompositeMaterial::CompositeMaterial(std::vector<Part> parts)
 {
-  for (const Part &part : parts_)
+  for (const Part &part : parts)
     n_points_ += part.places.size();
   std::vector<int> covered(n_points_, 0);
-  for (const Part &part : parts_)
+  for (Part &part : parts)
     {
       if (!part.material || part.material->n_points() != part.places.size())
         throw InputError("composite: a part has other points than its material");
-      for (std::size_t place : part.places)
-        if (place >= n_points_ || covered[place]++)
-          throw InputError("composite: point " + std::to_string(place) + " has two materials, or is outside");
+      bool side_by_side = true;
+      for (std::size_t k = 0; k < part.places.size(); ++k)
+        {
+          const std::size_t place = part.places[k];
+          if (place >= n_points_ || covered[place]++)
+            throw InputError("composite: point " + std::to_string(place) + " has two materials, or is outside");
+          side_by_side &= place == part.places.front() + k;
+        }
+      parts_.push_back({std::move(part), side_by_side});
     }
+}
+
+std::unique_ptr<Material> stacked(std::vector<std::unique_ptr<Material>> materials)
+{
+  std::vector<CompositeMaterial::Part> parts;
+  std::size_t first = 0;
+  for (auto &material : materials)
+    {
+      if (!material)
+        throw InputError("stacked materials: a layer has no material; give each layer one");
+      std::vector<std::size_t> places(material->n_points());
+      std::iota(places.begin(), places.end(), first);
+      first += places.size();
+      parts.push_back({std::move(material), std::move(places)});
+    }
+  return std::make_unique<CompositeMaterial>(std::move(parts));
 }
 
 void CompositeMaterial::set_initial_stress(std::span<const Stress> effective)
 {
-  for (Part &part : parts_)
-    part.material->set_initial_stress(gathered<Stress>(effective, part.places));
+  assert(effective.size() == n_points_);
+  for (const Member &part : parts_)
+    try
+      {
+        with_entries(part, effective, [&](std::span<const Stress> own) { part.material->set_initial_stress(own); });
+      }
+    catch (const InputError &error)
+      {
+        throw InputError(which(part) + error.what());
+      }
 }
 
 void CompositeMaterial::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
 {
   assert(increments.size() == n_points_ && stresses.size() == n_points_);
-  for (std::size_t k = 0; k < parts_.size(); ++k)
-    {
-      std::vector<Stress> mine(parts_[k].places.size());
-      try
-        {
-          parts_[k].material->trial(gathered<Gradient>(increments, parts_[k].places), mine);
-        }
-      catch (const RunFailure &failure)
-        {
-          rollback(); // of all: the parts before this one have a trial
-          throw RunFailure(which(parts_[k]) + failure.what());
-        }
-      scatter(mine, parts_[k].places, stresses);
-    }
+  for (const Member &part : parts_)
+    try
+      {
+        with_entries(part, increments, [&](std::span<const Gradient> own) {
+          fill_entries(part, stresses, [&](std::span<Stress> found) { part.material->trial(own, found); });
+        });
+      }
+    catch (const RunFailure &failure)
+      {
+        rollback(); // of all: the parts before this one have a trial
+        throw RunFailure(which(part) + failure.what());
+      }
 }
 
 void CompositeMaterial::commit()
 {
-  for (Part &part : parts_)
+  for (const Member &part : parts_)
     part.material->commit();
 }
 
 void CompositeMaterial::rollback()
 {
-  for (Part &part : parts_)
+  for (const Member &part : parts_)
     part.material->rollback();
 }
 
 void CompositeMaterial::stiffness(std::span<Stiffness> tangents) const
 {
-  for (const Part &part : parts_)
-    {
-      std::vector<Stiffness> mine(part.places.size());
-      part.material->stiffness(mine);
-      scatter(mine, part.places, tangents);
-    }
+  for (const Member &part : parts_)
+    fill_entries(part, tangents, [&](std::span<Stiffness> own) { part.material->stiffness(own); });
 }
 
 void CompositeMaterial::wave_moduli(std::span<WaveModuli> moduli) const
 {
-  for (const Part &part : parts_)
-    {
-      std::vector<WaveModuli> mine(part.places.size());
-      part.material->wave_moduli(mine);
-      scatter(mine, part.places, moduli);
-    }
+  for (const Member &part : parts_)
+    fill_entries(part, moduli, [&](std::span<WaveModuli> own) { part.material->wave_moduli(own); });
 }
 
 std::vector<std::byte> CompositeMaterial::pack() const
@@ -117,7 +149,7 @@ std::vector<std::byte> CompositeMaterial::pack() const
   ByteWriter out;
   out.text(name());
   out.count(parts_.size());
-  for (const Part &part : parts_)
+  for (const Member &part : parts_)
     {
       out.text(part.material->name());
       out.count(part.places.size());
@@ -132,7 +164,7 @@ void CompositeMaterial::unpack(std::span<const std::byte> bytes)
   in.expect(in.text(), name());
   in.expect(in.count(), parts_.size(), "parts");
   std::vector<std::span<const std::byte>> blocks;
-  for (const Part &part : parts_) // all headers first: nothing changes unless they fit
+  for (const Member &part : parts_) // all headers first: nothing changes unless they fit
     {
       in.expect(in.text(), part.material->name());
       in.expect(in.count(), part.places.size(), "points in a part");

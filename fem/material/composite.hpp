@@ -4,10 +4,10 @@
 
 namespace isostat
 {
-/// Materials whose points lie anywhere among those of the mesh, as one: part k has the points `places[k]`, in that
-/// order. A part whose points are shared out over processes can so have all of its points in one batch, whatever layers
-/// lie between them. A failure says which points of the mesh those of its part are.   cost: a copy of increments and
-/// stresses   tested: tests/fem/material/material_test.cpp
+/// Several materials as one: part k has the points `places[k]` of the mesh, in that order. Points that lie side by side
+/// (a layer of a column) are handed on in place; others are copied, so a part whose points are shared out over
+/// processes can have all of its points in one batch, whatever layers lie between them. A failure says which points of
+/// the mesh those of its part are.   tested: tests/fem/material/material_test.cpp
 class CompositeMaterial : public Material
 {
 public:
@@ -32,7 +32,15 @@ public:
   void unpack(std::span<const std::byte> bytes) override;
 
 private:
-  std::vector<Part> parts_;
+  struct Member : Part
+  {
+    bool side_by_side; ///< places are first, first + 1, ...
+  };
+  std::vector<Member> parts_;
   std::size_t n_points_ = 0;
 };
+
+/// Materials one after another: the points of the first come first. Layers of a profile from the base up.
+/// @throws InputError  a part is missing
+std::unique_ptr<Material> stacked(std::vector<std::unique_ptr<Material>> parts);
 } // namespace isostat

@@ -38,7 +38,8 @@ struct WaveModuli
 ///     material.trial(increments, stresses);   // all points at once: a material may share them out as it likes
 ///     material.commit();                      // or rollback()
 ///
-/// Points are numbered 0 .. n_points()-1 and keep their number for good.
+/// Points are numbered 0 .. n_points()-1 and keep their number for good. What a user adds of their own is one class
+/// with these functions.   tested: tests/fem/material/material_test.cpp asks every material for this protocol
 class Material
 {
 public:
@@ -69,31 +70,5 @@ public:
   /// @throws InputError from unpack() if the bytes are not those of this material with these points
   virtual std::vector<std::byte> pack() const = 0;
   virtual void unpack(std::span<const std::byte> bytes) = 0;
-};
-
-/// Materials side by side as one: the points of the first part come first. Layers of a soil profile are its parts.
-/// tested: tests/fem/material/material_test.cpp
-class LayeredMaterial : public Material
-{
-public:
-  explicit LayeredMaterial(std::vector<std::unique_ptr<Material>> parts);
-
-  std::string name() const override;
-  std::size_t n_points() const override { return n_points_; }
-  void set_initial_stress(std::span<const Stress> effective) override;
-  void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
-  void stiffness(std::span<Stiffness> tangents) const override;
-  void wave_moduli(std::span<WaveModuli> moduli) const override;
-  std::vector<std::byte> pack() const override;
-  void unpack(std::span<const std::byte> bytes) override;
-
-  const Material &part(std::size_t k) const { return *parts_[k]; }
-  std::size_t n_parts() const { return parts_.size(); }
-
-private:
-  std::vector<std::unique_ptr<Material>> parts_;
-  std::size_t n_points_ = 0;
 };
 } // namespace isostat

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in brackets are equations of docs/theory_column.md.
 #include "fem/solve/dynamics.hpp"
 
 #include "base/error.hpp"
+#include "fem/water/pressure_system.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -49,6 +48,9 @@ Dynamics<dim>::Dynamics(const Discretisation<dim> &space, Material &material, Dy
   if (settings_.lagged_compressibility)
     lagged_pressure_.assign(space_.n_points(), 0.0);
 }
+
+template <int dim>
+Dynamics<dim>::~Dynamics() = default;
 
 template <int dim>
 void Dynamics<dim>::check_settings() const
@@ -103,163 +105,77 @@ void Dynamics<dim>::make_coefficients()
       damping_.local_element(i) = update_.local_element(i) = keep_.local_element(i) = 0;
 }
 
-/// (10), with the present moduli.
 template <int dim>
-double Dynamics<dim>::stable_step() const
+std::vector<double> Dynamics<dim>::point_pressure() const
 {
-  material_.wave_moduli(moduli_);
-  return 2 / std::sqrt(space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
-}
-
-/// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
-template <int dim>
-void Dynamics<dim>::find_loads()
-{
-  const double t = time();
-  const Base &base = settings_.base;
-  frame_ = {};
-  for (int axis = 0; axis < 3; ++axis)
-    if (!base.compliant())
-      frame_[axis] = -settings_.motion[axis].acceleration(t);
-  for (unsigned i : loaded_)
-    load_.local_element(i) = 0;
-  if (base.compliant())
-    for (unsigned i : loaded_)
-      load_.local_element(i) += dashpot_.local_element(i) * settings_.motion[i % 3].velocity(t);
-  if (settings_.surface_traction)
+  if (settings_.drainage == Drainage::coupled)
+    return space_.point_pressures(p_);
+  std::vector<double> pressure(space_.n_points(), 0.0);
+  if (settings_.drainage == Drainage::undrained) // (12): vertical equilibrium
     {
-      const std::array<double, 3> traction = settings_.surface_traction(t);
-      for (unsigned i : loaded_)
-        load_.local_element(i) += surface_.local_element(i) * traction[i % 3];
+      const double load = settings_.surface_traction ? settings_.surface_traction(time())[2] : 0;
+      for (std::size_t q = 0; q < pressure.size(); ++q)
+        pressure[q] = stresses_[q][2] - initial_stresses_[q][2] - load;
     }
-  force_ = 0;
-  space_.add_internal_force(stresses_, force_);
-  // the difference of two whole sums: zero to the bit as long as the stresses are those of the start
-  const std::size_t n = force_.locally_owned_size();
-  for (std::size_t i = 0; i < n; ++i)
-    force_.local_element(i) += minus_reference_.local_element(i);
+  return pressure;
 }
 
-/// From the velocity at the start to the one half a step before: v(-1/2) = v(0) - dt/2 a(0).
 template <int dim>
-void Dynamics<dim>::start()
+Vector Dynamics<dim>::acceleration() const
 {
-  const std::size_t n = u_.locally_owned_size();
-  for (std::size_t i = 0; i < n; ++i)
-    if (update_.local_element(i) > 0)
-      {
-        const double v = v_.local_element(i), m = mass_.local_element(i);
-        exchanged_ += m * v * v / 2;
-        v_.local_element(i) -=
-            time_step_ / 2 / m *
-            (m * frame_[i % 3] + load_.local_element(i) - force_.local_element(i) - damping_.local_element(i) * v);
-      }
+  Vector a = v_;
+  a -= next_;
+  a /= time_step_;
+  return a;
 }
 
-/// Pore pressure of this instant by (8), from the velocity v* that would follow without it.
 template <int dim>
-void Dynamics<dim>::find_pressure()
+DynamicsEnergy Dynamics<dim>::energy() const
 {
-  const std::size_t n = u_.locally_owned_size();
-  const double *load = load_.begin(), *force = force_.begin(), *update = update_.begin(), *keep = keep_.begin(),
-               *mass = mass_.begin(), *v = v_.begin();
-  double *next = next_.begin();
-  for (std::size_t i = 0; i < n; i += 3)
-    for (std::size_t c = 0; c < 3; ++c)
-      next[i + c] = update[i + c] * (mass[i + c] * frame_[c] + load[i + c] - force[i + c]) + keep[i + c] * v[i + c];
-  pressure_system_->solve(next_, v_, p_, p_before_, {-frame_[0], -frame_[1], -frame_[2]}, p_next_);
-  p_next_.swap(p_before_);
-  p_before_.swap(p_);
-  pressure_system_->force(p_, pore_force_);
-}
-
-/// v+ of (4) and u of (6), and the work (11) of the half intervals before and after time(); with the kinetic energy at
-/// time() the balance of central differences is an identity, for any material. One pass; sums of x, y and z are kept
-/// apart, their order is that of the code.
-template <int dim>
-template <bool coupled>
-void Dynamics<dim>::move()
-{
-  const std::size_t n = u_.locally_owned_size();
-  const double *load = load_.begin(), *force = force_.begin(), *pore = pore_force_.begin(), *damping = damping_.begin(),
-               *mass = mass_.begin(), *update = update_.begin(), *keep = keep_.begin(), *before = v_.begin();
-  double *after = next_.begin(), *u = u_.begin();
-  double kinetic[3] = {}, moving[3] = {}, outer_before[3] = {}, outer_after[3] = {}, inner_before[3] = {},
-         inner_after[3] = {};
-  for (std::size_t k = 0; k < n; k += 3)
-    for (std::size_t c = 0; c < 3; ++c)
-      {
-        const std::size_t i = k + c;
-        const double outer = mass[i] * frame_[c] + load[i], inner = coupled ? pore[i] - force[i] : -force[i],
-                     v = before[i], w = update[i] * (outer + inner) + keep[i] * v;
-        after[i] = w;
-        u[i] += time_step_ * w;
-        const double external = outer - damping[i] * (0.5 * (v + w));
-        kinetic[c] += mass[i] * v * w;
-        moving[c] += mass[i] * w * w;
-        outer_before[c] += external * v;
-        outer_after[c] += external * w;
-        inner_before[c] += inner * v;
-        inner_after[c] += inner * w;
-      }
-  v_.swap(next_); // next_ keeps v-
-  const auto sum = [](const double(&x)[3]) { return x[0] + x[1] + x[2]; };
-  const double half = time_step_ / 2;
-  energy_ = {sum(kinetic) / 2, half_way_.internal - half * sum(inner_before),
-             half_way_.external + half * sum(outer_before)};
-  half_way_ = {sum(moving) / 2, energy_.internal - half * sum(inner_after), energy_.external + half * sum(outer_after)};
-  exchanged_ += half * (std::abs(sum(outer_before)) + std::abs(sum(outer_after)));
-}
-
-/// A motion that grows without anything that drives it, or that is no number.
-template <int dim>
-void Dynamics<dim>::check_motion()
-{
-  double sums[2] = {half_way_.kinetic, exchanged_};
+  double sums[3] = {energy_.kinetic, energy_.internal, energy_.external};
   if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, space_.communicator());
-  if (!(sums[0] <= 1e3 * (sums[1] + min_energy_)))
-    throw RunFailure(fmt::format("unstable: kinetic energy {:.3g} J, but only {:.3g} J went in, at step {} (t = {:.6g} "
-                                 "s); use a smaller time step",
-                                 sums[0], sums[1], step_, time()));
-  const double stable = stable_step();
-  if (time_step_ > stable)
-    throw RunFailure(fmt::format("unstable: the time step {:.6g} s is above the stable one, {:.6g} s, at step {} (t = "
-                                 "{:.6g} s), because the soil has become stiffer; use a time step below it",
-                                 time_step_, stable, step_, time()));
-}
-
-/// The strains of the step that u has made; the material follows.
-template <int dim>
-void Dynamics<dim>::strain_points()
-{
-  if (space_.shared_out())
-    v_.update_ghost_values();
-  space_.gradients(v_, increments_, time_step_);
-  if (space_.shared_out())
-    v_.zero_out_ghost_values();
-  if (!lagged_pressure_.empty())
-    add_lagged_compression();
-  material_.trial(increments_, stresses_);
-  material_.commit();
+    MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  return {sums[0], sums[1], sums[2]};
 }
 
 template <int dim>
-void Dynamics<dim>::step()
+template <typename Self, typename Visit>
+void Dynamics<dim>::for_each_field(Self &self, Visit &&visit)
 {
-  find_loads();
-  if (step_ == 0)
-    start();
-  if (pressure_system_)
-    {
-      find_pressure();
-      move<true>();
-    }
-  else
-    move<false>();
-  strain_points();
-  ++step_;
-  check_motion();
+  visit.constant("time_step", self.time_step_);
+  visit("displacement", self.u_);
+  visit("velocity", self.v_);
+  visit("velocity_before", self.next_);
+  visit("pressure", self.p_);
+  visit("pressure_before", self.p_before_);
+  visit("stress", self.stresses_);
+  visit("initial_stress", self.initial_stresses_);
+  visit("minus_reference_force", self.minus_reference_);
+  visit("lagged_pressure", self.lagged_pressure_);
+  visit("kinetic", self.energy_.kinetic);
+  visit("internal", self.energy_.internal);
+  visit("external", self.energy_.external);
+  visit("half_way_kinetic", self.half_way_.kinetic);
+  visit("half_way_internal", self.half_way_.internal);
+  visit("half_way_external", self.half_way_.external);
+  visit("exchanged", self.exchanged_);
+}
+
+template <int dim>
+SolverState Dynamics<dim>::save() const
+{
+  FieldWriter write(step_, material_, space_.shared_out());
+  for_each_field(*this, write);
+  return write.state;
+}
+
+template <int dim>
+void Dynamics<dim>::restore(const SolverState &state)
+{
+  for_each_field(*this, FieldReader(state, true));
+  material_.unpack(state.material);
+  for_each_field(*this, FieldReader(state));
+  step_ = state.step;
 }
 
 template class Dynamics<1>;

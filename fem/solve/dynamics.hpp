@@ -2,15 +2,16 @@
 #pragma once
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
+#include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
-#include "fem/water/biot.hpp"
 
 #include <functional>
-#include <map>
-#include <memory>
 
 namespace isostat
 {
+template <int dim>
+class PressureSystem;
+
 /// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
 using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
 
@@ -26,15 +27,6 @@ struct DynamicsSettings
   SurfaceTraction surface_traction = {}; ///< none: free
 };
 
-/// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
-struct DynamicsState
-{
-  std::uint64_t step = 0;
-  std::map<std::string, std::vector<double>> vectors;
-  std::map<std::string, double> numbers;
-  std::vector<std::byte> material;
-};
-
 /// Energy since the start, J (per m2 of a column).
 struct DynamicsEnergy
 {
@@ -46,17 +38,19 @@ struct DynamicsEnergy
 };
 
 /// Waves in a block of saturated soil: central differences in the displacement, effective stress explicit, pore
-/// pressure implicit. One evaluation of the material per step; the system for the pressure is constant and is
-/// factorised once.
+/// pressure implicit. One evaluation of the material per step. docs/theory_column.md (4), (5), (6):
 ///
 ///     M (v+ - v-)/dt + C (v+ + v-)/2 = f - F(sigma') + G^T p                      momentum of the mixture at t_n
 ///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt = 0        water, second order backward (BDF2)
+///     u_next = u + dt v+
 ///
-/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. The skeleton alone limits dt; water of any stiffness and permeability
-/// does not (roots of the amplification polynomial on or inside the unit circle for omega dt <= 2). Displacements count
-/// from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969). The state at the start is taken
-/// as in equilibrium: a frozen column stays still to the bit.
-/// tested: tests/fem/solve/dynamics_test.cpp, tests/fem/water/biot_test.cpp
+/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is that of the
+/// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
+/// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
+/// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
+/// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still to the
+/// bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/fem/solve/shear_layer_test.cpp,
+/// tests/fem/water/pressure_system_test.cpp
 template <int dim>
 class Dynamics
 {
@@ -64,6 +58,7 @@ public:
   /// @pre material.n_points() == space.n_points(), initial stress set
   /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
   Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings);
+  ~Dynamics();
 
   /// One time step.
   /// @throws RunFailure  the stiffness has risen so that the step is no longer stable, or the motion explodes
@@ -88,12 +83,16 @@ public:
 
   /// To the bit.
   /// @throws InputError  restore() of another mesh, material or step; save() of a mesh shared out over ranks
-  DynamicsState save() const;
-  void restore(const DynamicsState &state);
+  SolverState save() const;
+  void restore(const SolverState &state);
 
 private:
+  // dynamics.cpp
   void check_settings() const;
   void make_coefficients();
+  template <typename Self, typename Visit>
+  static void for_each_field(Self &self, Visit &&visit);
+  // dynamics_step.cpp
   void find_loads();
   void start();
   void find_pressure();
@@ -102,7 +101,6 @@ private:
   void strain_points();
   void add_lagged_compression();
   void check_motion();
-  double water_compliance(std::size_t point) const; ///< 1/Q, 1/Pa
 
   const Discretisation<dim> &space_;
   Material &material_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps, their halving and growth. What a sub-step does is in statics_newton.cpp.
+// Steps, their halving and growth; results and state. What a sub-step does is in statics_newton.cpp.
 #include "fem/solve/statics.hpp"
 
 #include "base/error.hpp"
@@ -141,6 +141,49 @@ void Statics<dim>::fail(double size) const
                                "the load may be more than the soil bears",
                                step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size,
                                time_, step_));
+}
+
+template <int dim>
+std::vector<double> Statics<dim>::point_pressure() const
+{
+  return space_.point_pressures(p_);
+}
+
+template <int dim>
+template <typename Self, typename Visit>
+void Statics<dim>::for_each_field(Self &self, Visit &&visit)
+{
+  visit("displacement", self.u_);
+  visit("pressure", self.p_);
+  visit("last_displacement_increment", self.last_du_);
+  visit("last_pressure_increment", self.last_dp_);
+  visit("load", self.load_);
+  visit("reference_force", self.reference_force_);
+  visit("stress", self.stresses_);
+  visit("time", self.time_);
+  visit("duration_before", self.duration_before_);
+  visit("substep", self.substep_);
+  visit("force_scale", self.scale_);
+  visit("min_force_scale", self.min_scale_);
+  visit("pressure_scale", self.pressure_scale_);
+}
+
+template <int dim>
+SolverState Statics<dim>::save() const
+{
+  FieldWriter write(step_, material_, space_.shared_out());
+  for_each_field(*this, write);
+  return write.state;
+}
+
+template <int dim>
+void Statics<dim>::restore(const SolverState &state)
+{
+  for_each_field(*this, FieldReader(state, true));
+  material_.unpack(state.material);
+  for_each_field(*this, FieldReader(state));
+  step_ = state.step;
+  system_ = std::make_unique<StaticsSystem<dim>>(space_, water_.get(), pressure_scale_);
 }
 
 template class Statics<1>;

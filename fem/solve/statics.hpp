@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/solve/newton_settings.hpp"
+#include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
 
 #include <functional>
-#include <map>
-#include <memory>
-#include <string>
 
 namespace isostat
 {
@@ -14,8 +12,6 @@ template <int dim>
 class BiotOperator;
 template <int dim>
 class StaticsSystem;
-
-using Place = std::array<double, 3>; ///< x, y, z, m
 
 /// Total traction (of soil and water together, tension positive) on a face, Pa. On a face that moves together only the
 /// sum counts, and `place` is that of one of its nodes: traction times area is the force on a rigid plate.
@@ -43,15 +39,6 @@ struct StaticsSettings
   double min_force = 0; ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
 };
 
-/// All that a step needs of the one before; vectors by name, as a checkpoint stores them.
-struct StaticsState
-{
-  std::uint64_t step = 0;
-  std::map<std::string, std::vector<double>> vectors;
-  std::map<std::string, double> numbers;
-  std::vector<std::byte> material;
-};
-
 /// What the last step took.
 struct StaticsEffort
 {
@@ -60,27 +47,26 @@ struct StaticsEffort
   unsigned trials = 0;                 ///< evaluations of the material
 };
 
-/// Quasi-static loading and consolidation of a block of saturated soil.
+/// Quasi-static loading and consolidation of a block of saturated soil: docs/theory_column.md (14) to (18).
 ///
 ///     F(sigma') - F(sigma'_0) - G^T p = f(t)        equilibrium of the mixture, changes since the start
-///     G du/dt + S dp/dt + H p = 0                   water (fem/water/biot.hpp has the matrices); p = 0 on drained
-///     faces
+///     G du/dt + S dp/dt + H p = 0                   water; p = 0 on drained faces
 ///
-/// Time: BDF2 with variable steps, backward Euler where there is no step before: the first one, after a step without
-/// flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett & Wanner,
-/// Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps.
+/// Time: BDF2 with variable steps (15), backward Euler where there is no step before: the first one, after a step
+/// without flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett &
+/// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps.
 ///
-/// Each step: Newton with the material's tangent and a line search on the norm of the residual. Where Newton fails or
-/// the material refuses, the step is halved, and doubled again after each success; loads and given displacements go
-/// linearly from those of the state to those at the step's end, so a jump is shared out too.
+/// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where Newton
+/// fails or the material refuses, the step is halved, and doubled again after each success; loads and given
+/// displacements go linearly from those of the state to those at the step's end, so a jump is shared out too.
 ///
-/// Converged when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as forces
-/// by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
+/// Converged (17) when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as
+/// forces by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
 /// reactions, included), min_force and 1e-4 |F0|.
 ///
 /// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
 /// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
-/// mandel_test.cpp
+/// mandel_test.cpp, statics_state_test.cpp, statics_failure_test.cpp, statics_ranks_test.cpp
 template <int dim>
 class Statics
 {
@@ -116,8 +102,8 @@ public:
 
   /// To the bit. Between steps, or after a failed one.
   /// @throws InputError  restore() of another mesh or material; save() of a mesh shared out over ranks
-  StaticsState save() const;
-  void restore(const StaticsState &state);
+  SolverState save() const;
+  void restore(const SolverState &state);
 
 private:
   // statics_loads.cpp
@@ -137,6 +123,8 @@ private:
   double squares(const Vector &residual, const Vector &moved, double moved_part, const std::vector<char> &held) const;
   bool on_every_rank(bool good) const;
   // statics.cpp
+  template <typename Self, typename Visit>
+  static void for_each_field(Self &self, Visit &&visit);
   void advance(double duration, bool flow);
   void accept(double duration);
   [[noreturn]] void fail(double size) const;
@@ -168,7 +156,7 @@ private:
 
   // of one sub-step
   bool flow_ = false, tried_ = false;          ///< tried_: the material has been asked
-  double theta_ = 0;                           ///< duration over the leading coefficient of BDF, s; 0: no flow
+  double theta_ = 0;                           ///< of (15): duration over the leading coefficient of BDF, s; 0: no flow
   double last_part_ = 0;                       ///< of the increments before, that BDF counts
   double left_ = 0;                            ///< part of the way of held unknowns that is left
   Vector target_u_;                            ///< of held unknowns

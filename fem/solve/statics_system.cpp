@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers in brackets are equations of docs/theory_column.md.
 #include "fem/solve/statics_system.hpp"
 
-#include "fem/space/petsc_check.hpp"
-#include "fem/space/strain_matrix.hpp"
-#include "fem/water/biot_integrals.hpp"
+#include "base/error.hpp"
+#include "fem/linear/petsc.hpp"
+#include "fem/space/integrals.hpp"
 
-#include <petscmat.h>
+#include <cmath>
 
 namespace isostat
 {
-namespace
-{
-void check(PetscErrorCode code) { petsc_check(code, "system of statics"); }
-} // namespace
-
 template <int dim>
 struct StaticsSystem<dim>::Matrices
 {
@@ -25,16 +21,8 @@ struct StaticsSystem<dim>::Matrices
   std::vector<double> values;            ///< entries in the order of preallocate()
   std::vector<Stiffness> known_tangents; ///< that the factor is of
   double known_theta = -1;
-  Mat whole = nullptr, with_held = nullptr, factor = nullptr; ///< of all unknowns; held rows and columns removed
-  Vec in = nullptr, out = nullptr;
-
-  ~Matrices()
-  {
-    for (Mat *matrix : {&whole, &with_held, &factor})
-      MatDestroy(matrix);
-    for (Vec *vector : {&in, &out})
-      VecDestroy(vector);
-  }
+  PetscMatrix whole, with_held, factor; ///< of all unknowns; held rows and columns removed
+  PetscVector in, out;
 };
 
 template <int dim>
@@ -79,15 +67,14 @@ void StaticsSystem<dim>::number_unknowns()
     for (std::size_t i = 0; i < n; ++i)
       x.local_element(i) = start + i; // exact: a PetscInt of 32 bits
     x.update_ghost_values();
-    numbers.assign(x.begin(),
-                   x.begin() + x.get_partitioner()->locally_owned_size() + x.get_partitioner()->n_ghost_indices());
+    numbers.assign(x.begin(), x.begin() + x.n_local());
   };
   number(u, m.n_u, first, m.of_u);
   number(p, m.n_p, first + m.n_u, m.of_p);
   const auto find_unused = [&](Vector uses, const std::vector<unsigned> &of_cells, std::size_t n, unsigned start) {
     for (unsigned i : of_cells)
       uses.local_element(i) = 1;
-    uses.compress(dealii::VectorOperation::add);
+    uses.add_ghosts_to_owners();
     for (unsigned i = 0; i < n; ++i)
       if (uses.local_element(i) == 0)
         m.unused.push_back(start + i);
@@ -102,7 +89,8 @@ void StaticsSystem<dim>::preallocate()
 {
   Matrices &m = *matrices_;
   const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
-  std::vector<PetscInt> rows, columns, cell_rows(n_u + n_i);
+  PetscEntries entries;
+  std::vector<PetscInt> cell_rows(n_u + n_i);
   for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
     {
       for (std::size_t k = 0; k < n_u; ++k)
@@ -111,24 +99,26 @@ void StaticsSystem<dim>::preallocate()
         cell_rows[n_u + k] = m.of_p[space_.cell_pressures[cell * n_i + k]];
       for (PetscInt row : cell_rows)
         {
-          rows.insert(rows.end(), cell_rows.size(), row);
-          columns.insert(columns.end(), cell_rows.begin(), cell_rows.end());
+          entries.rows.insert(entries.rows.end(), cell_rows.size(), row);
+          entries.columns.insert(entries.columns.end(), cell_rows.begin(), cell_rows.end());
         }
     }
   for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
     {
-      rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
-      columns.push_back(rows.back());
+      entries.rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
+      entries.columns.push_back(entries.rows.back());
     }
-  m.values.assign(rows.size(), 0.0);
-  check(MatCreate(space_.communicator(), &m.whole));
-  check(MatSetSizes(m.whole, m.n_u + m.n_p, m.n_u + m.n_p, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(m.whole, MATAIJ));
-  check(MatSetPreallocationCOO(m.whole, rows.size(), rows.data(), columns.data()));
-  check(MatSetValuesCOO(m.whole, m.values.data(), INSERT_VALUES));
-  check(MatDuplicate(m.whole, MAT_DO_NOT_COPY_VALUES, &m.with_held));
-  check(MatSetOption(m.with_held, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-  check(MatCreateVecs(m.whole, &m.in, &m.out));
+  m.values.assign(entries.rows.size(), 0.0);
+  entries.values = m.values;
+  m.whole = petsc_matrix(space_.communicator(), m.n_u + m.n_p, m.n_u + m.n_p, entries);
+  Mat copy = nullptr;
+  petsc_check(MatDuplicate(m.whole.get(), MAT_DO_NOT_COPY_VALUES, &copy));
+  m.with_held.reset(copy);
+  petsc_check(MatSetOption(copy, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  Vec in = nullptr, out = nullptr;
+  petsc_check(MatCreateVecs(m.whole.get(), &in, &out));
+  m.in.reset(in);
+  m.out.reset(out);
 }
 
 template <int dim>
@@ -182,10 +172,10 @@ void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double th
       k.setZero();
       for (std::size_t q = cell * n_q; q < (cell + 1) * n_q; ++q)
         {
-          strain_matrix(space_, q, b);
+          strain_matrix<dim>(space_, q, b); // K of (16): int B^T C B
           k.topLeftCorner(n_u, n_u) += space_.weight[q] * b.transpose() * (tangents[q] * b);
         }
-      if (m.water)
+      if (m.water) // -G, -G^T, -(S + theta H), pressures in units of the scale
         {
           const BiotCell &water = m.water->cell(cell);
           const double scale = m.pressure_scale;
@@ -195,8 +185,8 @@ void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double th
         }
       Eigen::Map<Eigen::MatrixXd>(&m.values[cell * n * n], n, n) = k.transpose(); // row by row
     }
-  check(MatSetValuesCOO(m.whole, m.values.data(), INSERT_VALUES));
-  check(MatCopy(m.whole, m.with_held, SAME_NONZERO_PATTERN));
+  petsc_check(MatSetValuesCOO(m.whole.get(), m.values.data(), INSERT_VALUES));
+  petsc_check(MatCopy(m.whole.get(), m.with_held.get(), SAME_NONZERO_PATTERN));
 }
 
 /// The analysis does not look at values: a resumed run has the same pivots.
@@ -207,20 +197,23 @@ void StaticsSystem<dim>::factorise()
   std::vector<PetscInt> rows;
   for (unsigned i : m.held)
     rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
-  check(MatZeroRowsColumns(m.with_held, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
+  Mat matrix = m.with_held.get();
+  petsc_check(MatZeroRowsColumns(matrix, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
   MatFactorInfo info;
-  check(MatFactorInfoInitialize(&info));
+  petsc_check(MatFactorInfoInitialize(&info));
   if (!m.factor)
     {
-      check(MatGetFactor(m.with_held, MATSOLVERMUMPS, MAT_FACTOR_LU, &m.factor));
-      check(MatMumpsSetIcntl(m.factor, 6, 0));   // no permutation by values
-      check(MatMumpsSetIcntl(m.factor, 8, 7));   // scaling found at each factorisation
-      check(MatMumpsSetIcntl(m.factor, 14, 60)); // per cent of spare room for pivots
-      check(MatLUFactorSymbolic(m.factor, m.with_held, nullptr, nullptr, &info));
+      Mat factor = nullptr;
+      petsc_check(MatGetFactor(matrix, MATSOLVERMUMPS, MAT_FACTOR_LU, &factor));
+      m.factor.reset(factor);
+      petsc_check(MatMumpsSetIcntl(factor, 6, 0));   // no permutation by values
+      petsc_check(MatMumpsSetIcntl(factor, 8, 7));   // scaling found at each factorisation
+      petsc_check(MatMumpsSetIcntl(factor, 14, 60)); // per cent of spare room for pivots
+      petsc_check(MatLUFactorSymbolic(factor, matrix, nullptr, nullptr, &info));
     }
-  check(MatLUFactorNumeric(m.factor, m.with_held, &info));
+  petsc_check(MatLUFactorNumeric(m.factor.get(), matrix, &info));
   MatFactorError error;
-  check(MatFactorGetError(m.factor, &error));
+  petsc_check(MatFactorGetError(m.factor.get(), &error));
   if (error != MAT_FACTOR_NOERROR)
     throw RunFailure("the tangent is singular: a part moves freely, or a soil has no stiffness");
 }
@@ -230,12 +223,12 @@ void StaticsSystem<dim>::load(const Vector &u, double u_factor, const Vector &p,
 {
   const Matrices &m = *matrices_;
   double *x;
-  check(VecGetArrayWrite(m.in, &x));
+  petsc_check(VecGetArrayWrite(m.in.get(), &x));
   for (std::size_t i = 0; i < m.n_u; ++i)
     x[i] = u_factor * u.local_element(i);
   for (std::size_t i = 0; i < m.n_p; ++i)
     x[m.n_u + i] = p_factor * p.local_element(i);
-  check(VecRestoreArrayWrite(m.in, &x));
+  petsc_check(VecRestoreArrayWrite(m.in.get(), &x));
 }
 
 template <int dim>
@@ -243,14 +236,15 @@ void StaticsSystem<dim>::unload(Vector &u, double u_factor, Vector &p, double p_
 {
   const Matrices &m = *matrices_;
   const double *x;
-  check(VecGetArrayRead(m.out, &x));
+  petsc_check(VecGetArrayRead(m.out.get(), &x));
   for (std::size_t i = 0; i < m.n_u; ++i)
     u.local_element(i) = u_factor * x[i];
   for (std::size_t i = 0; i < m.n_p; ++i)
     p.local_element(i) = p_factor * x[m.n_u + i];
-  check(VecRestoreArrayRead(m.out, &x));
+  petsc_check(VecRestoreArrayRead(m.out.get(), &x));
 }
 
+/// (16) with held unknowns: A x = r - A x_held for the others, x = x_held for these.
 template <int dim>
 void StaticsSystem<dim>::solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u,
                                Vector &moved_p) const
@@ -261,17 +255,17 @@ void StaticsSystem<dim>::solve(const Vector &r_u, const Vector &r_p, Vector &du,
   const auto entry = [&](Vector &u, Vector &p, unsigned i) -> double & {
     return i < m.n_u ? u.local_element(i) : p.local_element(i - m.n_u);
   };
-  for (unsigned i : m.held)
+  for (unsigned i : m.held) // residuals lose what the held increments alone make: A x_held
     entry(given_u, given_p, i) = entry(du, dp, i);
   load(given_u, 1, given_p, 1 / scale);
-  check(MatMult(m.whole, m.in, m.out));
+  petsc_check(MatMult(m.whole.get(), m.in.get(), m.out.get()));
   unload(moved_u, 1, moved_p, 1 / scale);
   rhs_u -= moved_u;
   rhs_p -= moved_p;
   for (unsigned i : m.held) // their rows say: scale x = scale given
     entry(rhs_u, rhs_p, i) = entry(given_u, given_p, i) * (i < m.n_u ? scale : 1 / scale);
   load(rhs_u, 1, rhs_p, scale);
-  check(MatSolve(m.factor, m.in, m.out));
+  petsc_check(MatSolve(m.factor.get(), m.in.get(), m.out.get()));
   unload(du, 1, dp, scale);
 }
 

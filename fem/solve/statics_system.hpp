@@ -4,14 +4,15 @@
 
 namespace isostat
 {
-/// The linear system of a Newton step of statics, symmetric for a symmetric tangent:
+/// The linear system of a Newton step of statics, symmetric for a symmetric tangent: docs/theory_column.md (16).
 ///
 ///     [  K     -G^T        ] [du]   [r_u]      K = int B^T C B
 ///     [ -G   -(S + theta H)] [dp] = [r_p]      theta: time step over the leading coefficient of BDF, s
 ///
 /// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
-/// size. Assembled with PETSc, factorised by MUMPS without symmetry (no tangent of a soil need have it). Held unknowns
-/// take given increments. The factor is kept as long as tangent, theta and held unknowns are the same numbers.
+/// size. Assembled by PETSc, factorised by MUMPS (LU: the tangent of a soil need not be symmetric) on any number of
+/// ranks. Held unknowns take given increments. The factor is kept as long as tangent, theta and held unknowns are the
+/// same numbers.
 /// tested: tests/fem/solve/statics_test.cpp
 template <int dim>
 class StaticsSystem

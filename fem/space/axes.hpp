@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/fem/space/discretisation_test.cpp
 #pragma once
-#include "fem/space/discretisation.hpp"
+#include <array>
+#include <cstddef>
 
 namespace isostat
 {
+/// Faces of a block of soil.
+enum class Face
+{
+  x_low,
+  x_high,
+  y_low,
+  y_high,
+  base,
+  surface
+};
+
+/// A place in space: x, y, z, m. z = 0 at the base, upwards positive.
+using Place = std::array<double, 3>;
+
 /// Axes x, y, z (0, 1, 2) of a mesh's coordinates: z alone, x and z, or all three.
 template <int dim>
 inline constexpr std::array<int, 3> mesh_axes = {2, 2, 2};
@@ -13,7 +28,7 @@ inline constexpr std::array<int, 3> mesh_axes<2> = {0, 2, 2};
 template <>
 inline constexpr std::array<int, 3> mesh_axes<3> = {0, 1, 2};
 
-/// deal.II's number of a face, -1 if its axis is not meshed.
+/// The mesh's number of a face, -1 if its axis is not meshed.
 template <int dim>
 int boundary_id(Face face)
 {
@@ -24,11 +39,12 @@ int boundary_id(Face face)
   return -1;
 }
 
-/// Place of a point of the mesh in space; axes that are not meshed are 0.
-template <int dim>
-std::array<double, 3> place_of(const dealii::Point<dim> &point)
+/// Place of a point of the mesh, which has `dim` coordinates; axes that are not meshed are 0.
+/// tested: tests/fem/space/discretisation_test.cpp
+template <int dim, typename Point>
+Place place_of(const Point &point)
 {
-  std::array<double, 3> place = {0, 0, 0};
+  Place place = {0, 0, 0};
   for (int d = 0; d < dim; ++d)
     place[mesh_axes<dim>[d]] = point[d];
   return place;

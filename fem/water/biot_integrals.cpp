@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/biot_integrals.hpp"
 
-#include "fem/space/axes.hpp"
-
 namespace isostat
 {
 namespace
@@ -35,8 +33,17 @@ void scatter_add(const Eigen::VectorXd &local, const unsigned *unknowns, Vector 
 }
 } // namespace
 
+std::vector<PorousLayer> porous_layers(const SoilProfile &soil)
+{
+  const Water &water = soil.water;
+  std::vector<PorousLayer> layers;
+  for (const Layer &layer : soil.layers)
+    layers.push_back({layer.porosity / water.bulk_modulus, water.mobility(layer.permeability), water.density});
+  return layers;
+}
+
 template <int dim>
-BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, double fluid_density, std::size_t cell)
+BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, std::size_t cell)
 {
   const std::size_t n_a = space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
   const Eigen::MatrixXd to_u = Eigen::MatrixXd::Zero(n_i, 3 * n_a), to_p = Eigen::MatrixXd::Zero(n_i, n_i);
@@ -58,7 +65,7 @@ BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, d
             {
               const std::size_t column = 3 * a + mesh_axes<dim>[d];
               c.g(i, column) += w * value * space.gradient[(point * n_a + a) * dim + d];
-              c.l(i, column) += w * layer.mobility * fluid_density * slope[d] * space.shape[q * n_a + a];
+              c.l(i, column) += w * layer.mobility * layer.fluid_density * slope[d] * space.shape[q * n_a + a];
             }
       }
   return c;
@@ -67,10 +74,9 @@ BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, d
 template <int dim>
 BiotOperator<dim>::BiotOperator(const Discretisation<dim> &space) : space_(space)
 {
-  const SoilProfile &soil = space.mesh().soil;
-  const std::vector<PorousLayer> layers = porous_layers(soil);
+  const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
-    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], soil.water.density, cell));
+    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], cell));
 }
 
 template <int dim>
@@ -81,7 +87,7 @@ void BiotOperator<dim>::add_pore_force(const Vector &p, Vector &f) const
   for (std::size_t cell = 0; cell < cells_.size(); ++cell)
     scatter_add(cells_[cell].g.transpose() * gathered(p, &space_.cell_pressures[cell * n_i], n_i),
                 &space_.cell_dofs[cell * n_u], f);
-  f.compress(dealii::VectorOperation::add);
+  f.add_ghosts_to_owners();
 }
 
 template <int dim>
@@ -98,13 +104,13 @@ void BiotOperator<dim>::add_water_volume(const Vector &u, const Vector &p, const
                       theta * (c.h * gathered(p_now, corners, n_i)),
                   corners, r);
     }
-  r.compress(dealii::VectorOperation::add);
+  r.add_ghosts_to_owners();
 }
 
 template class BiotOperator<1>;
 template class BiotOperator<2>;
 template class BiotOperator<3>;
-template BiotCell biot_cell<1>(const Discretisation<1> &, const PorousLayer &, double, std::size_t);
-template BiotCell biot_cell<2>(const Discretisation<2> &, const PorousLayer &, double, std::size_t);
-template BiotCell biot_cell<3>(const Discretisation<3> &, const PorousLayer &, double, std::size_t);
+template BiotCell biot_cell<1>(const Discretisation<1> &, const PorousLayer &, std::size_t);
+template BiotCell biot_cell<2>(const Discretisation<2> &, const PorousLayer &, std::size_t);
+template BiotCell biot_cell<3>(const Discretisation<3> &, const PorousLayer &, std::size_t);
 } // namespace isostat

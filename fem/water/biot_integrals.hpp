@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/water/biot.hpp"
+#include "fem/space/discretisation.hpp"
 
 namespace isostat
 {
+/// Coefficients of the pore water in each layer, as the solvers take them: docs/theory_column.md (3).
+struct PorousLayer
+{
+  double storage = 0;       ///< 1/Q = n/K_f for rigid grains, 1/Pa
+  double mobility = 0;      ///< kb = k/(rho_f g), m2/(Pa s)
+  double fluid_density = 0; ///< rho_f, kg/m3
+};
+std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
+
 /// Integrals of Biot's equations over one cell, rigid grains (Biot's coefficient 1). Rows are the cell's pressure
-/// nodes; columns its displacements [node][3] (g, l) or its pressure nodes (s, h).
+/// nodes; columns its displacements [node][3] (g, l) or its pressure nodes (s, h). docs/theory_column.md (7).
 struct BiotCell
 {
   Eigen::MatrixXd g; ///< int N_i div N_A, m2: volume that the skeleton takes in per displacement
@@ -14,10 +23,10 @@ struct BiotCell
   Eigen::MatrixXd h; ///< int kb grad N_i grad N_j, m3/(Pa s)
 };
 
-/// @param layer  coefficients of the cell's layer   @param fluid_density  kg/m3
-/// tested: tests/fem/water/biot_test.cpp, tests/verification/consolidation_test.cpp
+/// @param layer  coefficients of the cell's layer
+/// tested: tests/fem/water/pressure_system_test.cpp, tests/verification/consolidation_test.cpp
 template <int dim>
-BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, double fluid_density, std::size_t cell);
+BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, std::size_t cell);
 
 /// The integrals of all cells, and their products with vectors. Displacements and pressures of other ranks are fetched
 /// and results brought home.   tested: tests/verification/consolidation_test.cpp, tests/verification/mandel_test.cpp

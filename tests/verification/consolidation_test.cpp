@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Terzaghi's column: a load q is put on at once, then water leaves through the surface.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
 #include <cstdio>
+#include <gmock/gmock.h>
 #include <numbers>
 
 namespace isostat

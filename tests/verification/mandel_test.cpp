@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mandel's slab between rigid plates: the load at its middle first rises, then drains to the sides (Mandel 1953; Cryer
 // 1963). Half of it, x from 0 (symmetry) to a (drained).
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
 #include <cstdio>
+#include <gmock/gmock.h>
 #include <numbers>
 
 namespace isostat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packings of grains under the dynamic solver: one element against a packing driven alone, a column against its own
 // stiffness.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
+#include <gmock/gmock.h>
 
 #include "coupling/element/axes.hpp"
 #include "fem/material/elastic.hpp"

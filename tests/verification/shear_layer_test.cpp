@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shear waves in a column against exact solutions: transfer functions, orders of convergence, absorbing base.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/transfer_function.hpp"
 
 #include <cstdio>
+#include <gmock/gmock.h>
 
 namespace isostat
 {

@@ -24,7 +24,7 @@ std::unique_ptr<Material> make_layers()
   parts.push_back(std::make_unique<Iwan>(IwanParameters{}, 2));
   parts.push_back(std::make_unique<Elastic>(ElasticParameters{}, 0));
   parts.push_back(std::make_unique<Elastic>(ElasticParameters{}, 3));
-  return std::make_unique<LayeredMaterial>(std::move(parts));
+  return stacked(std::move(parts));
 }
 
 std::unique_ptr<Material> make_composite()
@@ -143,9 +143,10 @@ TEST_P(MaterialProtocol, NotANumberIsARunFailureThatNamesThePoint)
     }
   catch (const RunFailure &e)
     {
-      const char *where = m->name() == "layered"     ? "layer of 'elastic' from point 2 on: elastic: point 2:"
-                          : m->name() == "composite" ? "'iwan', whose points are 4, 0, 2 of the mesh: iwan: point 0:"
-                                                     : "point 4";
+      const char *where =
+          GetParam() == make_layers      ? "'elastic', whose points are 2 to 4 of the mesh: elastic: point 2:"
+          : GetParam() == make_composite ? "'iwan', whose points are 4, 0, 2 of the mesh: iwan: point 0:"
+                                         : "point 4";
       EXPECT_THAT(e.what(), HasSubstr(where));
     }
   m->commit();
@@ -171,21 +172,21 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
 
 INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol, testing::Values(make_elastic, make_iwan, make_layers, make_composite));
 
-TEST(LayeredMaterial, PointsOfTheFirstLayerComeFirst)
+TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {
   std::vector<std::unique_ptr<Material>> parts;
   parts.push_back(std::make_unique<Elastic>(ElasticParameters{1e6, 0.2}, 2));
   parts.push_back(std::make_unique<Elastic>(ElasticParameters{5e6, 0.2}, 1));
-  LayeredMaterial m(std::move(parts));
-  ASSERT_EQ(m.n_points(), 3u);
+  const auto m = stacked(std::move(parts));
+  ASSERT_EQ(m->n_points(), 3u);
   std::vector<Gradient> h(3, Gradient{0, 0, 1e-3});
   std::vector<Stress> s(3);
-  m.trial(h, s);
+  m->trial(h, s);
   EXPECT_DOUBLE_EQ(s[1][4], 1e3);
   EXPECT_DOUBLE_EQ(s[2][4], 5e3);
   parts.clear();
   parts.push_back(nullptr);
-  EXPECT_THROW(LayeredMaterial(std::move(parts)), InputError);
+  EXPECT_THROW(stacked(std::move(parts)), InputError);
 }
 
 TEST(CompositeMaterial, PartsHaveTheirPoints)

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must hold for any run of the dynamics: rest, energy, the stable step, one column in any dimension, restart.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "base/error.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
 
 #include <cstdio>
+#include <gmock/gmock.h>
 
 namespace isostat
 {
@@ -240,13 +239,13 @@ TEST(Dynamics, RestoredRunGoesOnToTheSameBits)
       Dynamics<1> whole(space, first, settings), resumed(space, second, settings);
       for (int k = 0; k < 300; ++k)
         whole.step();
-      const DynamicsState saved = whole.save();
+      const SolverState saved = whole.save();
       for (int k = 0; k < 1000; ++k)
         whole.step();
       resumed.restore(saved);
       for (int k = 0; k < 1000; ++k)
         resumed.step();
-      const DynamicsState a = whole.save(), b = resumed.save();
+      const SolverState a = whole.save(), b = resumed.save();
       EXPECT_EQ(a.vectors, b.vectors);
       EXPECT_EQ(a.numbers, b.numbers);
       EXPECT_EQ(a.material, b.material);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loads that cannot be borne, materials that refuse, and mistakes of the user.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/solve/statics.hpp"
 #include "tests/fem/solve/secant_material.hpp"
 #include "tests/support/near.hpp"
 
 #include <cstdio>
+#include <gmock/gmock.h>
 
 namespace isostat
 {
@@ -87,11 +86,11 @@ TEST(StaticsFailure, MaterialThatNeverAnswers)
   SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
   Statics<1> statics(space, soil, sheared(0.5e5));
   statics.step(0.5);
-  const StaticsState before = statics.save();
+  const SolverState before = statics.save();
   soil.largest_strain = 0;
   EXPECT_THAT([&] { statics.step(0.5); },
               ThrowsMessage<RunFailure>(AllOf(HasSubstr("step 2"), HasSubstr("the material refuses: point 0"))));
-  const StaticsState after = statics.save();
+  const SolverState after = statics.save();
   EXPECT_EQ(after.step, 1u);
   EXPECT_EQ(after.vectors, before.vectors);
   EXPECT_EQ(after.material, before.material);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh shared out over the ranks of a run gives what each rank finds alone. Run with mpirun.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
 #include <cstdio>
+#include <gmock/gmock.h>
 
 namespace isostat
 {

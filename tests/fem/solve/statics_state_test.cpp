@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run that is saved and goes on elsewhere has the same bits. Sand that is sheared while it drains.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/material/iwan.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/fem/solve/secant_material.hpp"
 
 #include <cstdio>
+#include <gmock/gmock.h>
 #include <numbers>
 
 namespace isostat
@@ -76,11 +75,11 @@ TEST(StaticsState, ResumesToTheBit)
       sand->statics.step_undrained();
       some_steps(sand->statics);
     }
-  const StaticsState state = first.statics.save();
+  const SolverState state = first.statics.save();
   second.statics.restore(state);
   some_steps(whole.statics);
   some_steps(second.statics);
-  const StaticsState a = whole.statics.save(), b = second.statics.save();
+  const SolverState a = whole.statics.save(), b = second.statics.save();
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.vectors, b.vectors);
   EXPECT_EQ(a.numbers, b.numbers);
@@ -91,7 +90,7 @@ TEST(StaticsState, ResumesToTheBit)
 TEST(StaticsState, RefusesAnotherMesh)
 {
   Sand sand;
-  StaticsState state = sand.statics.save();
+  SolverState state = sand.statics.save();
   state.vectors["displacement"].pop_back();
   EXPECT_THAT([&] { sand.statics.restore(state); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("\"displacement\"")));
@@ -107,10 +106,10 @@ TEST(StaticsState, RestStaysAtRest)
   Iwan soil(IwanParameters{}, space.n_points());
   Sand::start(soil);
   Statics<1> statics(space, soil, {.pore_water = true});
-  const StaticsState before = statics.save();
+  const SolverState before = statics.save();
   for (int k = 0; k < 3; ++k)
     statics.step(10);
-  const StaticsState after = statics.save();
+  const SolverState after = statics.save();
   EXPECT_EQ(before.vectors, after.vectors);
   EXPECT_EQ(before.material, after.material);
   EXPECT_EQ(statics.time(), 30);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loads without water: patch tests, rigid plates, reactions, a soil that is not linear.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/solve/statics.hpp"
 #include "fem/space/axes.hpp"
 #include "tests/fem/solve/secant_material.hpp"
 #include "tests/support/near.hpp"
 
 #include <cstdio>
+#include <gmock/gmock.h>
 
 namespace isostat
 {

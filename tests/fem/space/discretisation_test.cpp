@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of a mesh: patch tests in one, two and three dimensions, volumes, masses, areas, places.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "base/error.hpp"
 #include "fem/space/axes.hpp"
+#include "fem/space/discretisation.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
 
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/mapping_q1.h>
-
+#include <gmock/gmock.h>
 #include <numeric>
 #include <set>
 
@@ -32,14 +29,10 @@ template <int dim>
 Vector linear_field(const Discretisation<dim> &space, const Gradient &h)
 {
   Vector u = space.displacement_vector();
-  std::map<dealii::types::global_dof_index, dealii::Point<dim>> places;
-  dealii::DoFTools::map_dofs_to_support_points(dealii::MappingQ1<dim>(), space.nodes(), places);
-  for (const auto &[node, point] : places)
-    for (unsigned c = 0; c < 3; ++c)
-      {
-        const auto x = place_of<dim>(point);
-        u.local_element(space.dof_of_node(node, c)) = 1 + h[3 * c] * x[0] + h[3 * c + 1] * x[1] + h[3 * c + 2] * x[2];
-      }
+  const std::vector<Place> places = space.node_places();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      u.local_element(i) += h[3 * (i % 3) + j] * places[i][j] + (j == 0 ? 1 : 0);
   return u;
 }
 
@@ -67,17 +60,16 @@ void patch_test(unsigned degree)
   const double volume = std::accumulate(space.weight.begin(), space.weight.end(), 0.0);
   const double power = 1 * h[0] + 2 * h[4] + 3 * h[8] + 4 * (h[5] + h[7]) + 5 * (h[2] + h[6]) + 6 * (h[1] + h[3]);
   const double work = f * linear_field(space, h);
-  std::map<dealii::types::global_dof_index, dealii::Point<dim>> places;
-  dealii::DoFTools::map_dofs_to_support_points(dealii::MappingQ1<dim>(), space.nodes(), places);
+  const std::vector<Place> places = space.node_places();
   double inside = 0;
   const double high[] = {4, 2.5, 5};
-  for (const auto &[node, point] : places)
+  for (std::size_t i = 0; i < places.size(); ++i)
     {
       bool on_boundary = false;
-      for (int d = 0; d < dim; ++d)
-        on_boundary = on_boundary || point[d] < 1e-9 || point[d] > high[mesh_axes<dim>[d]] - 1e-9;
-      for (unsigned c = 0; c < 3 && !on_boundary; ++c)
-        inside = std::max(inside, std::abs(f.local_element(space.dof_of_node(node, c))));
+      for (int axis : mesh_axes<dim>)
+        on_boundary = on_boundary || places[i][axis] < 1e-9 || places[i][axis] > high[axis] - 1e-9;
+      if (!on_boundary)
+        inside = std::max(inside, std::abs(f.local_element(i)));
     }
   std::printf("  %dD, degree %u: gradient %.1e, balance %.1e, work %.1e\n", dim, degree, worst, inside,
               std::abs(work / (power * volume) - 1));

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Waves in saturated soil against exact solutions, and the limit in which no water moves.
-#include <gmock/gmock.h> // before deal.II, which has a macro Assert
-
 #include "fem/material/iwan.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
@@ -10,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstdio>
+#include <gmock/gmock.h>
 #include <numbers>
 
 namespace isostat

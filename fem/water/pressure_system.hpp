@@ -2,18 +2,8 @@
 #pragma once
 #include "fem/space/discretisation.hpp"
 
-#include <memory>
-
 namespace isostat
 {
-/// Coefficients of the pore water in each layer, as the solvers take them.
-struct PorousLayer
-{
-  double storage = 0;  ///< 1/Q = n/K_f for rigid grains, 1/Pa
-  double mobility = 0; ///< kb = k/(rho_f g), m2/(Pa s)
-};
-std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
-
 /// The implicit pore pressure of u-p dynamics: docs/theory_column.md (4) to (8). With the water's equation
 ///
 ///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt + L a_base = 0
@@ -28,7 +18,7 @@ std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
 /// p is excess pressure, compression positive, Pa; v in m/s. The matrix is constant: assembled and factorised once by
 /// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
 /// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains).
-/// tested: tests/fem/water/biot_test.cpp
+/// tested: tests/fem/water/pressure_system_test.cpp
 template <int dim>
 class PressureSystem
 {
@@ -40,14 +30,11 @@ public:
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2
   void solve(const Vector &v_star, const Vector &v_before, const Vector &p_before, const Vector &p_before_that,
              const std::array<double, 3> &base_acceleration, Vector &p) const;
-  /// f = G^T p.
+  /// f = G^T p, N.
   void force(const Vector &p, Vector &f) const;
 
 private:
   struct Matrices;
-  void hold(const Discretisation<dim> &space, void *matrix);
-  void make_base_flow(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers);
-
   std::unique_ptr<Matrices> matrices_;
 };
 } // namespace isostat

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/water/pressure_system.hpp"
+
+#include "fem/water/biot_entries.hpp"
+
+namespace isostat
+{
+template <int dim>
+struct PressureSystem<dim>::Matrices
+{
+  PetscMatrix storage;             ///< S/(2 dt)
+  PetscMatrix to_force;            ///< G^T
+  PetscMatrix ahead, behind;       ///< G/2 + L/dt, G/2 - L/dt
+  PetscMatrix factor;              ///< of the matrix of the pressure
+  std::array<Vector, 3> base_flow; ///< L times a unit acceleration along each axis: int kb rho_f grad N_i
+  std::vector<unsigned> held;      ///< owned unknowns with p = 0: drained, or removed by a tie
+  mutable Vector right_hand_side, work;
+  PetscView of_u, of_p, of_residual;
+};
+
+namespace
+{
+/// LU of a square matrix: PETSc's own on one rank, MUMPS on several.
+PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
+{
+  int n_ranks = 1;
+  MPI_Comm_size(communicator, &n_ranks);
+  Mat factor = nullptr;
+  petsc_check(MatGetFactor(matrix, n_ranks > 1 ? MATSOLVERMUMPS : MATSOLVERPETSC, MAT_FACTOR_LU, &factor));
+  PetscMatrix owner(factor);
+  IS rows = nullptr, columns = nullptr;
+  if (n_ranks == 1)
+    petsc_check(MatGetOrdering(matrix, banded ? MATORDERINGNATURAL : MATORDERINGND, &rows, &columns));
+  MatFactorInfo info;
+  petsc_check(MatFactorInfoInitialize(&info));
+  petsc_check(MatLUFactorSymbolic(factor, matrix, rows, columns, &info));
+  petsc_check(MatLUFactorNumeric(factor, matrix, &info));
+  petsc_check(ISDestroy(&rows));
+  petsc_check(ISDestroy(&columns));
+  return owner;
+}
+
+/// Owned pressures that are 0: drained, or not in any cell. Soil without permeability does not feel that its surface is
+/// drained.
+template <int dim>
+std::vector<unsigned> held_pressures(const Discretisation<dim> &space, std::size_t n_owned)
+{
+  std::vector<bool> is_held(n_owned, true), can_flow(n_owned, false);
+  const std::size_t n_i = space.pressure_nodes_per_cell();
+  for (std::size_t k = 0; k < space.cell_pressures.size(); ++k)
+    if (const unsigned p = space.cell_pressures[k]; p < n_owned)
+      {
+        is_held[p] = false;
+        can_flow[p] = can_flow[p] || space.mesh().soil.layers[space.cell_layer[k / n_i]].permeability > 0;
+      }
+  for (unsigned p : space.drained_pressures)
+    if (p < n_owned)
+      is_held[p] = is_held[p] || can_flow[p];
+  std::vector<unsigned> held;
+  for (unsigned p = 0; p < n_owned; ++p)
+    if (is_held[p])
+      held.push_back(p);
+  return held;
+}
+
+template <int dim>
+std::array<Vector, 3> base_flows(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers)
+{
+  const std::size_t n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
+  std::array<Vector, 3> flows;
+  for (Vector &flow : flows)
+    flow = space.pressure_vector();
+  for (std::size_t point = 0; point < space.n_points(); ++point)
+    {
+      const PorousLayer &layer = layers[space.cell_layer[point / n_q]];
+      for (std::size_t i = 0; i < n_i; ++i)
+        for (int d = 0; d < dim; ++d)
+          flows[mesh_axes<dim>[d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
+              space.weight[point] * layer.mobility * layer.fluid_density *
+              space.pressure_gradient[(point * n_i + i) * dim + d];
+    }
+  for (Vector &flow : flows)
+    flow.add_ghosts_to_owners();
+  return flows;
+}
+
+/// 3S/(2 dt) + H + (G/2 + L/dt) D G^T, equation (8); rows of held pressures are those of the identity.
+PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, Mat to_force, double time_step, Vec update,
+                            const std::vector<PetscInt> &held)
+{
+  const PetscMatrix ahead = entries.coupling(0.5, 1 / time_step), seepage = entries.seepage();
+  petsc_check(MatDiagonalScale(ahead.get(), nullptr, update));
+  Mat product = nullptr, matrix = nullptr;
+  petsc_check(MatMatMult(ahead.get(), to_force, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &product));
+  const PetscMatrix product_owner(product);
+  petsc_check(MatDuplicate(storage, MAT_COPY_VALUES, &matrix));
+  PetscMatrix owner(matrix);
+  petsc_check(MatScale(matrix, 3));
+  petsc_check(MatAXPY(matrix, 1, seepage.get(), DIFFERENT_NONZERO_PATTERN));
+  petsc_check(MatAXPY(matrix, 1, product, DIFFERENT_NONZERO_PATTERN));
+  petsc_check(MatZeroRows(matrix, held.size(), held.data(), 1, nullptr, nullptr));
+  return owner;
+}
+} // namespace
+
+template <int dim>
+PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double time_step, const Vector &update)
+{
+  const MPI_Comm communicator = space.communicator();
+  const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
+  const BiotEntries entries(space, layers);
+  const std::size_t n_p = entries.n_pressures;
+  const Vector zero = space.pressure_vector();
+  matrices_.reset(new Matrices{.storage = entries.storage(2 * time_step),
+                               .to_force = entries.to_force(),
+                               .ahead = entries.coupling(0.5, 1 / time_step),
+                               .behind = entries.coupling(0.5, -1 / time_step),
+                               .factor = {},
+                               .base_flow = base_flows(space, layers),
+                               .held = held_pressures(space, n_p),
+                               .right_hand_side = zero,
+                               .work = zero,
+                               .of_u = PetscView(communicator, entries.n_displacements),
+                               .of_p = PetscView(communicator, n_p),
+                               .of_residual = PetscView(communicator, n_p)});
+  Matrices &m = *matrices_;
+  std::vector<PetscInt> held;
+  for (unsigned p : m.held)
+    held.push_back(zero.global_index(p));
+  const PetscMatrix matrix =
+      pressure_matrix(entries, m.storage.get(), m.to_force.get(), time_step, m.of_u.of(update), held);
+  m.of_u.release();
+  m.factor = factorised(matrix.get(), communicator, dim == 1);
+}
+
+template <int dim>
+PressureSystem<dim>::~PressureSystem() = default;
+
+template <int dim>
+void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
+                                const Vector &p_before_that, const std::array<double, 3> &base_acceleration,
+                                Vector &p) const
+{
+  const Matrices &m = *matrices_;
+  const std::size_t n = m.work.locally_owned_size();
+  double *rhs = m.right_hand_side.begin(), *work = m.work.begin();
+  // right-hand side of (8), term by term: S (4p' - p'')/(2 dt)
+  for (std::size_t i = 0; i < n; ++i)
+    work[i] = 4 * p_before.local_element(i) - p_before_that.local_element(i);
+  petsc_check(MatMult(m.storage.get(), m.of_p.of(m.work), m.of_residual.of(m.right_hand_side)));
+  m.of_p.release();
+  // - (G/2 + L/dt) v*
+  petsc_check(MatMult(m.ahead.get(), m.of_u.of(v_star), m.of_p.of(m.work)));
+  m.of_u.release();
+  for (std::size_t i = 0; i < n; ++i)
+    rhs[i] -= work[i];
+  // - (G/2 - L/dt) v-
+  petsc_check(MatMult(m.behind.get(), m.of_u.of(v_before), m.of_p.vec()));
+  m.of_u.release();
+  for (std::size_t i = 0; i < n; ++i)
+    rhs[i] -= work[i];
+  // - L a_base
+  for (int axis = 0; axis < 3; ++axis)
+    if (base_acceleration[axis] != 0)
+      for (std::size_t i = 0; i < n; ++i)
+        rhs[i] -= base_acceleration[axis] * m.base_flow[axis].local_element(i);
+  for (unsigned held : m.held)
+    rhs[held] = 0;
+  m.of_p.release();
+  petsc_check(MatSolve(m.factor.get(), m.of_residual.vec(), m.of_p.of(p)));
+  m.of_p.release();
+  m.of_residual.release();
+}
+
+template <int dim>
+void PressureSystem<dim>::force(const Vector &p, Vector &f) const
+{
+  const Matrices &m = *matrices_;
+  petsc_check(MatMult(m.to_force.get(), m.of_p.of(p), m.of_u.of(f)));
+  m.of_p.release();
+  m.of_u.release();
+}
+
+template class PressureSystem<1>;
+template class PressureSystem<2>;
+template class PressureSystem<3>;
+} // namespace isostat
