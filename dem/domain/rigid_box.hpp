@@ -6,7 +6,7 @@
 namespace isostat
 {
 /// Rigid, frictionless box aligned with the axes: six planes at lower[k] and upper[k] (m). y is the axial direction of
-/// an element test, x and z are lateral (DESIGN 2).
+/// an element test, x and z are lateral.
 struct RigidBox
 {
   Vec3 lower = Vec3::Zero();

@@ -28,7 +28,7 @@ struct AffineStep
 ///
 ///     A_i = F_i/m;   A_i <- A_i (1 - d sign[A_i (v_i + dt A_i/2)]);   v <- v + dt A;   x <- x + dt v
 ///
-/// component by component, the same for torque and spin (DESIGN 3, Motion; damping acts on absolute velocity).
+/// component by component, the same for torque and spin (docs/theory.md; damping acts on absolute velocity).
 /// @param action  [F 0 T 0] per grain, N and N m; zero afterwards      @param dt  s      @param damping  d [-], [0, 1)
 /// @param speed_limit  m/s; a grain with a faster velocity component is reported as exploded
 /// @param measure_damping  also sum the energy that damping takes, exact for this scheme: d |F| |v_mid| dt

@@ -15,7 +15,7 @@ struct Cloud
   std::uint64_t attempts = 0; ///< positions tried, all grains together
 };
 
-/// Random cloud of spheres that follow the grading, in a cube (DESIGN 5).
+/// Random cloud of spheres that follow the grading, in a cube.
 /// Sizes: sample_diameters, scaled by one factor so that sum pi/6 d^3 = solid_fraction cloud_edge^3.
 /// Places: random sequential addition (Widom 1966, J. Chem. Phys. 44, 3888), largest grain first. A centre is drawn
 /// uniformly where the whole sphere is inside, and drawn again while the sphere overlaps one already placed. Attempt a

@@ -22,7 +22,7 @@ struct BuiltInCurve
 const std::vector<BuiltInCurve> &built_in_curves()
 {
   static const std::vector<BuiltInCurve> curves = {
-      {"karlsruhe-fine-sand", // DESIGN 5
+      {"karlsruhe-fine-sand",
        {{0.0631e-3, 0.0795e-3, 0.1002e-3, 0.1249e-3, 0.1581e-3, 0.2441e-3, 0.3135e-3},
         {1.53, 4.83, 11.96, 28.24, 84.99, 99.75, 100}}}};
   return curves;
