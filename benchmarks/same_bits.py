@@ -155,10 +155,12 @@ def digests_of(folder):
 
 
 def run(command, log, stop_after=None):
+    """Exit code of a run; one that is to be stopped gets SIGINT once it has left three files in the folder `stop_after`."""
     process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=log,
                                stderr=subprocess.STDOUT)
     if stop_after:
-        time.sleep(stop_after)
+        while process.poll() is None and len(list(stop_after.glob("*"))) < 3:
+            time.sleep(0.05)
         process.send_signal(signal.SIGINT)
     return process.wait()
 
@@ -183,7 +185,7 @@ def run_all(binaries, work, wanted, keep):
         begin = time.time()
         with open(folder / "log.txt", "w") as log:
             if "resumed" in name:
-                stopped = run(command, log, stop_after=8)
+                stopped = run(command, log, stop_after=folder / "run/snapshots")
                 code = run([*command, "--resume"], log) if stopped == 130 else 1
             else:
                 code = run(command, log)
