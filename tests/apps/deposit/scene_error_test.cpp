@@ -3,6 +3,7 @@
 #include "apps/deposit/scene.hpp"
 #include "base/error.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -14,25 +15,15 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// The message with which a scene is refused; "accepted" if it is not.
+/// See test::refusal().
 std::string complaint(const std::string &text, const Overrides &overrides = {})
 {
-  try
-    {
-      parse_column_scene(text, "column.toml", overrides);
-    }
-  catch (const InputError &error)
-    {
-      return error.what();
-    }
-  return "accepted";
+  return test::refusal([&] { parse_column_scene(text, "column.toml", overrides); });
 }
 
 void expect_complaint(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
 {
-  const std::string message = complaint(text, overrides);
-  for (const std::string &part : parts)
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\n  lacks: " << part;
+  test::expect_parts(complaint(text, overrides), parts);
 }
 
 TEST(ColumnSceneError, Layers)

@@ -2,6 +2,7 @@
 // What a scene file or an override can have wrong, and what the user is told: place, value, allowed range, remedy.
 #include "base/error.hpp"
 #include "dem/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -18,25 +19,15 @@ const std::string smallest = "[specimen]\nrelative_density = 0.64\n";
 
 const std::string cell = smallest + "domain = \"periodic-cell\"\n";
 
-/// The message with which a scene is refused; "accepted" if it is not.
+/// See test::refusal().
 std::string complaint(const std::string &text, const Overrides &overrides = {})
 {
-  try
-    {
-      parse_scene(text, "scene.toml", overrides);
-    }
-  catch (const InputError &error)
-    {
-      return error.what();
-    }
-  return "accepted";
+  return test::refusal([&] { parse_scene(text, "scene.toml", overrides); });
 }
 
 void expect_complaint(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
 {
-  const std::string message = complaint(text, overrides);
-  for (const std::string &part : parts)
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\n  lacks: " << part;
+  test::expect_parts(complaint(text, overrides), parts);
 }
 
 std::string cyclic_with(const std::string &line)

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a user is told whose scene is refused.
+#pragma once
+#include "base/error.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace isostat::test
+{
+/// The message with which a scene is refused; "accepted" if it is not.   @param parse  reads the scene
+template <typename Parse>
+std::string refusal(const Parse &parse)
+{
+  try
+    {
+      parse();
+    }
+  catch (const InputError &error)
+    {
+      return error.what();
+    }
+  return "accepted";
+}
+
+inline void expect_parts(const std::string &message, const std::vector<std::string> &parts)
+{
+  for (const std::string &part : parts)
+    EXPECT_NE(message.find(part), std::string::npos) << message << "\n  lacks: " << part;
+}
+} // namespace isostat::test
