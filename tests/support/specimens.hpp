@@ -22,6 +22,15 @@ inline LinearRolling paper_law()
   return law;
 }
 
+/// A stage of shear to a strain.
+template <class Kind>
+Kind sheared_to(double strain)
+{
+  Kind stage;
+  stage.strain_end = strain;
+  return stage;
+}
+
 inline GradingSpec small_grading(std::uint64_t grains)
 {
   GradingSpec grading;

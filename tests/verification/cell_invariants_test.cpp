@@ -4,26 +4,13 @@
 #include "dem/measure/stress.hpp"
 #include "tests/support/cells.hpp"
 #include "tests/support/near.hpp"
-
-#include <random>
+#include "tests/support/random.hpp"
 
 namespace isostat
 {
 namespace
 {
 using namespace test;
-
-struct Random
-{
-  explicit Random(unsigned seed) : engine(seed) {}
-  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
-  Vec3 vector()
-  {
-    const double x = (*this)(), y = (*this)();
-    return {x, y, (*this)()};
-  }
-  std::mt19937_64 engine;
-};
 
 Vec3 momentum(const Packing &grains)
 {

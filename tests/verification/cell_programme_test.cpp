@@ -35,14 +35,6 @@ struct Watcher : RunObserver
   std::uint64_t stop_at = 0;
 };
 
-template <class Kind>
-Kind sheared_to(double strain)
-{
-  Kind stage;
-  stage.strain_end = strain;
-  return stage;
-}
-
 struct Result
 {
   Watcher watcher;
@@ -116,7 +108,7 @@ TEST(CellK0, OnlyTheVerticalEdgeMoves)
 
 TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 {
-  const Result result = run(sheared_to<UndrainedMonotonic>(5e-3), test::periodic_specimen(500, 4));
+  const Result result = run(test::sheared_to<UndrainedMonotonic>(5e-3), test::periodic_specimen(500, 4));
   EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
                        "round-off of some 1e4 steps; the volume is set from its logarithm");
   EXPECT_NEAR_BECAUSE(result.watcher.rows.back().seen.axial, 5e-3, 1e-6,
@@ -127,7 +119,7 @@ TEST(CellUndrained, TriaxialCompressionKeepsVolume)
 
 TEST(CellDrained, LateralStressesStay)
 {
-  const Result result = run(sheared_to<Drained>(3e-3), medium());
+  const Result result = run(test::sheared_to<Drained>(3e-3), medium());
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max({worst, std::abs(row.stress(0, 0) / 200e3 - 1), std::abs(row.stress(2, 2) / 200e3 - 1)});
@@ -139,7 +131,7 @@ TEST(CellDrained, LateralStressesStay)
 
 TEST(CellConstantP, MeanStressStays)
 {
-  const Result result = run(sheared_to<ConstantP>(3e-3), medium());
+  const Result result = run(test::sheared_to<ConstantP>(3e-3), medium());
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.seen.p / 200e3 - 1));
@@ -150,7 +142,7 @@ TEST(CellConstantP, MeanStressStays)
 TEST(CellSimpleShear, OnlyGammaMoves)
 {
   const Snapshot &dense = test::periodic_specimen(500, 4);
-  const Result result = run(sheared_to<UndrainedSimpleShear>(5e-3), dense);
+  const Result result = run(test::sheared_to<UndrainedSimpleShear>(5e-3), dense);
   EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
                        "round-off of some 1e4 steps; the volume is set from its logarithm");
   const PeriodicCell &cell = *result.end.cell;
@@ -188,7 +180,7 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
 
 TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)
 {
-  const Stage stage = sheared_to<UndrainedSimpleShear>(2e-3);
+  const Stage stage = test::sheared_to<UndrainedSimpleShear>(2e-3);
   const Result whole = run(stage, medium());
   Assembly first(medium());
   DriveState state;

@@ -2,55 +2,42 @@
 // What must hold for any packing: conservation of momentum, the redundancy index of a packing at rest, the trace of the
 // fabric, and the equality of boundary and contact stress in equilibrium.
 #include "dem/assembly/assembly.hpp"
-#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/fabric.hpp"
 #include "dem/measure/redundancy.hpp"
 #include "dem/measure/stress.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
-
-#include <random>
 
 namespace isostat
 {
 namespace
 {
-LinearRolling paper_law()
-{
-  LinearRolling law;
-  law.friction = std::tan(18 * M_PI / 180);
-  return law;
-}
-
 /// A lattice of grains around the centre of a box that is far away. They move inwards and at random, and spin: many
 /// collisions, some sliding and some rolling.
 Snapshot isolated_cluster(double drift)
 {
-  std::mt19937_64 engine(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  auto random = [&] {
-    const double x = uniform(engine), y = uniform(engine);
-    return Vec3(x, y, uniform(engine));
-  };
+  test::Random random(3);
   std::vector<Vec3> centres;
   std::vector<double> radii;
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < 4; ++b)
       for (int c = 0; c < 4; ++c)
         {
-          radii.push_back(1.5e-4 * (1 + 1e-3 * uniform(engine)));
-          centres.push_back(3e-4 * Vec3(a - 1.5, b - 1.5, c - 1.5) + 3e-7 * random());
+          radii.push_back(1.5e-4 * (1 + 1e-3 * random()));
+          centres.push_back(3e-4 * Vec3(a - 1.5, b - 1.5, c - 1.5) + 3e-7 * random.vector());
         }
   Snapshot s;
-  s.law = paper_law();
+  s.law = test::paper_law();
   s.grains = make_packing(centres, radii, 2650);
   s.box = {Vec3::Constant(-0.1), Vec3::Constant(0.1)};
   for (std::size_t i = 0; i < centres.size(); ++i)
     {
-      s.grains.set_linear_velocity(i, 0.1 * random() - 400 * centres[i] + drift * Vec3(1, -2, 3));
-      s.grains.set_angular_velocity(i, 1000 * random());
+      s.grains.set_linear_velocity(i, 0.1 * random.vector() - 400 * centres[i] + drift * Vec3(1, -2, 3));
+      s.grains.set_angular_velocity(i, 1000 * random.vector());
     }
   return s;
 }
@@ -79,7 +66,8 @@ Momentum momentum(const Packing &grains)
 
 Snapshot reference_packing(const std::string &name)
 {
-  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, "comp", "step0", paper_law(), 2650);
+  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, "comp", "step0", test::paper_law(),
+                            2650);
 }
 
 /// The stored packing at rest with its forces.

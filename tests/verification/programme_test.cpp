@@ -34,14 +34,6 @@ struct Watcher : RunObserver
   std::uint64_t stop_at = 0;
 };
 
-template <class Kind>
-Kind sheared_to(double strain)
-{
-  Kind stage;
-  stage.strain_end = strain;
-  return stage;
-}
-
 UndrainedCyclic cycles(std::uint64_t n)
 {
   UndrainedCyclic stage;
@@ -78,7 +70,7 @@ TEST(Specimen, IsAtItsPressureAndInBalance)
 
 TEST(Drained, LateralStressesStay)
 {
-  const Result result = run(sheared_to<Drained>(5e-3), test::specimen(1000, 10));
+  const Result result = run(test::sheared_to<Drained>(5e-3), test::specimen(1000, 10));
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max({worst, std::abs(row.lateral_x / 200e3 - 1), std::abs(row.lateral_z / 200e3 - 1)});
@@ -91,7 +83,7 @@ TEST(Drained, LateralStressesStay)
 
 TEST(ConstantP, MeanStressStays)
 {
-  const Result result = run(sheared_to<ConstantP>(5e-3), test::specimen(1000, 10));
+  const Result result = run(test::sheared_to<ConstantP>(5e-3), test::specimen(1000, 10));
   double worst = 0;
   for (const auto &row : result.watcher.rows)
     worst = std::max(worst, std::abs(row.p / 200e3 - 1));
@@ -148,7 +140,7 @@ TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
 
 TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
 {
-  const Stage stage = sheared_to<UndrainedMonotonic>(1e-3);
+  const Stage stage = test::sheared_to<UndrainedMonotonic>(1e-3);
   const Result often = run(stage, test::specimen(500, 10), 10), rarely = run(stage, test::specimen(500, 10), 100000);
   EXPECT_EQ(often.end.grains.position, rarely.end.grains.position);
   EXPECT_EQ(often.end.grains.spin, rarely.end.grains.spin);

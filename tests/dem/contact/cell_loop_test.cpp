@@ -52,7 +52,7 @@ CloudInCell cloud_in_cell(unsigned seed, int far = 1)
   Packing &g = c.cloud.packing;
   for (std::size_t i = 0; i < g.n_grains(); ++i)
     {
-      const Vec3 whole = ((far + 0.5) * random.vector(0.999)).array().round();
+      const Vec3 whole = ((far + 0.5) * (0.999 * random.vector())).array().round();
       shift.push_back(whole.cast<int>());
       g.set_centre(i, g.centre(i) + c.edges * whole);
     }

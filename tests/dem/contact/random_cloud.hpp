@@ -2,24 +2,10 @@
 #pragma once
 #include "dem/state/contact_list.hpp"
 #include "dem/state/packing.hpp"
-
-#include <random>
+#include "tests/support/random.hpp"
 
 namespace isostat::test
 {
-/// Uniform in [-1, 1].
-struct Random
-{
-  explicit Random(unsigned seed) : engine(seed) {}
-  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
-  Vec3 vector(double size)
-  {
-    const double x = size * (*this)(), y = size * (*this)();
-    return {x, y, size * (*this)()};
-  }
-  std::mt19937_64 engine;
-};
-
 /// Grains in contact, nearly in contact and far apart, in motion, with a past.
 struct Cloud
 {
@@ -40,7 +26,7 @@ inline Packing random_packing(Random &random, std::size_t n_dense, std::size_t n
   std::vector<double> radii;
   for (std::size_t i = 0; i < n_dense; ++i)
     {
-      centres.push_back(random.vector(6e-4));
+      centres.push_back(6e-4 * random.vector());
       radii.push_back(1.5e-4 * (1 + 0.3 * random()));
     }
   for (std::size_t i = 0; i < n_row; ++i) // a row of neighbours that do not touch: whole blocks without contact
@@ -51,8 +37,8 @@ inline Packing random_packing(Random &random, std::size_t n_dense, std::size_t n
   Packing packing = make_packing(centres, radii, 2650);
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     {
-      packing.set_linear_velocity(i, random.vector(0.5));
-      packing.set_angular_velocity(i, random.vector(2000));
+      packing.set_linear_velocity(i, 0.5 * random.vector());
+      packing.set_angular_velocity(i, 2000 * random.vector());
     }
   return packing;
 }
@@ -65,9 +51,9 @@ inline ContactHistory random_history(Random &random, const Cloud &cloud, const C
   const Vec3 n = (cloud.packing.centre(p.second) - cloud.packing.centre(p.first)).normalized();
   const double fn = 1e6 * std::abs(cloud.gap(p)), length = 0.5 * cloud.packing.radius(p.first);
   ContactHistory h;
-  h.normal = (n + random.vector(1e-3)).normalized();
-  h.shear_force = 0.4 * fn * n.cross(random.vector(1)) + random.vector(1e-3 * fn);
-  h.bending_moment = 1.2 * length * fn * n.cross(random.vector(1));
+  h.normal = (n + 1e-3 * random.vector()).normalized();
+  h.shear_force = 0.4 * fn * n.cross(random.vector()) + 1e-3 * fn * random.vector();
+  h.bending_moment = 1.2 * length * fn * n.cross(random.vector());
   h.twisting_moment = length * fn * random() * n;
   return h;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/contact/virial.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,19 +19,14 @@ struct Term
   Vec3 force, branch;
 };
 
-std::vector<Term> random_terms(std::size_t n, std::uint64_t seed)
+std::vector<Term> random_terms(std::size_t n, unsigned seed)
 {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  auto vector = [&] {
-    const double x = uniform(engine), y = uniform(engine);
-    return Vec3(x, y, uniform(engine));
-  };
+  test::Random random(seed);
   std::vector<Term> terms(n);
   for (Term &t : terms)
     {
-      t.branch = 3e-4 * vector().normalized();
-      t.force = 0.05 * std::exp(3 * uniform(engine)) * (t.branch.normalized() + 0.2 * vector());
+      t.branch = 3e-4 * random.vector().normalized();
+      t.force = 0.05 * std::exp(3 * random()) * (t.branch.normalized() + 0.2 * random.vector());
     }
   return terms;
 }

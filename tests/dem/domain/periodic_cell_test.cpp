@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/domain/periodic_cell.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace isostat
 {
 namespace
 {
-struct Random
+struct Random : test::Random
 {
-  explicit Random(unsigned seed) : engine(seed) {}
-  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
-  Vec3 vector()
-  {
-    const double x = (*this)(), y = (*this)();
-    return {x, y, (*this)()};
-  }
+  using test::Random::Random;
   Mat3 matrix()
   {
     Mat3 m;
@@ -27,7 +21,6 @@ struct Random
     return m;
   }
   Mat3 rotation() { return Eigen::AngleAxisd(M_PI * (*this)(), vector().normalized()).toRotationMatrix(); }
-  std::mt19937_64 engine;
 };
 
 /// Deforms as the assembly does: a cell that leans too far is exchanged.

@@ -2,13 +2,13 @@
 #include "dem/motion/leapfrog.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <hwy/targets.h>
 #include <limits>
-#include <random>
 
 namespace isostat
 {
@@ -16,27 +16,23 @@ namespace
 {
 constexpr double no_limit = 1e30;
 using Action = AlignedVector<double>;
+using test::Random;
 
 Packing moving_packing(std::size_t n)
 {
-  std::mt19937_64 engine(7);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  auto random = [&] {
-    const double x = uniform(engine), y = uniform(engine);
-    return Vec3(x, y, uniform(engine));
-  };
+  Random random(7);
   std::vector<Vec3> centres;
   std::vector<double> radii;
   for (std::size_t i = 0; i < n; ++i)
     {
-      centres.push_back(1e-2 * random());
-      radii.push_back(2e-4 + 1e-4 * uniform(engine));
+      centres.push_back(1e-2 * random.vector());
+      radii.push_back(2e-4 + 1e-4 * random());
     }
   Packing packing = make_packing(centres, radii, 2650);
   for (std::size_t i = 0; i < n; ++i)
     {
-      packing.set_linear_velocity(i, 0.1 * random());
-      packing.set_angular_velocity(i, 300 * random());
+      packing.set_linear_velocity(i, 0.1 * random.vector());
+      packing.set_angular_velocity(i, 300 * random.vector());
     }
   return packing;
 }
@@ -44,14 +40,13 @@ Packing moving_packing(std::size_t n)
 /// Forces large enough that a step turns some velocities around, small enough that it leaves others.
 Action random_action(const Packing &packing, double dt, unsigned seed)
 {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  Random random(seed);
   Action action(8 * (packing.n_grains() + Packing::n_padding), 0.0);
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     for (int k = 0; k < 3; ++k)
       {
-        action[8 * i + k] = 0.2 / dt * packing.mass(i) * uniform(engine);
-        action[8 * i + 4 + k] = 600 / dt * packing.inertia(i) * uniform(engine);
+        action[8 * i + k] = 0.2 / dt * packing.mass(i) * random();
+        action[8 * i + 4 + k] = 600 / dt * packing.inertia(i) * random();
       }
   return action;
 }

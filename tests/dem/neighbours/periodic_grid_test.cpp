@@ -5,28 +5,18 @@
 #include "base/error.hpp"
 #include "dem/neighbours/verlet_list.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 
 namespace isostat
 {
 namespace
 {
 using Pair = ContactList::Pair;
-
-struct Random
-{
-  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
-  Vec3 vector()
-  {
-    const double x = (*this)(), y = (*this)();
-    return {x, y, (*this)()};
-  }
-  std::mt19937_64 engine{1};
-};
+using test::Random;
 
 struct Image
 {

@@ -2,17 +2,18 @@
 #include "dem/neighbours/verlet_list.hpp"
 
 #include "dem/neighbours/cell_grid.hpp"
+#include "tests/support/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 
 namespace isostat
 {
 namespace
 {
 using Pair = ContactList::Pair;
+using test::Random;
 
 double gap(const Packing &p, std::size_t i, std::size_t j)
 {
@@ -28,17 +29,6 @@ std::vector<Pair> all_pairs(const Packing &packing, double skin)
         pairs.emplace_back(i, j);
   return pairs;
 }
-
-struct Random
-{
-  double operator()() { return std::uniform_real_distribution<double>(-1, 1)(engine); }
-  Vec3 vector()
-  {
-    const double x = (*this)(), y = (*this)();
-    return {x, y, (*this)()};
-  }
-  std::mt19937_64 engine{1};
-};
 
 /// Grains at random in a box around the origin; they may overlap.
 Packing random_packing(Random &random, std::size_t n, const Vec3 &half_edges, double radius)
