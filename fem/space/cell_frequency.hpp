@@ -9,6 +9,5 @@ namespace isostat
 /// values at the ends 0 and 3/4 (no bulk modulus) bounds it. omega of the mesh is at most that of its worst cell (Irons
 /// & Treharne 1971): docs/theory_column.md (10). cost: one eigenvalue problem for each shape of cell     tested:
 /// tests/fem/solve/dynamics_test.cpp
-template <int dim>
 std::vector<double> cell_frequencies(const CellTables &tables);
 } // namespace isostat

@@ -32,7 +32,6 @@ struct CellTables
 
   std::size_t n_cells() const { return cell_layer.size(); }
   std::size_t n_points() const { return weight.size(); }
-  std::size_t nodes_per_cell() const { return n_nodes; }
   std::size_t points_per_cell() const { return n_gauss; }
   std::size_t pressure_nodes_per_cell() const { return std::size_t(1) << dimension; }
 };

@@ -5,14 +5,13 @@
 
 namespace isostat
 {
-template <int dim>
-BiotEntries::BiotEntries(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers)
+BiotEntries::BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
     : communicator(space.communicator())
 {
   const Vector u = space.displacement_vector(), p = space.pressure_vector();
   n_displacements = u.locally_owned_size();
   n_pressures = p.locally_owned_size();
-  const std::size_t n_u = 3 * space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell();
+  const std::size_t n_u = 3 * space.n_nodes, n_i = space.pressure_nodes_per_cell();
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
       const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], cell);
@@ -66,8 +65,4 @@ PetscMatrix BiotEntries::seepage() const
   PetscEntries entries = h;
   return petsc_matrix(communicator, n_pressures, n_pressures, entries);
 }
-
-template BiotEntries::BiotEntries(const Discretisation<1> &, const std::vector<PorousLayer> &);
-template BiotEntries::BiotEntries(const Discretisation<2> &, const std::vector<PorousLayer> &);
-template BiotEntries::BiotEntries(const Discretisation<3> &, const std::vector<PorousLayer> &);
 } // namespace isostat

@@ -14,8 +14,7 @@ struct BiotEntries
   std::size_t n_pressures = 0, n_displacements = 0; ///< owned by this rank
   MPI_Comm communicator = MPI_COMM_SELF;
 
-  template <int dim>
-  BiotEntries(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers);
+  BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers);
 
   PetscMatrix coupling(double a, double b) const; ///< a G + b L
   PetscMatrix to_force() const;                   ///< G^T

@@ -5,8 +5,7 @@
 
 namespace isostat
 {
-template <int dim>
-struct PressureSystem<dim>::Matrices
+struct PressureSystem::Matrices
 {
   PetscMatrix storage;             ///< S/(2 dt)
   PetscMatrix to_force;            ///< G^T
@@ -42,8 +41,7 @@ PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
 
 /// Owned pressures that are 0: drained, or not in any cell. Soil without permeability does not feel that its surface is
 /// drained.
-template <int dim>
-std::vector<unsigned> held_pressures(const Discretisation<dim> &space, std::size_t n_owned)
+std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
 {
   std::vector<bool> is_held(n_owned, true), can_flow(n_owned, false);
   const std::size_t n_i = space.pressure_nodes_per_cell();
@@ -63,8 +61,7 @@ std::vector<unsigned> held_pressures(const Discretisation<dim> &space, std::size
   return held;
 }
 
-template <int dim>
-std::array<Vector, 3> base_flows(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers)
+std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
 {
   const std::size_t n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
   std::array<Vector, 3> flows;
@@ -74,10 +71,10 @@ std::array<Vector, 3> base_flows(const Discretisation<dim> &space, const std::ve
     {
       const PorousLayer &layer = layers[space.cell_layer[point / n_q]];
       for (std::size_t i = 0; i < n_i; ++i)
-        for (int d = 0; d < dim; ++d)
-          flows[mesh_axes<dim>[d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
+        for (unsigned d = 0; d < space.dimension; ++d)
+          flows[mesh_axes[space.dimension][d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
               space.weight[point] * layer.mobility * layer.fluid_density *
-              space.pressure_gradient[(point * n_i + i) * dim + d];
+              space.pressure_gradient[(point * n_i + i) * space.dimension + d];
     }
   for (Vector &flow : flows)
     flow.add_ghosts_to_owners();
@@ -103,8 +100,7 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, Mat to_forc
 }
 } // namespace
 
-template <int dim>
-PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double time_step, const Vector &update)
+PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step, const Vector &update)
 {
   const MPI_Comm communicator = space.communicator();
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
@@ -130,16 +126,13 @@ PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double tim
   const PetscMatrix matrix =
       pressure_matrix(entries, m.storage.get(), m.to_force.get(), time_step, m.of_u.of(update), held);
   m.of_u.release();
-  m.factor = factorised(matrix.get(), communicator, dim == 1);
+  m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
 }
 
-template <int dim>
-PressureSystem<dim>::~PressureSystem() = default;
+PressureSystem::~PressureSystem() = default;
 
-template <int dim>
-void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
-                                const Vector &p_before_that, const std::array<double, 3> &base_acceleration,
-                                Vector &p) const
+void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
+                           const Vector &p_before_that, const std::array<double, 3> &base_acceleration, Vector &p) const
 {
   const Matrices &m = *matrices_;
   const std::size_t n = m.work.locally_owned_size();
@@ -172,16 +165,11 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
   m.of_residual.release();
 }
 
-template <int dim>
-void PressureSystem<dim>::force(const Vector &p, Vector &f) const
+void PressureSystem::force(const Vector &p, Vector &f) const
 {
   const Matrices &m = *matrices_;
   petsc_check(MatMult(m.to_force.get(), m.of_p.of(p), m.of_u.of(f)));
   m.of_p.release();
   m.of_u.release();
 }
-
-template class PressureSystem<1>;
-template class PressureSystem<2>;
-template class PressureSystem<3>;
 } // namespace isostat
