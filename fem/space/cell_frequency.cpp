@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fem/space/cell_frequency.hpp"
+#include "fem/space/tables.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -2,7 +2,6 @@
 #include "fem/space/discretisation.hpp"
 
 #include "base/error.hpp"
-#include "fem/space/cell_frequency.hpp"
 #include "fem/space/unknowns.hpp"
 
 #include <deal.II/base/quadrature_lib.h>

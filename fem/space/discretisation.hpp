@@ -75,7 +75,7 @@ class Unknowns;
 ///     unknowns.hpp       nodes, ties, numbers of unknowns                         (deal.II)
 ///     discretisation.cpp where unknowns are                                       (deal.II)
 ///     tables.hpp         the cells as flat tables                                 (made by deal.II, then free of it)
-///     integrals.cpp      strains and forces from the tables, in the time loop; cell_frequency.hpp its stable step
+///     integrals.cpp      strains and forces from the tables, in the time loop; cell_frequency.cpp its stable step
 ///
 /// This header, and with it all that solves and writes, is free of deal.II's.
 template <int dim>

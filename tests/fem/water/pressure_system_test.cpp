@@ -56,8 +56,8 @@ std::array<double, 2> response(const Regime &regime)
   settings.surface_traction = [=](double t) {
     return std::array<double, 3>{0, 0, 1e3 * std::sin(omega * t) * std::min(1.0, t * regime.frequency / 4)};
   };
-  const double wanted = Dynamics(space, material, settings).time_step();
-  const auto per_period = static_cast<std::size_t>(std::ceil(1 / (regime.frequency * wanted)));
+  const double stable = Dynamics(space, material, settings).time_step();
+  const auto per_period = static_cast<std::size_t>(std::ceil(1 / (regime.frequency * stable)));
   settings.time_step = 1 / (regime.frequency * per_period);
   Dynamics run(space, material, settings);
   const long top = space.find_dof({0, 0, 10}, 2), base = space.find_pressure({0, 0, 0});
