@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -98,43 +99,24 @@ struct Decimal
   std::size_t length = 0; ///< characters of the text used; 0: no number there
 };
 
-std::size_t skip_digits(std::string_view text, std::size_t from)
-{
-  while (from < text.size() && std::isdigit(static_cast<unsigned char>(text[from])))
-    ++from;
-  return from;
-}
-
 Decimal scan_decimal(std::string_view text)
 {
-  const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
-  std::size_t end = skip_digits(text, sign);
-  std::size_t n_digits = end - sign;
-  if (end < text.size() && text[end] == '.')
-    {
-      const std::size_t point = end;
-      end = skip_digits(text, point + 1);
-      n_digits += end - point - 1;
-    }
-  if (n_digits == 0)
+  const std::string_view body = text.substr(text.starts_with('+') ? 1 : 0);
+  const std::size_t first = body.starts_with('-') && body.size() == text.size() ? 1 : 0;
+  if (first == body.size() || !(body[first] == '.' || std::isdigit(static_cast<unsigned char>(body[first]))))
+    return {}; // neither infinity nor not-a-number
+  double ignored = 0;
+  const auto read = std::from_chars(body.data(), body.data() + body.size(), ignored); // "5 e" has no exponent
+  if (read.ec == std::errc::invalid_argument)
     return {};
-  Decimal decimal{std::string(text.substr(text[0] == '+' ? 1 : 0, end - (text[0] == '+' ? 1 : 0))), 0, end};
-  if (end < text.size() && (text[end] == 'e' || text[end] == 'E'))
-    {
-      std::size_t first = end + 1;
-      const bool plus = first < text.size() && text[first] == '+';
-      first += plus;
-      const bool minus = !plus && first < text.size() && text[first] == '-';
-      const std::size_t last = skip_digits(text, first + minus);
-      if (last > first + minus) // "5 e" is no exponent
-        {
-          const auto read = std::from_chars(text.data() + first, text.data() + last, decimal.exponent);
-          if (read.ec != std::errc{} || std::abs(decimal.exponent) > 9999)
-            return {};
-          decimal.length = last;
-        }
-    }
-  return decimal;
+  const std::string_view number = body.substr(0, static_cast<std::size_t>(read.ptr - body.data()));
+  const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
+  Decimal decimal{std::string(number.substr(0, mark)), 0, text.size() - body.size() + number.size()};
+  if (mark == number.size())
+    return decimal;
+  const std::size_t digits = mark + (number[mark + 1] == '+' ? 2 : 1);
+  const auto exponent = std::from_chars(number.data() + digits, number.data() + number.size(), decimal.exponent);
+  return exponent.ec == std::errc{} && std::abs(decimal.exponent) <= 9999 ? decimal : Decimal{};
 }
 
 std::string_view trim(std::string_view text)
@@ -190,32 +172,10 @@ std::string format_angle(double tangent)
 
 std::string_view dimension_name(Dimension dimension)
 {
-  switch (dimension)
-    {
-    case Dimension::length:
-      return "a length";
-    case Dimension::pressure:
-      return "a pressure";
-    case Dimension::angle:
-      return "an angle";
-    case Dimension::rate:
-      return "a rate";
-    case Dimension::time:
-      return "a time";
-    case Dimension::density:
-      return "a density";
-    case Dimension::interval:
-      return "a time interval";
-    case Dimension::velocity:
-      return "a velocity";
-    case Dimension::acceleration:
-      return "an acceleration";
-    case Dimension::frequency:
-      return "a frequency";
-    case Dimension::duration:
-      return "a duration";
-    }
-  return "";
+  constexpr std::array<std::string_view, 11> names{"a length",        "a pressure",  "an angle",        "a rate",
+                                                   "a time",          "a density",   "a time interval", "a velocity",
+                                                   "an acceleration", "a frequency", "a duration"};
+  return names[static_cast<std::size_t>(dimension)];
 }
 
 std::string unit_names(Dimension dimension)
@@ -288,7 +248,7 @@ std::string number_text(double value, int shift)
   if (n_digits <= exponent + 1)
     return sign + digits +
            std::string(static_cast<std::size_t>(exponent) + 1 - static_cast<std::size_t>(n_digits), '0');
-  const auto whole = static_cast<std::size_t>(exponent + 1);
+  const auto whole = static_cast<std::size_t>(exponent) + 1;
   return fmt::format("{}{}.{}", sign, digits.substr(0, whole), digits.substr(whole));
 }
 } // namespace isostat

@@ -59,11 +59,11 @@ std::pair<double, double> step_cost(const Case &which, unsigned elements)
 {
   constexpr int n_steps = 20000;
   SoilProfile soil{.layers = {{.name = "soil", .thickness = 20, .permeability = 1e-5, .cells = elements}}, .water = {}};
-  const Discretisation<1> space({.soil = soil, .degree = which.degree}, shaken_supports<1>(false));
+  const Discretisation<1> space({.soil = soil, .degree = which.degree}, shaken_supports(false));
   Timed material(ElasticParameters{}, space.n_points());
   DynamicsSettings settings{.drainage = which.drainage};
   settings.motion[0] = harmonic_motion(1, 2, 60, 1, 0.01);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   for (int k = 0; k < 1000; ++k)
     run.step();
   material.spent = {};

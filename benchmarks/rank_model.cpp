@@ -19,7 +19,6 @@
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
-#include "coupling/placement/cost_meter.hpp"
 #include "coupling/placement/placement.hpp"
 
 #include <algorithm>

@@ -37,12 +37,12 @@ double peak_displacement(double peak_acceleration)
   const double height = 20, density = 2000, velocity = 200;
   MeshSpec mesh;
   mesh.soil.layers = {{.name = "sand", .thickness = height, .density = density, .cells = 20}};
-  const Discretisation<1> space(mesh, shaken_supports<1>(false));
+  const Discretisation<1> space(mesh, shaken_supports(false));
   Hyperbolic material({.shear_modulus = density * velocity * velocity, .poisson_ratio = 0.3}, 1e-3, space.n_points());
   material.set_initial_stress(std::vector<Stress>(space.n_points(), Stress{}));
   DynamicsSettings settings;
   settings.motion[0] = ricker_motion(peak_acceleration, 2.5, 0.6, 1e-3);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   double peak = 0;
   for (const long top = space.find_dof({0, 0, height}, 0); run.time() < 3; run.step())
     peak = std::max(peak, std::abs(run.displacement().local_element(top)));

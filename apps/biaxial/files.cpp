@@ -46,7 +46,7 @@ void add_corners(const Discretisation<2> &space, const Vector &u, std::string &p
     for (unsigned corner : order)
       {
         const auto [x, y, z] = space.corner[4 * cell + corner];
-        const unsigned *dofs = &space.cell_dofs[3 * (cell * space.nodes_per_cell() + corner)];
+        const unsigned *dofs = &space.cell_dofs[3 * (cell * space.n_nodes + corner)];
         places += fmt::format("{:.9g} 0 {:.9g} ", x, z);
         for (int c = 0; c < 3; ++c)
           displacements += fmt::format("{:.9g} ", u.local_element(dofs[c]));
@@ -84,7 +84,7 @@ BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const Bl
       rows_(std::size(quantities))
 {}
 
-void BlockFiles::map(double axial_strain, const Statics<2> &statics)
+void BlockFiles::map(double axial_strain, const Statics &statics)
 {
   std::vector<Gradient> gradients;
   gradients_of(space_, statics.displacement(), gradients);

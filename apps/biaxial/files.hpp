@@ -27,7 +27,7 @@ class BlockFiles
 {
 public:
   BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material);
-  void map(double axial_strain, const Statics<2> &statics);
+  void map(double axial_strain, const Statics &statics);
 
 private:
   void write_h5() const;

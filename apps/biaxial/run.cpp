@@ -63,7 +63,7 @@ private:
   const Stopwatch since_start_;
   BlockMesh space_;
   BlockMaterial material_;
-  Statics<2> statics_;
+  Statics statics_;
   BiaxialSummary summary_;
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;

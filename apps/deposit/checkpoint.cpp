@@ -2,7 +2,7 @@
 #include "apps/deposit/checkpoint.hpp"
 
 #include "base/error.hpp"
-#include "base/files/hdf5_bytes.hpp"
+#include "base/files/hdf5.hpp"
 #include "base/record/checkpoint_folder.hpp"
 
 #include <fmt/format.h>

@@ -26,7 +26,7 @@ void gradients_of(const Discretisation<dim> &space, const Vector &displacement, 
 }
 
 template <int dim>
-void observe_step(Dynamics<dim> &run, const Discretisation<dim> &space, ColumnInstant &instant)
+void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant &instant)
 {
   const bool pressure_comes_later = run.settings().drainage == Drainage::coupled;
   instant.step = run.n_steps();
@@ -49,7 +49,7 @@ void observe_step(Dynamics<dim> &run, const Discretisation<dim> &space, ColumnIn
 
 #define ISOSTAT_INSTANTIATE(dim) \
   template void gradients_of<dim>(const Discretisation<dim> &, const Vector &, std::vector<Gradient> &); \
-  template void observe_step<dim>(Dynamics<dim> &, const Discretisation<dim> &, ColumnInstant &);
+  template void observe_step<dim>(Dynamics &, const Discretisation<dim> &, ColumnInstant &);
 ISOSTAT_INSTANTIATE(1)
 ISOSTAT_INSTANTIATE(2)
 ISOSTAT_INSTANTIATE(3)

@@ -23,7 +23,7 @@ struct ColumnInstant
 /// @throws RunFailure from Dynamics::step()
 /// tested: tests/apps/soil_column_test.py
 template <int dim>
-void observe_step(Dynamics<dim> &run, const Discretisation<dim> &space, ColumnInstant &instant);
+void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant &instant);
 
 /// Displacement gradients at the points of a vector of displacements, whatever its ghosts hold.
 template <int dim>

@@ -31,7 +31,7 @@ template <int dim>
 double final_settlement(const ColumnScene &scene, const Discretisation<dim> &space)
 {
   const auto material = column_material(scene, space);
-  Statics<dim> drained(space, *material, settings_of(scene.load, false));
+  Statics drained(space, *material, settings_of(scene.load, false));
   double settlement = std::numeric_limits<double>::quiet_NaN();
   try
     {
@@ -72,7 +72,7 @@ private:
   const bool at_once_;
   Discretisation<dim> space_;
   TimedMaterial material_;
-  Statics<dim> run_;
+  Statics run_;
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_;
@@ -86,7 +86,7 @@ private:
 template <int dim>
 ConsolidationRun<dim>::ConsolidationRun(const ColumnRequest &request)
     : request_(request), scene_(request.scene), times_(scene_.analysis.times()), at_once_(scene_.load.ramp == 0),
-      space_(column_mesh<dim>(scene_, shaken_supports<dim>(false))), material_(column_material(scene_, space_)),
+      space_(column_mesh<dim>(scene_, shaken_supports(false))), material_(column_material(scene_, space_)),
       run_(space_, material_, settings_of(scene_.load, true)), files_(request.folder, scene_, space_, rest_),
       follower_(space_, files_.line(), files_.history().vertical_stress()), resumed_(checkpoint_of(request))
 {

@@ -50,7 +50,7 @@ private:
   Discretisation<dim> space_;
   SoilMaterial soil_;
   TimedMaterial material_;
-  Dynamics<dim> run_;
+  Dynamics run_;
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_;
@@ -67,7 +67,7 @@ private:
 template <int dim>
 DynamicRun<dim>::DynamicRun(const ColumnRequest &request)
     : request_(request), scene_(request.scene), motions_(column_motions(scene_)),
-      space_(column_mesh<dim>(scene_, shaken_supports<dim>(scene_.base.compliant()))),
+      space_(column_mesh<dim>(scene_, shaken_supports(scene_.base.compliant()))),
       soil_(soil_material(scene_, space_, request.threads)), material_(std::move(soil_.material)),
       run_(space_, material_, dynamics_settings(scene_, motions_)), files_(request.folder, scene_, space_, motions_),
       follower_(space_, files_.line(), files_.history().vertical_stress()), resumed_(checkpoint_of(request)),

@@ -76,7 +76,7 @@ void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<dou
 }
 
 template <int dim>
-void PeakFollower<dim>::follow(const Dynamics<dim> &run)
+void PeakFollower<dim>::follow(const Dynamics &run)
 {
   const bool coupled = run.settings().drainage == Drainage::coupled;
   const double now = run.time() - run.time_step(); // what accelerations are of

@@ -33,7 +33,7 @@ public:
   /// @param line  null: the mesh is shared out   @param vertical_stress  sigma'_v0 of every point, Pa
   PeakFollower(const Discretisation<dim> &space, const ColumnLine *line, const std::vector<double> &vertical_stress);
   /// After each step.
-  void follow(const Dynamics<dim> &run);
+  void follow(const Dynamics &run);
   /// Strain and r_u of any solution.
   void follow(const Vector &displacement, const std::vector<double> &pressure, double time);
   /// Largest over all ranks.   Collective.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace isostat::hdf5
@@ -54,40 +55,15 @@ public:
 
   /// A new dataset of fixed size: (n) if n_columns is 1, (n / n_columns, n_columns) otherwise.
   /// @param unit  e.g. "m/s"; "-" if dimensionless; kept as attribute `unit`
-  void write(const std::string &name, std::span<const double> values, const std::string &unit,
-             std::size_t n_columns = 1)
+  template <typename Values>
+  void write(const std::string &name, const Values &values, const std::string &unit, std::size_t n_columns = 1)
   {
-    put(name, values, unit, n_columns);
-  }
-  void write(const std::string &name, std::span<const std::uint64_t> values, const std::string &unit,
-             std::size_t n_columns = 1)
-  {
-    put(name, values, unit, n_columns);
-  }
-  void write(const std::string &name, std::span<const std::uint32_t> values, const std::string &unit,
-             std::size_t n_columns = 1)
-  {
-    put(name, values, unit, n_columns);
-  }
-  void write(const std::string &name, std::span<const std::string> values, const std::string &unit,
-             std::size_t n_columns = 1)
-  {
-    put(name, values, unit, n_columns);
+    put(name, std::span<const typename Values::value_type>(values), unit, n_columns);
   }
 
-  /// A new or changed attribute (double, std::uint64_t or text) of this group or of one of its datasets.
-  void set_attribute(const std::string &name, double value, const std::string &item = ".")
-  {
-    put_attribute(name, value, item);
-  }
-  void set_attribute(const std::string &name, std::uint64_t value, const std::string &item = ".")
-  {
-    put_attribute(name, value, item);
-  }
-  void set_attribute(const std::string &name, const std::string &value, const std::string &item = ".")
-  {
-    put_attribute(name, value, item);
-  }
+  /// A new or changed attribute of this group or of one of its datasets.
+  void set_attribute(const std::string &name, const std::variant<double, std::uint64_t, std::string> &value,
+                     const std::string &item = ".");
 
   /// A new dataset of doubles that can grow: no rows yet, unlimited, stored in chunks.
   void create_series(const std::string &name, const std::string &unit, std::size_t n_columns = 1,
@@ -101,8 +77,6 @@ private:
   std::string child(const std::string &name) const;
   template <typename T>
   void put(const std::string &name, std::span<const T> values, const std::string &unit, std::size_t n_columns);
-  template <typename T>
-  void put_attribute(const std::string &name, const T &value, const std::string &item);
 
   std::shared_ptr<FileState> file_;
   std::string path_;
@@ -136,4 +110,9 @@ private:
 
   std::shared_ptr<FileState> state_;
 };
+
+/// Bytes as a dataset of whole words, the last one filled up with zeros; their number is its attribute `bytes`.
+void write_bytes(Group group, const std::string &name, std::span<const std::byte> bytes);
+/// @throws InputError  missing, or cut short
+std::vector<std::byte> read_bytes(const Group &group, const std::string &name);
 } // namespace isostat::hdf5

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -76,7 +77,7 @@ std::vector<T> read_values(const FileState &file, const std::string &item, hid_t
   return values;
 }
 
-/// Hands `values` to `transfer(memory type, buffer)` in the form HDF5 wants.
+/// Hands `values` to `transfer(memory type, buffer)` in the form of HDF5.
 template <typename T, typename Transfer>
 bool write_values(std::span<const T> values, const Transfer &transfer)
 {
@@ -216,18 +217,21 @@ T Group::attribute(const std::string &name, const std::string &item) const
                         [id = hid_t(attribute)](hid_t memory, void *buffer) { return H5Aread(id, memory, buffer); })[0];
 }
 
-template <typename T>
-void Group::put_attribute(const std::string &name, const T &value, const std::string &item)
+void Group::set_attribute(const std::string &name, const std::variant<double, std::uint64_t, std::string> &value,
+                          const std::string &item)
 {
   const std::string full = child(item) + "@" + name;
   const Handle owner = open_item(*file_, child(item)), space(H5Screate(H5S_SCALAR), H5Sclose);
   if (H5Aexists(owner, name.c_str()) > 0)
     H5Adelete(owner, name.c_str());
-  const Handle attribute = checked(H5Acreate2(owner, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
-                                   H5Aclose, *file_, full, "creating the attribute failed");
-  const auto transfer = [id = hid_t(attribute)](hid_t type, const void *buffer) { return H5Awrite(id, type, buffer); };
-  if (!write_values<T>({&value, 1}, transfer))
-    fail(*file_, full, "writing failed");
+  const auto put = [&]<typename T>(const T &x) {
+    const Handle attribute = checked(H5Acreate2(owner, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
+                                     H5Aclose, *file_, full, "creating the attribute failed");
+    const auto transfer = [&](hid_t type, const void *buffer) { return H5Awrite(attribute, type, buffer); };
+    if (!write_values<T>({&x, 1}, transfer))
+      fail(*file_, full, "writing failed");
+  };
+  std::visit(put, value);
 }
 
 template <typename T>
@@ -243,7 +247,7 @@ void Group::put(const std::string &name, std::span<const T> values, const std::s
   };
   if (!values.empty() && !write_values<T>(values, transfer))
     fail(*file_, child(name), "writing failed");
-  put_attribute("unit", unit, name);
+  set_attribute("unit", unit, name);
 }
 
 void Group::create_series(const std::string &name, const std::string &unit, std::size_t n_columns,
@@ -256,7 +260,7 @@ void Group::create_series(const std::string &name, const std::string &unit, std:
   const Handle space(H5Screate_simple(rank, dims, limits), H5Sclose), layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(layout, rank, chunk);
   const Handle made = create_dataset<double>(*file_, child(name), space, layout);
-  put_attribute("unit", unit, name);
+  set_attribute("unit", unit, name);
 }
 
 void Group::append(const std::string &name, std::span<const double> values)
@@ -279,8 +283,8 @@ void Group::resize(const std::string &name, std::size_t n_rows)
 {
   const Handle dataset = open_dataset(*file_, child(name));
   const Shape now = extent(dataset);
-  const hsize_t wanted[2] = {n_rows, now.size() == 2 ? now[1] : 1};
-  if (H5Dset_extent(dataset, wanted) < 0)
+  const hsize_t target[2] = {n_rows, now.size() == 2 ? now[1] : 1};
+  if (H5Dset_extent(dataset, target) < 0)
     fail(*file_, child(name), "changing the number of rows failed (made by create_series?)");
 }
 
@@ -288,10 +292,31 @@ void Group::resize(const std::string &name, std::size_t n_rows)
   template std::vector<T> Group::read<T>(const std::string &) const; \
   template std::vector<T> Group::read<T>(const std::string &, const Shape &) const; \
   template T Group::attribute<T>(const std::string &, const std::string &) const; \
-  template void Group::put<T>(const std::string &, std::span<const T>, const std::string &, std::size_t); \
-  template void Group::put_attribute<T>(const std::string &, const T &, const std::string &);
+  template void Group::put<T>(const std::string &, std::span<const T>, const std::string &, std::size_t);
 ISOSTAT_INSTANTIATE(double)
 ISOSTAT_INSTANTIATE(std::uint64_t)
 ISOSTAT_INSTANTIATE(std::uint32_t)
 ISOSTAT_INSTANTIATE(std::string)
+
+void write_bytes(Group group, const std::string &name, std::span<const std::byte> bytes)
+{
+  std::vector<std::uint64_t> words((bytes.size() + 7) / 8, 0);
+  if (!bytes.empty())
+    std::memcpy(words.data(), bytes.data(), bytes.size());
+  group.write(name, words, "-");
+  group.set_attribute("bytes", static_cast<std::uint64_t>(bytes.size()), name);
+}
+
+std::vector<std::byte> read_bytes(const Group &group, const std::string &name)
+{
+  const auto words = group.read<std::uint64_t>(name);
+  const auto n = group.attribute<std::uint64_t>("bytes", name);
+  if (n > words.size() * 8)
+    throw InputError(
+        fmt::format("{}: {} holds {} bytes of {}: it is cut off", group.where(), name, words.size() * 8, n));
+  std::vector<std::byte> bytes(n);
+  if (n > 0)
+    std::memcpy(bytes.data(), words.data(), n);
+  return bytes;
+}
 } // namespace isostat::hdf5

@@ -48,7 +48,6 @@ public:
   void flush();
 
   std::size_t n_rows() const { return n_rows_; }
-  const std::vector<RecordColumn> &columns() const { return columns_; }
 
 private:
   void start_anew();

@@ -212,12 +212,6 @@ const toml::node *SceneDocument::find(std::string_view path) const
   return node;
 }
 
-std::size_t SceneDocument::n_items(std::string_view section) const
-{
-  const toml::node *node = find(section);
-  return node && node->is_array() ? node->as_array()->size() : 0;
-}
-
 std::string SceneDocument::where(std::string_view path) const
 {
   for (const std::string &set : overridden_)

@@ -48,9 +48,6 @@ public:
   /// Throws InputError "where: path = value; problem".
   [[noreturn]] void refuse(std::string_view path, std::string_view problem) const;
 
-  /// How many tables the array of a section has, 0 if it is not there.
-  std::size_t n_items(std::string_view section) const;
-
 private:
   void apply(const std::string &override);
   void make_room(const std::string &path);

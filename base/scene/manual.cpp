@@ -47,22 +47,10 @@ std::string kind_text(const Key &key)
 
 std::string default_text(const Key &key)
 {
-  switch (key.presence)
-    {
-    case Presence::standard:
-      return fmt::format("`{}`", example(key));
-    case Presence::required:
-      return fmt::format("**required**, e.g. `{}`", example(key));
-    default:
-      return fmt::format("none, e.g. `{}`", example(key));
-    }
-}
-
-std::string allowed_text(const Key &key)
-{
-  if (key.kind == Kind::choice)
-    return choices_text(key);
-  return range_text(key);
+  const char *before = key.presence == Presence::standard   ? ""
+                       : key.presence == Presence::required ? "**required**, e.g. "
+                                                            : "none, e.g. ";
+  return fmt::format("{}`{}`", before, example(key));
 }
 
 /// A bar would end the cell.
@@ -77,8 +65,8 @@ std::string cell(std::string_view text)
 std::string row(const SceneSchema &schema, const Section *kinds_of, const Key &key)
 {
   const std::string kinds = kinds_of ? schema.kinds_text(*kinds_of, key.kinds) + " | " : "";
-  return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name(), kind_text(key), default_text(key),
-                     allowed_text(key), kinds, cell(key.text));
+  return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name(), kind_text(key), default_text(key), range_text(key),
+                     kinds, cell(key.text));
 }
 
 /// @param section  null: the top of the file

@@ -130,6 +130,6 @@ struct SceneSchema
 std::string heading(const Section &section);                   ///< "[motion]", "[[stage]]"
 std::string file_text(const Key &key, std::string_view value); ///< with quotes where TOML needs them: "10 mm"
 std::string example(const Key &key);                           ///< file_text of its default or example
-std::string range_text(const Key &key);                        ///< "in [0 deg, 90 deg)", "> 0 Pa", or "" if any will do
-std::string choices_text(const Key &key);                      ///< "a", "b" or "c" with the quotes
+std::string range_text(const Key &key);   ///< "in [0 deg, 90 deg)", "> 0 Pa", the words of a choice, or ""
+std::string choices_text(const Key &key); ///< "a", "b" or "c" with the quotes
 } // namespace isostat

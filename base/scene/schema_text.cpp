@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace isostat
 {
@@ -45,8 +46,7 @@ std::string enumerate(const std::vector<std::string> &words)
 std::size_t typing_errors(std::string_view a, std::string_view b)
 {
   std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j)
-    row[j] = j;
+  std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i)
     {
       std::size_t diagonal = row[0];
@@ -173,6 +173,8 @@ std::string example(const Key &key) { return file_text(key, key.value); }
 
 std::string range_text(const Key &key)
 {
+  if (key.kind == Kind::choice)
+    return choices_text(key);
   const Range &range = key.range;
   const bool below = std::isfinite(range.low), above = std::isfinite(range.high);
   if (below && above)
@@ -189,7 +191,7 @@ std::string choices_text(const Key &key)
 {
   std::vector<std::string> words;
   for (const char *choice : key.choices)
-    words.emplace_back(quoted(choice));
+    words.push_back(quoted(choice));
   return enumerate(words);
 }
 

@@ -9,12 +9,68 @@ namespace isostat
 {
 namespace
 {
-/// A value on its way from the file to its field.
+/// A value on its way from the file to its field, whose type says how it is read.
 struct Reading
 {
   const SceneDocument &document;
   const Key &key;
   const std::string &path;
+  const toml::node &node;
+
+  void operator()(std::monostate) const {}
+  void operator()(double *value) const { *value = key.kind == Kind::quantity ? quantity(node) : number(node); }
+  void operator()(std::optional<double> *value) const { (*this)(&value->emplace()); }
+  void operator()(std::uint64_t *value) const { *value = integer(); }
+  void operator()(unsigned *value) const { *value = static_cast<unsigned>(integer()); } // the range keeps it small
+  void operator()(const EnumField &value) const { value.set(choice()); }
+
+  void operator()(bool *value) const
+  {
+    if (key.kind != Kind::choice && !node.is_boolean())
+      refuse("must be true or false, without quotes");
+    *value = key.kind == Kind::choice ? choice() == 1 : node.as_boolean()->get();
+  }
+
+  void operator()(std::string *value) const
+  {
+    if (key.kind != Kind::choice && !node.is_string())
+      refuse("must be text in quotes");
+    *value = key.kind == Kind::choice ? key.choices[choice()] : node.as_string()->get();
+  }
+
+  void operator()(std::vector<double> *values) const
+  {
+    const auto *array = node.as_array();
+    if (!array)
+      refuse(fmt::format("must be a list [...] whose entries are {} with its unit ({}), in quotes",
+                         dimension_name(key.dimension), unit_names(key.dimension)));
+    values->clear();
+    for (const toml::node &element : *array)
+      values->push_back(quantity(element));
+  }
+
+  void operator()(const PercentPair &pair) const
+  {
+    const auto *array = node.as_array();
+    if (!array || array->size() != 2)
+      refuse("must be two percentages, [low, high]");
+    *pair.low = number(*array->get(0));
+    *pair.high = number(*array->get(1));
+    if (*pair.low >= *pair.high)
+      refuse("must rise, or nothing of the curve is left");
+  }
+
+  void operator()(SizeCurve *curve) const
+  {
+    const auto *rows = node.as_array();
+    if (!rows || rows->size() < 2)
+      refuse("must be at least two rows of [diameter, percent finer]");
+    curve->clear();
+    for (const toml::node &row : *rows)
+      add_row(row, *curve);
+    if (curve->back().second != 100)
+      refuse("must end at 100 percent, or the largest grains are unknown");
+  }
 
   [[noreturn]] void refuse(const std::string &must) const
   {
@@ -66,7 +122,7 @@ struct Reading
     return value;
   }
 
-  std::uint64_t integer(const toml::node &node) const
+  std::uint64_t integer() const
   {
     const auto *whole = node.as_integer();
     if (!whole)
@@ -77,15 +133,7 @@ struct Reading
     return static_cast<std::uint64_t>(whole->get());
   }
 
-  std::string text(const toml::node &node) const
-  {
-    const auto *text = node.as_string();
-    if (!text)
-      refuse("must be text in quotes");
-    return text->get();
-  }
-
-  std::size_t choice(const toml::node &node) const
+  std::size_t choice() const
   {
     const auto *word = node.as_string();
     for (std::size_t i = 0; word && i < key.choices.size(); ++i)
@@ -94,119 +142,26 @@ struct Reading
     refuse("must be " + choices_text(key));
   }
 
-  std::vector<double> quantity_list(const toml::node &node) const
+  void add_row(const toml::node &row, SizeCurve &curve) const
   {
-    const auto *array = node.as_array();
-    if (!array)
-      refuse(fmt::format("must be a list [...] whose entries are {} with its unit ({}), in quotes",
-                         dimension_name(key.dimension), unit_names(key.dimension)));
-    std::vector<double> values;
-    for (const toml::node &element : *array)
-      values.push_back(quantity(element));
-    return values;
-  }
-
-  void percent_pair(const toml::node &node, const PercentPair &pair) const
-  {
-    const auto *array = node.as_array();
-    if (!array || array->size() != 2)
-      refuse("must be two percentages, [low, high]");
-    const double low = number(*array->get(0)), high = number(*array->get(1));
-    if (low >= high)
-      refuse("must rise, or nothing of the curve is left");
-    *pair.low = low;
-    *pair.high = high;
-  }
-
-  SizeCurve size_curve(const toml::node &node) const
-  {
-    const auto *rows = node.as_array();
-    if (!rows || rows->size() < 2)
-      refuse("must be at least two rows of [diameter, percent finer]");
-    SizeCurve curve;
-    for (const toml::node &row : *rows)
-      {
-        const auto *pair = row.as_array();
-        if (!pair || pair->size() != 2 || !(pair->get(1)->is_number()))
-          refuse("must be rows of [diameter, percent finer], the diameter with its unit in quotes");
-        const double diameter = quantity(*pair->get(0)), percent = *pair->get(1)->value<double>();
-        if (!Range{0, std::numeric_limits<double>::infinity(), true}.contains(diameter))
-          refuse("must have diameters > 0 mm");
-        if (!Range{0, 100}.contains(percent))
-          refuse("must have percentages in [0, 100]");
-        if (!curve.empty() && (diameter <= curve.back().first || percent < curve.back().second))
-          refuse("must rise from row to row, in diameter and in percent finer");
-        curve.emplace_back(diameter, percent);
-      }
-    if (curve.back().second != 100)
-      refuse("must end at 100 percent, or the largest grains are unknown");
-    return curve;
+    const auto *pair = row.as_array();
+    if (!pair || pair->size() != 2 || !(pair->get(1)->is_number()))
+      refuse("must be rows of [diameter, percent finer], the diameter with its unit in quotes");
+    const double diameter = quantity(*pair->get(0)), percent = *pair->get(1)->value<double>();
+    if (!Range{0, std::numeric_limits<double>::infinity(), true}.contains(diameter))
+      refuse("must have diameters > 0 mm");
+    if (!Range{0, 100}.contains(percent))
+      refuse("must have percentages in [0, 100]");
+    if (!curve.empty() && (diameter <= curve.back().first || percent < curve.back().second))
+      refuse("must rise from row to row, in diameter and in percent finer");
+    curve.emplace_back(diameter, percent);
   }
 };
-
-void set_number(double value, const Field &field)
-{
-  if (double *const *plain = std::get_if<double *>(&field))
-    **plain = value;
-  else
-    *std::get<std::optional<double> *>(field) = value;
-}
-
-void set_choice(std::size_t choice, const Key &key, const Field &field)
-{
-  if (std::string *const *word = std::get_if<std::string *>(&field))
-    **word = key.choices[choice];
-  else if (const EnumField *word_number = std::get_if<EnumField>(&field))
-    word_number->set(choice);
-  else
-    *std::get<bool *>(field) = choice == 1;
-}
-void set_count(std::uint64_t count, const Field &field)
-{
-  if (unsigned *const *small = std::get_if<unsigned *>(&field))
-    **small = static_cast<unsigned>(count); // the range of such a key keeps it small
-  else
-    *std::get<std::uint64_t *>(field) = count;
-}
 } // namespace
 
 void read_value(const SceneDocument &document, const Key &key, const std::string &path, const toml::node &node,
                 const Field &field)
 {
-  const Reading reading{document, key, path};
-  switch (key.kind)
-    {
-    case Kind::quantity:
-      set_number(reading.quantity(node), field);
-      break;
-    case Kind::number:
-      set_number(reading.number(node), field);
-      break;
-    case Kind::integer:
-      set_count(reading.integer(node), field);
-      break;
-    case Kind::boolean:
-      if (!node.is_boolean())
-        reading.refuse("must be true or false, without quotes");
-      *std::get<bool *>(field) = node.as_boolean()->get();
-      break;
-    case Kind::choice:
-      set_choice(reading.choice(node), key, field);
-      break;
-    case Kind::text:
-      *std::get<std::string *>(field) = reading.text(node);
-      break;
-    case Kind::table:
-      break; // fill_scene looks whether it is there
-    case Kind::quantity_list:
-      *std::get<std::vector<double> *>(field) = reading.quantity_list(node);
-      break;
-    case Kind::percent_pair:
-      reading.percent_pair(node, std::get<PercentPair>(field));
-      break;
-    case Kind::size_curve:
-      *std::get<SizeCurve *>(field) = reading.size_curve(node);
-      break;
-    }
+  std::visit(Reading{document, key, path, node}, field);
 }
 } // namespace isostat

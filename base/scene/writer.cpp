@@ -140,7 +140,7 @@ std::string default_entry(const Key &key)
   if (key.kind == Kind::table) // its keys follow
     return comment(fmt::format("{}: {}", key.name(), key.text));
   std::string text = key.text;
-  if (const std::string allowed = key.kind == Kind::choice ? choices_text(key) : range_text(key); !allowed.empty())
+  if (const std::string allowed = range_text(key); !allowed.empty())
     text += " Allowed: " + allowed + ".";
   if (key.presence == Presence::required)
     text += " Required.";

@@ -3,7 +3,6 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
-#include "coupling/batch/wave_moduli.hpp"
 #include "coupling/element/axes.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "coupling/batch/element_batch.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/in_situ_start.hpp"
-#include "coupling/placement/cost_meter.hpp"
 
 namespace isostat
 {

@@ -2,7 +2,7 @@
 #include "coupling/element/strain_record.hpp"
 
 #include "base/error.hpp"
-#include "base/files/hdf5_bytes.hpp"
+#include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
 
 #include <algorithm>
@@ -19,11 +19,8 @@ constexpr const char *stress_names[] = {"sigma_xx", "sigma_yy", "sigma_zz", "sig
 
 void write_settings(hdf5::Group root, const RveSettings &settings)
 {
-  root.set_attribute("damping", settings.motion.damping);
-  root.set_attribute("quasi_static_tolerance", settings.motion.quasi_static_tolerance);
-  root.set_attribute("rate_floor", settings.motion.rate_floor);
-  root.set_attribute("rate_ceiling", settings.motion.rate_ceiling);
-  root.set_attribute("time_step_safety", settings.motion.time_step_safety);
+  MotionSpec::for_each(settings.motion,
+                       [&](const char *name, const auto &value) { hdf5::write_field(root, name, value); });
   root.set_attribute("min_steps", settings.min_steps);
   root.write("frame", std::span<const double>(settings.frame.data(), 9), "-", 3); // columns, one after the other
 }
@@ -31,11 +28,7 @@ void write_settings(hdf5::Group root, const RveSettings &settings)
 RveSettings read_settings(const hdf5::Group &root)
 {
   RveSettings settings;
-  settings.motion.damping = root.attribute<double>("damping");
-  settings.motion.quasi_static_tolerance = root.attribute<double>("quasi_static_tolerance");
-  settings.motion.rate_floor = root.attribute<double>("rate_floor");
-  settings.motion.rate_ceiling = root.attribute<double>("rate_ceiling");
-  settings.motion.time_step_safety = root.attribute<double>("time_step_safety");
+  MotionSpec::for_each(settings.motion, [&](const char *name, auto &value) { hdf5::read_field(root, name, value); });
   settings.min_steps = root.attribute<std::uint64_t>("min_steps");
   std::ranges::copy(root.read<double>("frame", {3, 3}), settings.frame.data());
   return settings;
@@ -53,26 +46,17 @@ void check_packing(const std::filesystem::path &path, const StrainRecord &record
     }
 }
 
-void read_rows(const std::filesystem::path &path, StrainRecord &record)
+template <typename Row, std::size_t n>
+std::vector<Row> read_rows(const hdf5::Group &history, const char *const (&names)[n], std::size_t n_rows)
 {
-  const hdf5::File file = hdf5::File::open(path);
-  const hdf5::Group rows = file.root().group("history");
-  record.time = rows.read<double>("time");
-  const std::size_t n = record.time.size();
-  record.increments.resize(n);
-  record.stresses.resize(n);
-  for (std::size_t c = 0; c < std::size(gradient_names); ++c)
+  std::vector<Row> rows(n_rows);
+  for (std::size_t c = 0; c < n; ++c)
     {
-      const auto values = rows.read<double>(gradient_names[c], {n});
-      for (std::size_t k = 0; k < n; ++k)
-        record.increments[k][c] = values[k];
+      const auto values = history.read<double>(names[c], {n_rows});
+      for (std::size_t k = 0; k < n_rows; ++k)
+        rows[k][c] = values[k];
     }
-  for (std::size_t c = 0; c < std::size(stress_names); ++c)
-    {
-      const auto values = rows.read<double>(stress_names[c], {n});
-      for (std::size_t k = 0; k < n; ++k)
-        record.stresses[k][c] = values[k];
-    }
+  return rows;
 }
 } // namespace
 
@@ -128,7 +112,11 @@ StrainRecord read_strain_record(const std::filesystem::path &folder)
     record.packing = hdf5::read_bytes(root, "packing");
   }
   check_packing(folder / "packing.h5", record);
-  read_rows(folder / "history.h5", record);
+  const hdf5::File file = hdf5::File::open(folder / "history.h5");
+  const hdf5::Group history = file.root().group("history");
+  record.time = history.read<double>("time");
+  record.increments = read_rows<Gradient>(history, gradient_names, record.time.size());
+  record.stresses = read_rows<Stress>(history, stress_names, record.time.size());
   return record;
 }
 } // namespace isostat

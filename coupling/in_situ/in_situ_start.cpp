@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/in_situ/in_situ_start.hpp"
 
-#include "coupling/in_situ/recipe.hpp"
-
 #include <utility>
 
 namespace isostat

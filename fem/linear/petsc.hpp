@@ -10,7 +10,7 @@
 namespace isostat
 {
 /// PETSc's matrices and vectors as values that clean up after themselves. Only the files of the two linear systems see
-/// this header: fem/water (biot_entries, pressure_system.cpp) and fem/solve/statics_system.cpp.
+/// this header: fem/water/pressure_system.cpp and fem/solve/statics_system.cpp.
 /// tested: tests/fem/water/pressure_system_test.cpp, tests/fem/solve/statics_test.cpp
 
 /// @throws RunFailure  PETSc reports an error

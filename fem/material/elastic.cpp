@@ -14,11 +14,6 @@ double ElasticParameters::bulk_modulus() const
   return 2 * shear_modulus * (1 + poisson_ratio) / (3 * (1 - 2 * poisson_ratio));
 }
 
-ElasticParameters ElasticParameters::from_bulk_modulus(double shear_modulus, double bulk_modulus)
-{
-  return {shear_modulus, (3 * bulk_modulus - 2 * shear_modulus) / (2 * (3 * bulk_modulus + shear_modulus))};
-}
-
 Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus)
 {
   Stiffness c = Stiffness::Zero();
@@ -28,9 +23,10 @@ Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus)
   return c;
 }
 
-Elastic::Elastic(const ElasticParameters &p, std::size_t n_points)
-    : bulk_(p.bulk_modulus()), shear_(p.shear_modulus), committed_(n_points, Stress{}), trial_(n_points, Stress{})
+Elastic::Elastic(const ElasticParameters &p, std::size_t n_points) : bulk_(p.bulk_modulus()), shear_(p.shear_modulus)
 {
+  committed_.resize(n_points);
+  trial_.resize(n_points);
   if (!(p.shear_modulus > 0) || !std::isfinite(p.shear_modulus))
     throw InputError("elastic: shear_modulus = " + std::to_string(p.shear_modulus) + " Pa; must be above 0");
   if (!(p.poisson_ratio > -1 && p.poisson_ratio < 0.5))
@@ -66,15 +62,6 @@ void Elastic::trial(std::span<const Gradient> increments, std::span<Stress> stre
   std::copy(trial_.begin(), trial_.end(), stresses.begin());
   has_trial_ = true;
 }
-
-void Elastic::commit()
-{
-  if (has_trial_)
-    std::swap(committed_, trial_);
-  has_trial_ = false;
-}
-
-void Elastic::rollback() { has_trial_ = false; }
 
 void Elastic::stiffness(std::span<Stiffness> tangents) const
 {

@@ -12,8 +12,6 @@ struct ElasticParameters
 
   /// K = 2 G (1 + nu) / (3 (1 - 2 nu)). Pa
   double bulk_modulus() const;
-  /// From a bulk modulus K > 0 instead: nu = (3 K - 2 G) / (2 (3 K + G)).
-  static ElasticParameters from_bulk_modulus(double shear_modulus, double bulk_modulus);
 };
 
 /// Stiffness of Hooke's law: sigma = K tr(eps) 1 + 2 G dev(eps). Pa
@@ -22,7 +20,7 @@ Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus);
 /// Linear elastic isotropic soil: stress = committed stress + C : increment of strain. Tension positive.
 /// Serves as closed-form check of whatever the solver does.
 /// tested: tests/fem/material/elastic_test.cpp
-class Elastic : public Material
+class Elastic : public TwoStateMaterial<Stress>
 {
 public:
   /// Starts without stress.   @throws InputError if a parameter is out of its range
@@ -33,8 +31,6 @@ public:
   void set_initial_stress(std::span<const Stress> effective) override;
   /// @throws RunFailure naming the first point whose stress is not a number
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
   std::vector<std::byte> pack() const override;
@@ -42,7 +38,5 @@ public:
 
 private:
   double bulk_, shear_;
-  std::vector<Stress> committed_, trial_;
-  bool has_trial_ = false;
 };
 } // namespace isostat

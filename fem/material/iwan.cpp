@@ -139,15 +139,6 @@ void Iwan::trial(std::span<const Gradient> increments, std::span<Stress> stresse
   has_trial_ = true;
 }
 
-void Iwan::commit()
-{
-  if (has_trial_)
-    std::swap(committed_, trial_);
-  has_trial_ = false;
-}
-
-void Iwan::rollback() { has_trial_ = false; }
-
 void Iwan::stiffness(std::span<Stiffness> tangents) const
 {
   for (std::size_t i = 0; i < n_points_; ++i)

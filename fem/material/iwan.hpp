@@ -64,7 +64,7 @@ Backbone fit_hyperbola(unsigned elements);
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
 /// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are those of
 /// loosening and of K.   tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
-class Iwan : public Material
+class Iwan : public TwoStateMaterial<double>
 {
 public:
   /// Starts at the isotropic stress p' = reference_pressure.
@@ -78,8 +78,6 @@ public:
   void set_initial_stress(std::span<const Stress> effective) override;
   /// @throws RunFailure naming the point if its strain increment is not a number or above 1
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
   /// Consistent tangent: differences of the stress update itself at the last trial's increment (relative error 1e-5),
   /// taken forward in the direction of the increment. The elastic stiffness where there was no increment. Not
   /// symmetric; singular at the floor of p'.
@@ -126,8 +124,6 @@ private:
   std::size_t n_points_, width_, stride_; // elements with padding; numbers per point
   double bulk_per_shear_;
   std::vector<double> weights_, yields_; // w_k, M w_k x_k
-  std::vector<double> committed_, trial_;
-  std::vector<Gradient> increments_; // of the last trial
-  bool has_trial_ = false;
+  std::vector<Gradient> increments_;     // of the last trial
 };
 } // namespace isostat

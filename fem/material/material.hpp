@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace isostat
@@ -32,7 +33,7 @@ struct WaveModuli
 /// Many Gauss points of one constitutive law. The solver never knows more of a soil than this: it has no notion of
 /// grains, layers or elements.
 ///
-/// A batch is asked for the stress after an increment from the *committed* state, as often as the solver wants (each
+/// A batch is asked for the stress after an increment from the *committed* state, as often as the solver needs (each
 /// trial starts from the committed state again), and then told to keep or to forget the last trial:
 ///
 ///     material.trial(increments, stresses);   // all points at once: a material may share them out as it likes
@@ -70,5 +71,22 @@ public:
   /// @throws InputError from unpack() if the bytes are not those of this material with these points
   virtual std::vector<std::byte> pack() const = 0;
   virtual void unpack(std::span<const std::byte> bytes) = 0;
+};
+
+/// A material that keeps its points as two rows of values: the committed ones and those of the last trial.
+template <typename Value>
+class TwoStateMaterial : public Material
+{
+public:
+  void commit() override
+  {
+    if (std::exchange(has_trial_, false))
+      std::swap(committed_, trial_);
+  }
+  void rollback() override { has_trial_ = false; }
+
+protected:
+  std::vector<Value> committed_, trial_;
+  bool has_trial_ = false;
 };
 } // namespace isostat

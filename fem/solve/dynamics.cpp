@@ -9,11 +9,10 @@
 
 namespace isostat
 {
-template <int dim>
 Supports shaken_supports(bool compliant_base)
 {
   Supports supports;
-  supports.tied_sides = dim > 1;
+  supports.tied_sides = true;
   if (!compliant_base)
     for (unsigned c = 0; c < 3; ++c)
       supports.fixed.push_back({Face::base, c});
@@ -21,8 +20,7 @@ Supports shaken_supports(bool compliant_base)
   return supports;
 }
 
-template <int dim>
-Dynamics<dim>::Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings)
+Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, DynamicsSettings settings)
     : space_(space), material_(material), settings_(std::move(settings)), u_(space.displacement_vector()), v_(u_),
       next_(u_), p_(space.pressure_vector()), p_before_(p_), p_next_(p_), stresses_(space.n_points()),
       mass_(space.lumped_mass()), update_(u_), keep_(u_), damping_(u_), dashpot_(u_), surface_(u_),
@@ -44,23 +42,21 @@ Dynamics<dim>::Dynamics(const Discretisation<dim> &space, Material &material, Dy
                                  time_step_, stable));
   make_coefficients();
   if (settings_.drainage == Drainage::coupled)
-    pressure_system_ = std::make_unique<PressureSystem<dim>>(space_, time_step_, update_);
+    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
   if (settings_.lagged_compressibility)
     lagged_pressure_.assign(space_.n_points(), 0.0);
 }
 
-template <int dim>
-Dynamics<dim>::~Dynamics() = default;
+Dynamics::~Dynamics() = default;
 
-template <int dim>
-void Dynamics<dim>::check_settings() const
+void Dynamics::check_settings() const
 {
   if (material_.n_points() != space_.n_points())
     throw InputError(fmt::format("the material has {} points, the mesh {}", material_.n_points(), space_.n_points()));
-  if (settings_.drainage == Drainage::undrained && dim != 1)
+  if (settings_.drainage == Drainage::undrained && space_.dimension != 1)
     throw InputError(fmt::format("drainage undrained in {} dimensions; it exists for columns only (dimension 1). Use "
                                  "coupled with permeability 0.",
-                                 dim));
+                                 space_.dimension));
   if (settings_.drainage == Drainage::coupled && space_.mesh().degree != 2)
     throw InputError("drainage coupled with degree 1; pressure of degree 1 needs displacements of degree 2, or it "
                      "oscillates. Set degree = 2.");
@@ -75,8 +71,7 @@ void Dynamics<dim>::check_settings() const
 
 /// Equation (4) solved for v+: v+ = D (f - F + G^T p) + keep v-, D = 1/(M/dt + C/2), keep = D (M/dt - C/2). C is mass
 /// damping and the dashpots (13).
-template <int dim>
-void Dynamics<dim>::make_coefficients()
+void Dynamics::make_coefficients()
 {
   const std::size_t n = u_.locally_owned_size();
   if (settings_.base.compliant())
@@ -105,8 +100,7 @@ void Dynamics<dim>::make_coefficients()
       damping_.local_element(i) = update_.local_element(i) = keep_.local_element(i) = 0;
 }
 
-template <int dim>
-std::vector<double> Dynamics<dim>::point_pressure() const
+std::vector<double> Dynamics::point_pressure() const
 {
   if (settings_.drainage == Drainage::coupled)
     return space_.point_pressures(p_);
@@ -120,8 +114,7 @@ std::vector<double> Dynamics<dim>::point_pressure() const
   return pressure;
 }
 
-template <int dim>
-Vector Dynamics<dim>::acceleration() const
+Vector Dynamics::acceleration() const
 {
   Vector a = v_;
   a -= next_;
@@ -129,8 +122,7 @@ Vector Dynamics<dim>::acceleration() const
   return a;
 }
 
-template <int dim>
-DynamicsEnergy Dynamics<dim>::energy() const
+DynamicsEnergy Dynamics::energy() const
 {
   double sums[3] = {energy_.kinetic, energy_.internal, energy_.external};
   if (space_.shared_out())
@@ -138,9 +130,8 @@ DynamicsEnergy Dynamics<dim>::energy() const
   return {sums[0], sums[1], sums[2]};
 }
 
-template <int dim>
 template <typename Self, typename Visit>
-void Dynamics<dim>::for_each_field(Self &self, Visit &&visit)
+void Dynamics::for_each_field(Self &self, Visit &&visit)
 {
   visit.constant("time_step", self.time_step_);
   visit("displacement", self.u_);
@@ -161,27 +152,18 @@ void Dynamics<dim>::for_each_field(Self &self, Visit &&visit)
   visit("exchanged", self.exchanged_);
 }
 
-template <int dim>
-SolverState Dynamics<dim>::save() const
+SolverState Dynamics::save() const
 {
   FieldWriter write(step_, material_, space_.shared_out());
   for_each_field(*this, write);
   return write.state;
 }
 
-template <int dim>
-void Dynamics<dim>::restore(const SolverState &state)
+void Dynamics::restore(const SolverState &state)
 {
   for_each_field(*this, FieldReader(state, true));
   material_.unpack(state.material);
   for_each_field(*this, FieldReader(state));
   step_ = state.step;
 }
-
-template class Dynamics<1>;
-template class Dynamics<2>;
-template class Dynamics<3>;
-template Supports shaken_supports<1>(bool);
-template Supports shaken_supports<2>(bool);
-template Supports shaken_supports<3>(bool);
 } // namespace isostat

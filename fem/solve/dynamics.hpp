@@ -9,7 +9,6 @@
 
 namespace isostat
 {
-template <int dim>
 class PressureSystem;
 
 /// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
@@ -51,13 +50,12 @@ struct DynamicsEnergy
 /// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still to the
 /// bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/fem/solve/shear_layer_test.cpp,
 /// tests/fem/water/pressure_system_test.cpp
-template <int dim>
 class Dynamics
 {
 public:
   /// @pre material.n_points() == space.n_points(), initial stress set
   /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
-  Dynamics(const Discretisation<dim> &space, Material &material, DynamicsSettings settings);
+  Dynamics(const FiniteElementSpace &space, Material &material, DynamicsSettings settings);
   ~Dynamics();
 
   /// One time step.
@@ -102,7 +100,7 @@ private:
   void add_lagged_compression();
   void check_motion();
 
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   Material &material_;
   DynamicsSettings settings_;
   double time_step_ = 0;
@@ -124,7 +122,7 @@ private:
   std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
   Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;
-  std::unique_ptr<PressureSystem<dim>> pressure_system_;
+  std::unique_ptr<PressureSystem> pressure_system_;
 
   // of one step
   std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base
@@ -135,6 +133,5 @@ private:
 
 /// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
 /// in an undrained column vertically), tied sides, drained surface.
-template <int dim>
 Supports shaken_supports(bool compliant_base);
 } // namespace isostat

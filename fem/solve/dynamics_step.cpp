@@ -12,8 +12,7 @@
 namespace isostat
 {
 /// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
-template <int dim>
-void Dynamics<dim>::find_loads()
+void Dynamics::find_loads()
 {
   const double t = time();
   const Base &base = settings_.base;
@@ -41,8 +40,7 @@ void Dynamics<dim>::find_loads()
 }
 
 /// From the velocity at the start to the one half a step before: v(-1/2) = v(0) - dt/2 a(0).
-template <int dim>
-void Dynamics<dim>::start()
+void Dynamics::start()
 {
   const std::size_t n = u_.locally_owned_size();
   for (std::size_t i = 0; i < n; ++i)
@@ -57,8 +55,7 @@ void Dynamics<dim>::start()
 }
 
 /// Pore pressure of this instant by (8), from the velocity v* that would follow without it.
-template <int dim>
-void Dynamics<dim>::find_pressure()
+void Dynamics::find_pressure()
 {
   const std::size_t n = u_.locally_owned_size();
   const double *load = load_.begin(), *force = force_.begin(), *update = update_.begin(), *keep = keep_.begin(),
@@ -76,9 +73,8 @@ void Dynamics<dim>::find_pressure()
 /// v+ of (4) and u of (6), and the work (11) of the half intervals before and after time(); with the kinetic energy at
 /// time() the balance of central differences is an identity, for any material. One pass; sums of x, y and z are kept
 /// apart, their order is that of the code.
-template <int dim>
 template <bool coupled>
-void Dynamics<dim>::move()
+void Dynamics::move()
 {
   const std::size_t n = u_.locally_owned_size();
   const double *load = load_.begin(), *force = force_.begin(), *pore = pore_force_.begin(), *damping = damping_.begin(),
@@ -112,16 +108,14 @@ void Dynamics<dim>::move()
 }
 
 /// (10): the stable step of the present moduli.
-template <int dim>
-double Dynamics<dim>::stable_step() const
+double Dynamics::stable_step() const
 {
   material_.wave_moduli(moduli_);
   return 2 / std::sqrt(space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
 }
 
 /// A motion that grows without anything that drives it, or that is no number.
-template <int dim>
-void Dynamics<dim>::check_motion()
+void Dynamics::check_motion()
 {
   double sums[2] = {half_way_.kinetic, exchanged_};
   if (space_.shared_out())
@@ -139,8 +133,7 @@ void Dynamics<dim>::check_motion()
 
 /// The water of an undrained column gives way: volume strain -dp/Q, taken from the step before (docs/theory_column.md,
 /// section 3).
-template <int dim>
-void Dynamics<dim>::add_lagged_compression()
+void Dynamics::add_lagged_compression()
 {
   const std::vector<double> pressure = point_pressure();
   const std::vector<PorousLayer> layers = porous_layers(space_.mesh().soil);
@@ -153,8 +146,7 @@ void Dynamics<dim>::add_lagged_compression()
 }
 
 /// The strains of the step that u has made; the material follows.
-template <int dim>
-void Dynamics<dim>::strain_points()
+void Dynamics::strain_points()
 {
   if (space_.shared_out())
     v_.update_ghost_values();
@@ -167,8 +159,7 @@ void Dynamics<dim>::strain_points()
   material_.commit();
 }
 
-template <int dim>
-void Dynamics<dim>::step()
+void Dynamics::step()
 {
   find_loads();
   if (step_ == 0)
@@ -184,8 +175,4 @@ void Dynamics<dim>::step()
   ++step_;
   check_motion();
 }
-
-template class Dynamics<1>;
-template class Dynamics<2>;
-template class Dynamics<3>;
 } // namespace isostat

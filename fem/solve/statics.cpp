@@ -26,8 +26,7 @@ double mean_modulus(const Material &material, MPI_Comm communicator)
 }
 } // namespace
 
-template <int dim>
-Statics<dim>::Statics(const Discretisation<dim> &space, Material &material, StaticsSettings settings)
+Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSettings settings)
     : space_(space), material_(material), settings_(std::move(settings)), u_(space.displacement_vector()),
       p_(space.pressure_vector()), last_du_(u_), last_dp_(p_), load_(u_), stresses_(space.n_points()),
       reference_force_(u_), target_u_(u_), du_(u_), dp_(p_), start_du_(u_), start_dp_(p_), step_u_(u_), step_p_(p_),
@@ -43,15 +42,13 @@ Statics<dim>::Statics(const Discretisation<dim> &space, Material &material, Stat
   min_scale_ = std::max(settings_.min_force, 1e-4 * reference_force_.l2_norm());
   pressure_scale_ = mean_modulus(material_, space_.communicator());
   if (settings_.pore_water)
-    water_ = std::make_unique<BiotOperator<dim>>(space_);
-  system_ = std::make_unique<StaticsSystem<dim>>(space_, water_.get(), pressure_scale_);
+    water_ = std::make_unique<BiotOperator>(space_);
+  system_ = std::make_unique<StaticsSystem>(space_, water_.get(), pressure_scale_);
 }
 
-template <int dim>
-Statics<dim>::~Statics() = default;
+Statics::~Statics() = default;
 
-template <int dim>
-void Statics<dim>::step(double duration)
+void Statics::step(double duration)
 {
   if (settings_.pore_water && duration == 0)
     throw InputError("step of 0 s with pore water; must be > 0 for water to flow. Use an undrained step for a jump of "
@@ -59,8 +56,7 @@ void Statics<dim>::step(double duration)
   advance(duration, settings_.pore_water);
 }
 
-template <int dim>
-void Statics<dim>::step_undrained(double duration)
+void Statics::step_undrained(double duration)
 {
   if (!settings_.pore_water)
     throw InputError("undrained step without pore water; switch pore water on");
@@ -68,8 +64,7 @@ void Statics<dim>::step_undrained(double duration)
 }
 
 /// Sizes are powers of 1/2 of the step, so the parts add up to 1 exactly.
-template <int dim>
-void Statics<dim>::advance(double duration, bool flow)
+void Statics::advance(double duration, bool flow)
 {
   if (!(duration >= 0) || !std::isfinite(duration))
     throw InputError(fmt::format("step of {} s; must be >= 0", duration));
@@ -112,8 +107,7 @@ void Statics<dim>::advance(double duration, bool flow)
   ++step_;
 }
 
-template <int dim>
-void Statics<dim>::accept(double duration)
+void Statics::accept(double duration)
 {
   if (tried_)
     material_.commit();
@@ -132,8 +126,7 @@ void Statics<dim>::accept(double duration)
   ++effort_.substeps;
 }
 
-template <int dim>
-void Statics<dim>::fail(double size) const
+void Statics::fail(double size) const
 {
   throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.3g} of the force scale "
                                "{:.3g} N, tolerance {:.3g}) in a sub-step of {:.3g} of the step, the smallest that is "
@@ -143,15 +136,10 @@ void Statics<dim>::fail(double size) const
                                time_, step_));
 }
 
-template <int dim>
-std::vector<double> Statics<dim>::point_pressure() const
-{
-  return space_.point_pressures(p_);
-}
+std::vector<double> Statics::point_pressure() const { return space_.point_pressures(p_); }
 
-template <int dim>
 template <typename Self, typename Visit>
-void Statics<dim>::for_each_field(Self &self, Visit &&visit)
+void Statics::for_each_field(Self &self, Visit &&visit)
 {
   visit("displacement", self.u_);
   visit("pressure", self.p_);
@@ -168,25 +156,19 @@ void Statics<dim>::for_each_field(Self &self, Visit &&visit)
   visit("pressure_scale", self.pressure_scale_);
 }
 
-template <int dim>
-SolverState Statics<dim>::save() const
+SolverState Statics::save() const
 {
   FieldWriter write(step_, material_, space_.shared_out());
   for_each_field(*this, write);
   return write.state;
 }
 
-template <int dim>
-void Statics<dim>::restore(const SolverState &state)
+void Statics::restore(const SolverState &state)
 {
   for_each_field(*this, FieldReader(state, true));
   material_.unpack(state.material);
   for_each_field(*this, FieldReader(state));
   step_ = state.step;
-  system_ = std::make_unique<StaticsSystem<dim>>(space_, water_.get(), pressure_scale_);
+  system_ = std::make_unique<StaticsSystem>(space_, water_.get(), pressure_scale_);
 }
-
-template class Statics<1>;
-template class Statics<2>;
-template class Statics<3>;
 } // namespace isostat

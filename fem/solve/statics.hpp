@@ -8,9 +8,7 @@
 
 namespace isostat
 {
-template <int dim>
 class BiotOperator;
-template <int dim>
 class StaticsSystem;
 
 /// Total traction (of soil and water together, tension positive) on a face, Pa. On a face that moves together only the
@@ -67,14 +65,13 @@ struct StaticsEffort
 /// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
 /// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
 /// mandel_test.cpp, statics_state_test.cpp, statics_failure_test.cpp, statics_ranks_test.cpp
-template <int dim>
 class Statics
 {
 public:
   /// @pre material.n_points() == space.n_points(), initial stress set
   /// @throws InputError  other numbers of points, pore water with degree 1, a displacement of a component that is
   ///         neither fixed nor together, settings out of range
-  Statics(const Discretisation<dim> &space, Material &material, StaticsSettings settings);
+  Statics(const FiniteElementSpace &space, Material &material, StaticsSettings settings);
   ~Statics();
 
   /// On by `duration` seconds; 0 (a jump of the load) is possible without pore water only.
@@ -129,11 +126,11 @@ private:
   void accept(double duration);
   [[noreturn]] void fail(double size) const;
 
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   Material &material_;
   StaticsSettings settings_;
-  std::unique_ptr<BiotOperator<dim>> water_;
-  std::unique_ptr<StaticsSystem<dim>> system_;
+  std::unique_ptr<BiotOperator> water_;
+  std::unique_ptr<StaticsSystem> system_;
 
   // state
   std::uint64_t step_ = 0;

@@ -26,8 +26,7 @@ bool contains(const std::vector<FaceComponent> &list, FaceComponent of)
 }
 } // namespace
 
-template <int dim>
-void Statics<dim>::check_settings() const
+void Statics::check_settings() const
 {
   if (material_.n_points() != space_.n_points())
     throw InputError(fmt::format("the material has {} points, the mesh {}", material_.n_points(), space_.n_points()));
@@ -54,8 +53,7 @@ void Statics<dim>::check_settings() const
 }
 
 /// Owned unknowns of a component on a face. A rank need not have a cell at all.
-template <int dim>
-std::vector<unsigned> Statics<dim>::unknowns_of(FaceComponent of) const
+std::vector<unsigned> Statics::unknowns_of(FaceComponent of) const
 {
   const Vector area = space_.face_area(of.face);
   std::vector<unsigned> unknowns;
@@ -65,8 +63,7 @@ std::vector<unsigned> Statics<dim>::unknowns_of(FaceComponent of) const
   return unknowns;
 }
 
-template <int dim>
-void Statics<dim>::find_held()
+void Statics::find_held()
 {
   is_held_u_.assign(u_.locally_owned_size(), 0);
   is_held_p_.assign(p_.locally_owned_size(), 0);
@@ -94,8 +91,7 @@ void Statics<dim>::find_held()
 }
 
 /// Forces on the nodes, and displacements of held unknowns (those without a given one stay).
-template <int dim>
-void Statics<dim>::find_loads(double time, Vector &load, Vector &held) const
+void Statics::find_loads(double time, Vector &load, Vector &held) const
 {
   load = 0;
   for (std::size_t k = 0; k < traction_areas_.size(); ++k)
@@ -107,8 +103,7 @@ void Statics<dim>::find_loads(double time, Vector &load, Vector &held) const
       held.local_element(i) = settings_.displacements[k].displacement(time, places_[i]);
 }
 
-template <int dim>
-double Statics<dim>::reaction(FaceComponent of) const
+double Statics::reaction(FaceComponent of) const
 {
   Vector force = space_.displacement_vector(), pore = force;
   space_.add_internal_force(stresses_, force);
@@ -121,8 +116,4 @@ double Statics<dim>::reaction(FaceComponent of) const
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
   return sum;
 }
-
-template class Statics<1>;
-template class Statics<2>;
-template class Statics<3>;
 } // namespace isostat

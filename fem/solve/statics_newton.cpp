@@ -11,8 +11,7 @@
 
 namespace isostat
 {
-template <int dim>
-bool Statics<dim>::on_every_rank(bool good) const
+bool Statics::on_every_rank(bool good) const
 {
   int all = good;
   if (space_.shared_out())
@@ -21,8 +20,7 @@ bool Statics<dim>::on_every_rank(bool good) const
 }
 
 /// True if it found equilibrium; else reason_ says why not.
-template <int dim>
-bool Statics<dim>::solve_substep(double duration)
+bool Statics::solve_substep(double duration)
 {
   start_substep(duration);
   for (unsigned iteration = 0; iteration <= settings_.newton.max_iterations; ++iteration)
@@ -36,8 +34,7 @@ bool Statics<dim>::solve_substep(double duration)
   return false;
 }
 
-template <int dim>
-void Statics<dim>::start_substep(double duration)
+void Statics::start_substep(double duration)
 {
   // (15): theta and c of BDF2 with the ratio of this step to the one before, of backward Euler without one
   const double ratio = duration_before_ > 0 ? duration / duration_before_ : 0;
@@ -63,8 +60,7 @@ void Statics<dim>::start_substep(double duration)
 }
 
 /// One linear system (16) and the search along its solution.
-template <int dim>
-bool Statics<dim>::iterate(unsigned iteration)
+bool Statics::iterate(unsigned iteration)
 {
   bool good = true;
   if (iteration % settings_.newton.iterations_per_tangent == 0)
@@ -96,8 +92,7 @@ bool Statics<dim>::iterate(unsigned iteration)
 
 /// Backtracking (18) with the parabola through the merit's squares at both ends and the slope at the start, which for a
 /// Newton step is known (Nocedal & Wright, Numerical Optimization, 3.5 and 11.2).
-template <int dim>
-bool Statics<dim>::search_line(double merit_before)
+bool Statics::search_line(double merit_before)
 {
   constexpr unsigned max_cuts = 6;
   constexpr double min_gain = 1e-4;
@@ -121,8 +116,7 @@ bool Statics<dim>::search_line(double merit_before)
   return false;
 }
 
-template <int dim>
-void Statics<dim>::set_part(double part)
+void Statics::set_part(double part)
 {
   for (std::size_t i = 0; i < du_.locally_owned_size(); ++i)
     du_.local_element(i) = start_du_.local_element(i) + part * step_u_.local_element(i);
@@ -131,8 +125,7 @@ void Statics<dim>::set_part(double part)
 }
 
 /// Stress and residual of du_, dp_. False if the material refuses, or answers with what is no number.
-template <int dim>
-bool Statics<dim>::evaluate()
+bool Statics::evaluate()
 {
   if (space_.shared_out())
     du_.update_ghost_values();
@@ -160,8 +153,7 @@ bool Statics<dim>::evaluate()
   return false;
 }
 
-template <int dim>
-void Statics<dim>::find_residual()
+void Statics::find_residual()
 {
   const std::size_t n_u = u_.locally_owned_size(), n_p = p_.locally_owned_size();
   // F(sigma') - F(sigma'_0) of (14)
@@ -189,8 +181,7 @@ void Statics<dim>::find_residual()
 }
 
 /// Norm of the residual (17), as a force, once held unknowns have gone `moved_part` of the last iteration's way.
-template <int dim>
-double Statics<dim>::merit(double moved_part) const
+double Statics::merit(double moved_part) const
 {
   const double per_volume = water_ ? system_->force_per_volume() : 0;
   double sum = squares(r_u_, moved_u_, moved_part, is_held_u_);
@@ -202,9 +193,8 @@ double Statics<dim>::merit(double moved_part) const
   return std::sqrt(sum);
 }
 
-template <int dim>
-double Statics<dim>::squares(const Vector &residual, const Vector &moved, double moved_part,
-                             const std::vector<char> &held) const
+double Statics::squares(const Vector &residual, const Vector &moved, double moved_part,
+                        const std::vector<char> &held) const
 {
   double sum = 0;
   for (std::size_t i = 0; i < held.size(); ++i)
@@ -215,8 +205,4 @@ double Statics<dim>::squares(const Vector &residual, const Vector &moved, double
       }
   return sum;
 }
-
-template class Statics<1>;
-template class Statics<2>;
-template class Statics<3>;
 } // namespace isostat

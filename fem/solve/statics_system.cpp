@@ -4,20 +4,34 @@
 
 #include "base/error.hpp"
 #include "fem/linear/petsc.hpp"
-#include "fem/space/integrals.hpp"
 
 #include <cmath>
 
 namespace isostat
 {
-template <int dim>
-struct StaticsSystem<dim>::Matrices
+namespace
+{
+/// B of a point: strain (as strain() orders it, shear as gamma) per displacement of its cell's nodes, 6 rows, columns
+/// [node][3], 1/m.
+void strain_matrix(const CellTables &t, std::size_t point, Eigen::Matrix<double, 6, Eigen::Dynamic> &b)
+{
+  for (std::size_t a = 0; a < t.n_nodes; ++a)
+    {
+      std::array<double, 3> g = {0, 0, 0};
+      for (unsigned d = 0; d < t.dimension; ++d)
+        g[mesh_axes[t.dimension][d]] = t.gradient[(point * t.n_nodes + a) * t.dimension + d];
+      b.middleCols<3>(3 * a) << g[0], 0, 0, 0, g[1], 0, 0, 0, g[2], 0, g[2], g[1], g[2], 0, g[0], g[1], g[0], 0;
+    }
+}
+} // namespace
+
+struct StaticsSystem::Matrices
 {
   double pressure_scale = 1, cell_size = 1;
   std::size_t n_u = 0, n_p = 0;       ///< owned rows
   std::vector<PetscInt> of_u, of_p;   ///< number in the system of owned and other unknowns
   std::vector<unsigned> unused, held; ///< owned rows that no cell has; held ones
-  const BiotOperator<dim> *water = nullptr;
+  const BiotOperator *water = nullptr;
   std::vector<double> values;            ///< entries in the order of preallocate()
   std::vector<Stiffness> known_tangents; ///< that the factor is of
   double known_theta = -1;
@@ -25,9 +39,7 @@ struct StaticsSystem<dim>::Matrices
   PetscVector in, out;
 };
 
-template <int dim>
-StaticsSystem<dim>::StaticsSystem(const Discretisation<dim> &space, const BiotOperator<dim> *water,
-                                  double pressure_scale)
+StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale)
     : space_(space), matrices_(std::make_unique<Matrices>())
 {
   Matrices &m = *matrices_;
@@ -38,24 +50,18 @@ StaticsSystem<dim>::StaticsSystem(const Discretisation<dim> &space, const BiotOp
     size[0] += w;
   if (space.shared_out())
     MPI_Allreduce(MPI_IN_PLACE, size, 2, MPI_DOUBLE, MPI_SUM, space.communicator());
-  m.cell_size = std::pow(size[0] / size[1], 1.0 / dim);
+  m.cell_size = std::pow(size[0] / size[1], 1.0 / space.dimension);
   number_unknowns();
   preallocate();
   hold({}, {});
 }
 
-template <int dim>
-StaticsSystem<dim>::~StaticsSystem() = default;
+StaticsSystem::~StaticsSystem() = default;
 
-template <int dim>
-double StaticsSystem<dim>::force_per_volume() const
-{
-  return matrices_->pressure_scale / matrices_->cell_size;
-}
+double StaticsSystem::force_per_volume() const { return matrices_->pressure_scale / matrices_->cell_size; }
 
 /// Each rank's displacements come first, its pressures behind them.
-template <int dim>
-void StaticsSystem<dim>::number_unknowns()
+void StaticsSystem::number_unknowns()
 {
   Matrices &m = *matrices_;
   Vector u = space_.displacement_vector(), p = space_.pressure_vector();
@@ -84,11 +90,10 @@ void StaticsSystem<dim>::number_unknowns()
 }
 
 /// Entries cell by cell, row by row, then the whole diagonal.
-template <int dim>
-void StaticsSystem<dim>::preallocate()
+void StaticsSystem::preallocate()
 {
   Matrices &m = *matrices_;
-  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
+  const std::size_t n_u = 3 * space_.n_nodes, n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
   PetscEntries entries;
   std::vector<PetscInt> cell_rows(n_u + n_i);
   for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
@@ -121,8 +126,7 @@ void StaticsSystem<dim>::preallocate()
   m.out.reset(out);
 }
 
-template <int dim>
-void StaticsSystem<dim>::hold(const std::vector<unsigned> &displacements, const std::vector<unsigned> &pressures)
+void StaticsSystem::hold(const std::vector<unsigned> &displacements, const std::vector<unsigned> &pressures)
 {
   Matrices &m = *matrices_;
   std::vector<bool> is_held(m.n_u + m.n_p, false);
@@ -142,8 +146,7 @@ void StaticsSystem<dim>::hold(const std::vector<unsigned> &displacements, const 
   m.held = std::move(held);
 }
 
-template <int dim>
-void StaticsSystem<dim>::set_tangent(std::span<const Stiffness> tangents, double theta)
+void StaticsSystem::set_tangent(std::span<const Stiffness> tangents, double theta)
 {
   Matrices &m = *matrices_;
   int same = m.known_theta == theta &&
@@ -159,11 +162,10 @@ void StaticsSystem<dim>::set_tangent(std::span<const Stiffness> tangents, double
   m.known_tangents.assign(tangents.begin(), tangents.end());
 }
 
-template <int dim>
-void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double theta)
+void StaticsSystem::assemble(std::span<const Stiffness> tangents, double theta)
 {
   Matrices &m = *matrices_;
-  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_q = space_.points_per_cell();
+  const std::size_t n_u = 3 * space_.n_nodes, n_q = space_.points_per_cell();
   const std::size_t n = n_u + (m.water ? space_.pressure_nodes_per_cell() : 0);
   Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, n_u);
   Eigen::MatrixXd k(n, n);
@@ -172,7 +174,7 @@ void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double th
       k.setZero();
       for (std::size_t q = cell * n_q; q < (cell + 1) * n_q; ++q)
         {
-          strain_matrix<dim>(space_, q, b); // K of (16): int B^T C B
+          strain_matrix(space_, q, b); // K of (16): int B^T C B
           k.topLeftCorner(n_u, n_u) += space_.weight[q] * b.transpose() * (tangents[q] * b);
         }
       if (m.water) // -G, -G^T, -(S + theta H), pressures in units of the scale
@@ -190,8 +192,7 @@ void StaticsSystem<dim>::assemble(std::span<const Stiffness> tangents, double th
 }
 
 /// The analysis does not look at values: a resumed run has the same pivots.
-template <int dim>
-void StaticsSystem<dim>::factorise()
+void StaticsSystem::factorise()
 {
   Matrices &m = *matrices_;
   std::vector<PetscInt> rows;
@@ -218,8 +219,7 @@ void StaticsSystem<dim>::factorise()
     throw RunFailure("the tangent is singular: a part moves freely, or a soil has no stiffness");
 }
 
-template <int dim>
-void StaticsSystem<dim>::load(const Vector &u, double u_factor, const Vector &p, double p_factor) const
+void StaticsSystem::load(const Vector &u, double u_factor, const Vector &p, double p_factor) const
 {
   const Matrices &m = *matrices_;
   double *x;
@@ -231,8 +231,7 @@ void StaticsSystem<dim>::load(const Vector &u, double u_factor, const Vector &p,
   petsc_check(VecRestoreArrayWrite(m.in.get(), &x));
 }
 
-template <int dim>
-void StaticsSystem<dim>::unload(Vector &u, double u_factor, Vector &p, double p_factor) const
+void StaticsSystem::unload(Vector &u, double u_factor, Vector &p, double p_factor) const
 {
   const Matrices &m = *matrices_;
   const double *x;
@@ -245,9 +244,8 @@ void StaticsSystem<dim>::unload(Vector &u, double u_factor, Vector &p, double p_
 }
 
 /// (16) with held unknowns: A x = r - A x_held for the others, x = x_held for these.
-template <int dim>
-void StaticsSystem<dim>::solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u,
-                               Vector &moved_p) const
+void StaticsSystem::solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u,
+                          Vector &moved_p) const
 {
   const Matrices &m = *matrices_;
   const double scale = m.pressure_scale;
@@ -268,8 +266,4 @@ void StaticsSystem<dim>::solve(const Vector &r_u, const Vector &r_p, Vector &du,
   petsc_check(MatSolve(m.factor.get(), m.in.get(), m.out.get()));
   unload(du, 1, dp, scale);
 }
-
-template class StaticsSystem<1>;
-template class StaticsSystem<2>;
-template class StaticsSystem<3>;
 } // namespace isostat

@@ -14,12 +14,11 @@ namespace isostat
 /// ranks. Held unknowns take given increments. The factor is kept as long as tangent, theta and held unknowns are the
 /// same numbers.
 /// tested: tests/fem/solve/statics_test.cpp
-template <int dim>
 class StaticsSystem
 {
 public:
   /// @param water  null: no pore water; must outlive this   @param pressure_scale  Pa, about the skeleton's modulus
-  StaticsSystem(const Discretisation<dim> &space, const BiotOperator<dim> *water, double pressure_scale);
+  StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale);
   ~StaticsSystem();
 
   /// Owned unknowns that are held from now on; others that no cell has are so anyway.
@@ -43,7 +42,7 @@ private:
   void load(const Vector &u, double u_factor, const Vector &p, double p_factor) const;
   void unload(Vector &u, double u_factor, Vector &p, double p_factor) const;
 
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   std::unique_ptr<Matrices> matrices_;
 };
 } // namespace isostat

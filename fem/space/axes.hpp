@@ -20,13 +20,8 @@ enum class Face
 /// A place in space: x, y, z, m. z = 0 at the base, upwards positive.
 using Place = std::array<double, 3>;
 
-/// Axes x, y, z (0, 1, 2) of a mesh's coordinates: z alone, x and z, or all three.
-template <int dim>
-inline constexpr std::array<int, 3> mesh_axes = {2, 2, 2};
-template <>
-inline constexpr std::array<int, 3> mesh_axes<2> = {0, 2, 2};
-template <>
-inline constexpr std::array<int, 3> mesh_axes<3> = {0, 1, 2};
+/// Axes x, y, z (0, 1, 2) of a mesh's coordinates, by its dimension 1, 2, 3: z alone, x and z, or all three.
+inline constexpr std::array<std::array<int, 3>, 4> mesh_axes = {{{}, {2, 2, 2}, {0, 2, 2}, {0, 1, 2}}};
 
 /// The mesh's number of a face, -1 if its axis is not meshed.
 template <int dim>
@@ -34,7 +29,7 @@ int boundary_id(Face face)
 {
   const int axis = static_cast<int>(face) / 2;
   for (int d = 0; d < dim; ++d)
-    if (mesh_axes<dim>[d] == axis)
+    if (mesh_axes[dim][d] == axis)
       return 2 * d + static_cast<int>(face) % 2;
   return -1;
 }
@@ -46,7 +41,7 @@ Place place_of(const Point &point)
 {
   Place place = {0, 0, 0};
   for (int d = 0; d < dim; ++d)
-    place[mesh_axes<dim>[d]] = point[d];
+    place[mesh_axes[dim][d]] = point[d];
   return place;
 }
 } // namespace isostat

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fem/space/cell_frequency.hpp"
+#include "fem/space/tables.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -11,10 +11,9 @@ namespace
 {
 /// Stiffness of a skeleton with rho V_p^2 = 1 Pa and rho V_s^2 = shear Pa for one cell, divided by its nodal volumes on
 /// both sides (square roots): its eigenvalues are omega^2 at a density of 1 kg/m3.
-template <int dim>
 Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double shear)
 {
-  const std::size_t n_nodes = t.n_nodes, n = 3 * n_nodes;
+  const std::size_t n_nodes = t.n_nodes, n = 3 * n_nodes, dim = t.dimension;
   const double *share = &t.nodal_share[cell * n_nodes];
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
   const double lambda = 1 - 2 * shear;
@@ -23,10 +22,10 @@ Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double s
       for (std::size_t b = 0; b < n_nodes; ++b)
         {
           Eigen::Vector3d ga = Eigen::Vector3d::Zero(), gb = ga;
-          for (int d = 0; d < dim; ++d)
+          for (std::size_t d = 0; d < dim; ++d)
             {
-              ga[mesh_axes<dim>[d]] = t.gradient[(q * n_nodes + a) * dim + d];
-              gb[mesh_axes<dim>[d]] = t.gradient[(q * n_nodes + b) * dim + d];
+              ga[mesh_axes[dim][d]] = t.gradient[(q * n_nodes + a) * dim + d];
+              gb[mesh_axes[dim][d]] = t.gradient[(q * n_nodes + b) * dim + d];
             }
           k.block<3, 3>(3 * a, 3 * b) += t.weight[q] * (lambda * ga * gb.transpose() + shear * gb * ga.transpose() +
                                                         shear * ga.dot(gb) * Eigen::Matrix3d::Identity());
@@ -37,13 +36,12 @@ Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double s
   return k;
 }
 
-template <int dim>
 double frequency(const CellTables &t, std::size_t cell)
 {
   double largest = 0;
   for (double shear : {0.0, 0.75})
     {
-      const Eigen::MatrixXd k = scaled_stiffness<dim>(t, cell, shear);
+      const Eigen::MatrixXd k = scaled_stiffness(t, cell, shear);
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, Eigen::EigenvaluesOnly);
       largest = std::max(largest, solver.eigenvalues().maxCoeff());
     }
@@ -58,7 +56,6 @@ bool have_same_shape(const CellTables &t, std::size_t one, std::size_t other)
 }
 } // namespace
 
-template <int dim>
 std::vector<double> cell_frequencies(const CellTables &t)
 {
   std::vector<double> found;
@@ -67,14 +64,10 @@ std::vector<double> cell_frequencies(const CellTables &t)
     {
       const auto same =
           std::find_if(known.begin(), known.end(), [&](std::size_t other) { return have_same_shape(t, cell, other); });
-      found.push_back(same == known.end() ? frequency<dim>(t, cell) : found[*same]);
+      found.push_back(same == known.end() ? frequency(t, cell) : found[*same]);
       if (same == known.end())
         known.push_back(cell);
     }
   return found;
 }
-
-template std::vector<double> cell_frequencies<1>(const CellTables &);
-template std::vector<double> cell_frequencies<2>(const CellTables &);
-template std::vector<double> cell_frequencies<3>(const CellTables &);
 } // namespace isostat

@@ -18,8 +18,7 @@ double minimum(double x, MPI_Comm communicator)
 }
 } // namespace
 
-template <int dim>
-PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth)
+PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
 {
   const double height = space.mesh().soil.height();
   double best = std::numeric_limits<double>::max();
@@ -45,8 +44,7 @@ PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth)
   return found;
 }
 
-template <int dim>
-ColumnLine column_line(const Discretisation<dim> &space)
+ColumnLine column_line(const FiniteElementSpace &space)
 {
   const SoilProfile &soil = space.mesh().soil;
   const double height = soil.height();
@@ -77,11 +75,4 @@ ColumnLine column_line(const Discretisation<dim> &space)
     }
   return line;
 }
-
-#define ISOSTAT_INSTANTIATE(dim) \
-  template ColumnLine column_line<dim>(const Discretisation<dim> &); \
-  template PointAtDepth point_at_depth<dim>(const Discretisation<dim> &, double);
-ISOSTAT_INSTANTIATE(1)
-ISOSTAT_INSTANTIATE(2)
-ISOSTAT_INSTANTIATE(3)
 } // namespace isostat

@@ -15,8 +15,7 @@ struct ColumnLine
 };
 
 /// tested: tests/apps/soil_column_test.py
-template <int dim>
-ColumnLine column_line(const Discretisation<dim> &space);
+ColumnLine column_line(const FiniteElementSpace &space);
 
 /// The point nearest to a depth on that line, of all ranks.
 struct PointAtDepth
@@ -26,6 +25,5 @@ struct PointAtDepth
 };
 
 /// Collective.   @param depth  m below the surface
-template <int dim>
-PointAtDepth point_at_depth(const Discretisation<dim> &space, double depth);
+PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth);
 } // namespace isostat

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/space/discretisation.hpp"
 
-#include "fem/space/cell_frequency.hpp"
-#include "fem/space/integrals.hpp"
-#include "fem/space/places.hpp"
+#include "base/error.hpp"
+#include "fem/space/unknowns.hpp"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q1.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace isostat
 {
 namespace
 {
+using Index = dealii::types::global_dof_index;
+constexpr Index nowhere = dealii::numbers::invalid_dof_index;
+
 int n_ranks(MPI_Comm communicator)
 {
   int size = 1;
@@ -24,26 +32,107 @@ void sort_unique(std::vector<unsigned> &list)
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-void append(const std::vector<unsigned> &more, std::vector<unsigned> &list)
+template <int dim>
+unsigned number_of(Face face, const char *whose)
 {
-  list.insert(list.end(), more.begin(), more.end());
+  const int id = boundary_id<dim>(face);
+  if (id < 0)
+    throw InputError(std::string(whose) + ": a face of an axis that is not meshed; remove it");
+  return static_cast<unsigned>(id);
+}
+
+/// Nodes on a face that this rank's own cells have, cell by cell.
+template <int dim>
+std::vector<Index> nodes_on_face(const dealii::DoFHandler<dim> &nodes, Face face)
+{
+  const unsigned id = number_of<dim>(face, "supports");
+  std::vector<Index> on_face(nodes.get_fe().n_dofs_per_face()), all;
+  for (const auto &cell : nodes.active_cell_iterators())
+    if (cell->is_locally_owned())
+      for (const auto &f : cell->face_iterators())
+        if (f->at_boundary() && f->boundary_id() == id)
+          {
+            f->get_dof_indices(on_face);
+            all.insert(all.end(), on_face.begin(), on_face.end());
+          }
+  return all;
+}
+
+/// f(node, place) for the nodes of this rank's cells, cell by cell: a node as often as it has cells.
+template <int dim, typename F>
+void for_each_node(const dealii::DoFHandler<dim> &nodes, const F &f)
+{
+  const auto &support = nodes.get_fe().get_unit_support_points();
+  std::vector<Index> of_cell(support.size());
+  const dealii::MappingQ1<dim> mapping;
+  for (const auto &cell : nodes.active_cell_iterators())
+    if (cell->is_locally_owned())
+      {
+        cell->get_dof_indices(of_cell);
+        for (unsigned a = 0; a < of_cell.size(); ++a)
+          f(of_cell[a], place_of<dim>(mapping.transform_unit_to_real_cell(cell, support[a])));
+      }
+}
+
+/// The owned node nearest to a place, `nowhere` on the ranks that do not have the nearest of all.
+template <int dim>
+Index nearest_node(const dealii::DoFHandler<dim> &nodes, const Place &place, MPI_Comm communicator)
+{
+  struct
+  {
+    double distance = std::numeric_limits<double>::max();
+    int rank = 0;
+  } best;
+  MPI_Comm_rank(communicator, &best.rank);
+  Index nearest = nowhere;
+  for_each_node(nodes, [&](Index node, const Place &at) {
+    double distance = 0;
+    for (int d = 0; d < dim; ++d)
+      distance += std::pow(at[mesh_axes[dim][d]] - place[mesh_axes[dim][d]], 2);
+    if (distance < best.distance && nodes.locally_owned_dofs().is_element(node))
+      {
+        best.distance = distance;
+        nearest = node;
+      }
+  });
+  const int rank = best.rank;
+  MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MINLOC, communicator);
+  return best.rank == rank ? nearest : nowhere;
+}
+
+/// Gauss-Lobatto at the nodes of a face; a face of a column is a point.
+template <int dim>
+dealii::Quadrature<dim - 1> nodal_quadrature(unsigned degree)
+{
+  if constexpr (dim == 1)
+    return dealii::QGauss<0>(degree);
+  else
+    return dealii::QGaussLobatto<dim - 1>(degree + 1);
 }
 } // namespace
 
+FiniteElementSpace::FiniteElementSpace(const MeshSpec &mesh, const Supports &supports, int dim, MPI_Comm communicator)
+    : mesh_(mesh), supports_(supports), shared_out_(dim > 1 && n_ranks(communicator) > 1),
+      communicator_(dim == 1 ? MPI_COMM_SELF : communicator)
+{}
+
 template <int dim>
 Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator)
-    : mesh_(mesh), supports_(supports), shared_out_(dim > 1 && n_ranks(communicator) > 1),
-      communicator_(dim == 1 ? MPI_COMM_SELF : communicator),
+    : FiniteElementSpace(mesh, supports, dim, communicator),
       unknowns_(std::make_unique<Unknowns<dim>>(mesh_, supports_, shared_out_, communicator_))
 {
+  displacements_ = unknowns_->displacements();
+  pressures_ = unknowns_->pressures();
   static_cast<CellTables &>(*this) = make_tables(mesh_, *unknowns_);
   for (const FaceComponent &support : supports_.fixed)
-    append(displacements_on(*unknowns_, support), fixed_dofs);
+    for (Index node : nodes_on_face(unknowns_->nodes(), support.face))
+      fixed_dofs.push_back(unknowns_->dof_of_node(node, support.component));
   for (Face face : supports_.drained)
-    append(pressures_on(*unknowns_, face), drained_pressures);
+    for (Index node : nodes_on_face(unknowns_->pressure_nodes(), face))
+      drained_pressures.push_back(unknowns_->pressure_of_node(node));
   sort_unique(fixed_dofs);
   sort_unique(drained_pressures);
-  cell_frequency_ = cell_frequencies<dim>(*this);
+  cell_frequency_ = cell_frequencies(*this);
   for (std::size_t cell = 0; cell < n_cells(); ++cell)
     cell_frequency_[cell] /= mesh_.soil.layers[cell_layer[cell]].density;
 }
@@ -52,95 +141,54 @@ template <int dim>
 Discretisation<dim>::~Discretisation() = default;
 
 template <int dim>
-Vector Discretisation<dim>::displacement_vector() const
-{
-  return Vector(unknowns_->displacements());
-}
-
-template <int dim>
-Vector Discretisation<dim>::pressure_vector() const
-{
-  return Vector(unknowns_->pressures());
-}
-
-template <int dim>
-Vector Discretisation<dim>::lumped_mass() const
-{
-  Vector mass = displacement_vector();
-  for (std::size_t cell = 0; cell < n_cells(); ++cell)
-    for (std::size_t a = 0; a < n_nodes; ++a)
-      for (unsigned c = 0; c < 3; ++c)
-        mass.local_element(cell_dofs[(cell * n_nodes + a) * 3 + c]) +=
-            mesh_.soil.layers[cell_layer[cell]].density * nodal_share[cell * n_nodes + a];
-  mass.add_ghosts_to_owners();
-  return mass;
-}
-
-template <int dim>
-Vector Discretisation<dim>::face_area(Face face) const
-{
-  return area_of(*unknowns_, face);
-}
-
-template <int dim>
-std::vector<Place> Discretisation<dim>::node_places() const
-{
-  return displacement_places(*unknowns_);
-}
-
-template <int dim>
 long Discretisation<dim>::find_dof(const Place &place, unsigned component) const
 {
-  return nearest_displacement(*unknowns_, place, component);
+  const Index node = nearest_node(unknowns_->nodes(), place, communicator_);
+  return node == nowhere ? -1 : static_cast<long>(unknowns_->dof_of_node(node, component));
 }
 
 template <int dim>
 long Discretisation<dim>::find_pressure(const Place &place) const
 {
-  return nearest_pressure(*unknowns_, place);
+  const Index node = nearest_node(unknowns_->pressure_nodes(), place, communicator_);
+  return node == nowhere ? -1 : static_cast<long>(unknowns_->pressure_of_node(node));
 }
 
 template <int dim>
-void Discretisation<dim>::gradients(const Vector &u, std::span<Gradient> out, double factor) const
+std::vector<Place> Discretisation<dim>::node_places() const
 {
-  find_gradients<dim>(*this, u.begin(), factor, out.data());
+  std::vector<Place> places(displacement_vector().locally_owned_size());
+  for_each_node(unknowns_->nodes(), [&](Index node, const Place &at) {
+    for (unsigned c = 0; c < 3; ++c)
+      if (const unsigned i = unknowns_->dof_of_node(node, c); i < places.size() && !unknowns_->is_removed(node, c))
+        places[i] = at;
+  });
+  return places;
 }
 
 template <int dim>
-void Discretisation<dim>::add_internal_force(std::span<const Stress> stresses, Vector &f) const
+Vector Discretisation<dim>::face_area(Face face) const
 {
-  add_stress_divergence<dim>(*this, stresses.data(), f.begin());
-  if (shared_out_)
-    f.add_ghosts_to_owners();
-}
-
-template <int dim>
-std::vector<double> Discretisation<dim>::point_pressures(const Vector &p) const
-{
-  std::vector<double> pressure(n_points(), 0.0);
-  Vector whole = p;
-  whole.update_ghost_values();
-  const std::size_t n_i = pressure_nodes_per_cell();
-  for (std::size_t q = 0; q < pressure.size(); ++q)
-    for (std::size_t i = 0; i < n_i; ++i)
-      pressure[q] += pressure_shape[q % n_gauss * n_i + i] * whole.local_element(cell_pressures[q / n_gauss * n_i + i]);
-  return pressure;
-}
-
-template <int dim>
-double Discretisation<dim>::max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
-{
-  double maximum = 0;
-  for (std::size_t cell = 0; cell < n_cells(); ++cell)
-    {
-      double modulus = 0;
-      for (std::size_t q = cell * n_gauss; q < (cell + 1) * n_gauss; ++q)
-        modulus = std::max(modulus, shear_only ? moduli[q].s : moduli[q].p);
-      maximum = std::max(maximum, modulus * cell_frequency_[cell]);
-    }
-  if (shared_out_)
-    MPI_Allreduce(MPI_IN_PLACE, &maximum, 1, MPI_DOUBLE, MPI_MAX, communicator_);
-  return maximum;
+  using namespace dealii;
+  const unsigned id = number_of<dim>(face, "load");
+  const auto &element = unknowns_->nodes().get_fe();
+  Vector area = displacement_vector();
+  FEFaceValues<dim> values(element, nodal_quadrature<dim>(element.degree), update_values | update_JxW_values);
+  std::vector<Index> node(element.n_dofs_per_cell());
+  for (const auto &cell : unknowns_->nodes().active_cell_iterators())
+    if (cell->is_locally_owned())
+      for (const unsigned f : cell->face_indices())
+        if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
+          {
+            values.reinit(cell, f);
+            cell->get_dof_indices(node);
+            for (std::size_t a = 0; a < node.size(); ++a)
+              for (unsigned q = 0; q < values.n_quadrature_points; ++q)
+                for (unsigned c = 0; c < 3; ++c)
+                  area.local_element(unknowns_->dof_of_node(node[a], c)) += values.shape_value(a, q) * values.JxW(q);
+          }
+  area.add_ghosts_to_owners();
+  return area;
 }
 
 template class Discretisation<1>;

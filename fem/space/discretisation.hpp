@@ -9,56 +9,43 @@
 
 namespace isostat
 {
-template <int dim>
-class Unknowns;
-
-/// A block of soil in finite elements: its tables (CellTables), vectors of its unknowns, and the integrals over it that
-/// a solver asks for. Displacement has three components in any dimension; the pressure is continuous of degree 1.
-///
-///     block.hpp      what the user wants: layers, widths, supports
-///     mesh.hpp       cells                                                        (deal.II)
-///     unknowns.hpp   nodes, ties, numbers of unknowns; places.hpp where they are  (deal.II)
-///     tables.hpp     the cells as flat tables                                     (made by deal.II, then free of it)
-///     integrals.hpp  strains and forces from the tables, in the time loop; cell_frequency.hpp its stable step
-///
-/// This header, and with it all that solves and writes, is free of deal.II's. `communicator` MPI_COMM_SELF: the whole
-/// problem is on this rank; else the cells are shared out (dim > 1).   tested: tests/fem/space/discretisation_test.cpp
-template <int dim>
-class Discretisation : public CellTables
+/// A block of soil in finite elements as solvers see it, of any dimension: its tables (CellTables), vectors of its
+/// unknowns, and the integrals over it that a solver asks for. Displacement has three components in any dimension; the
+/// pressure is continuous of degree 1.   tested: tests/fem/space/discretisation_test.cpp (patch tests)
+class FiniteElementSpace : public CellTables
 {
 public:
-  /// @throws InputError  a mesh that cannot be; a support on a face of an axis that is not meshed
-  Discretisation(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator = MPI_COMM_SELF);
-  ~Discretisation();
+  virtual ~FiniteElementSpace() = default;
 
   const MeshSpec &mesh() const { return mesh_; }
   const Supports &supports() const { return supports_; }
   MPI_Comm communicator() const { return communicator_; }
   bool shared_out() const { return shared_out_; } ///< over several ranks
-  const Unknowns<dim> &unknowns() const { return *unknowns_; }
 
   std::vector<unsigned> fixed_dofs;        ///< local unknowns of Supports::fixed, owned or not, in rising order
   std::vector<unsigned> drained_pressures; ///< local unknowns of Supports::drained, owned or not, in rising order
 
   /// A zero vector of displacements / of pressures.
-  Vector displacement_vector() const;
-  Vector pressure_vector() const;
+  Vector displacement_vector() const { return Vector(displacements_); }
+  Vector pressure_vector() const { return Vector(pressures_); }
 
   /// Diagonal mass by Gauss-Lobatto at the nodes, kg; 0 at unknowns that a tie has removed.
   Vector lumped_mass() const;
-  /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2.
-  Vector face_area(Face face) const;
+  /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2: int N_A over the
+  /// face by Gauss-Lobatto at the nodes.   @throws InputError  the face is of an axis that is not meshed
+  virtual Vector face_area(Face face) const = 0;
   /// Where the node of each owned displacement unknown is, m; of a tie, the node that stays.
-  std::vector<Place> node_places() const;
-  /// The local displacement unknown of `component` at the node nearest to a place, -1 if another rank owns it.
-  long find_dof(const Place &place, unsigned component) const;
-  /// The local pressure unknown nearest to a place, -1 if another rank owns it.
-  long find_pressure(const Place &place) const;
+  virtual std::vector<Place> node_places() const = 0;
+  /// The local displacement unknown of `component` at the node nearest to a place, or the pressure unknown, -1 if
+  /// another rank owns it. Collective.
+  virtual long find_dof(const Place &place, unsigned component) const = 0;
+  virtual long find_pressure(const Place &place) const = 0;
 
-  /// Displacement gradients of factor u at all points, along the axes that are meshed; the other entries of `out` stay
-  /// as they are (0).   @pre ghost entries of u are up to date   Cost: in the loop.
+  /// Displacement gradients h_cd = factor sum_A u_Ac dN_A/dx_d at all points, along the axes that are meshed; the other
+  /// entries of `out` stay as they are (0).   @pre ghost entries of u are up to date   Cost: in the loop.
   void gradients(const Vector &u, std::span<Gradient> out, double factor = 1) const;
-  /// f += int B^T sigma; what belongs to other ranks is brought home.   Cost: in the loop.
+  /// f_Ac += int sigma_cd dN_A/dx_d, the internal force of effective stresses (N); what belongs to other ranks is brought
+  /// home.   Cost: in the loop.
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
   /// Pressure at all points, Pa, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
@@ -66,12 +53,47 @@ public:
   /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held.   Cost: in the loop.
   double max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const;
 
-private:
+protected:
+  FiniteElementSpace(const MeshSpec &mesh, const Supports &supports, int dim, MPI_Comm communicator);
+
   MeshSpec mesh_;
   Supports supports_;
   bool shared_out_;
   MPI_Comm communicator_;
-  std::unique_ptr<Unknowns<dim>> unknowns_;
+  VectorPartition displacements_, pressures_;
   std::vector<double> cell_frequency_; ///< omega^2 per Pa of wave modulus
+};
+
+template <int dim>
+class Unknowns;
+
+/// The same, made by deal.II. `communicator` MPI_COMM_SELF: the whole problem is on this rank; else the cells are shared
+/// out (dim > 1).
+///
+///     block.hpp          what is requested: layers, widths, supports
+///     mesh.hpp           cells                                                    (deal.II)
+///     unknowns.hpp       nodes, ties, numbers of unknowns                         (deal.II)
+///     discretisation.cpp where unknowns are                                       (deal.II)
+///     tables.hpp         the cells as flat tables                                 (made by deal.II, then free of it)
+///     integrals.cpp      strains and forces from the tables, in the time loop; cell_frequency.cpp its stable step
+///
+/// This header, and with it all that solves and writes, is free of deal.II's.
+template <int dim>
+class Discretisation : public FiniteElementSpace
+{
+public:
+  /// @throws InputError  a mesh that cannot be; a support on a face of an axis that is not meshed
+  Discretisation(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator = MPI_COMM_SELF);
+  ~Discretisation() override;
+
+  const Unknowns<dim> &unknowns() const { return *unknowns_; }
+
+  Vector face_area(Face face) const override;
+  std::vector<Place> node_places() const override;
+  long find_dof(const Place &place, unsigned component) const override;
+  long find_pressure(const Place &place) const override;
+
+private:
+  std::unique_ptr<Unknowns<dim>> unknowns_;
 };
 } // namespace isostat

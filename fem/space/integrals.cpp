@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fem/space/integrals.hpp"
+// Strains and forces from the tables of the cells, in the time loop.
+#include "fem/space/discretisation.hpp"
+
+#include <algorithm>
 
 namespace isostat
 {
@@ -39,7 +42,7 @@ void cell_gradients(const Pointers &t, const double *u, double factor, Gradient 
                 double sum = 0;
                 for (int a = 0; a < n_nodes; ++a)
                   sum += local[a][c] * grad[a * dim + d];
-                out[q][3 * c + mesh_axes<dim>[d]] = sum;
+                out[q][3 * c + mesh_axes[dim][d]] = sum;
               }
         }
     }
@@ -57,7 +60,7 @@ void cell_forces(const Pointers &t, const Stress *stresses, double *f)
           for (int d = 0; d < dim; ++d)
             for (int c = 0; c < 3; ++c)
               {
-                const double traction = t.weight[q] * stresses[q][voigt[c][mesh_axes<dim>[d]]];
+                const double traction = t.weight[q] * stresses[q][voigt[c][mesh_axes[dim][d]]];
                 for (int a = 0; a < n_nodes; ++a)
                   local[a][c] += traction * grad[a * dim + d];
               }
@@ -68,40 +71,69 @@ void cell_forces(const Pointers &t, const Stress *stresses, double *f)
     }
 }
 
-constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
-
-/// Degree 1 has two nodes along each axis, degree 2 three.
-template <int dim>
-bool is_linear(const CellTables &t)
+/// loop<dim, nodes of a cell>() for cells as they are: degree 1 has two nodes along each axis, degree 2 three.
+template <typename Loop>
+void for_shape_of(const CellTables &t, const Loop &loop)
 {
-  return t.n_nodes == power(2, dim);
+  const bool linear = t.n_nodes == std::size_t{1} << t.dimension;
+  if (t.dimension == 1)
+    linear ? loop.template operator()<1, 2>() : loop.template operator()<1, 3>();
+  else if (t.dimension == 2)
+    linear ? loop.template operator()<2, 4>() : loop.template operator()<2, 9>();
+  else
+    linear ? loop.template operator()<3, 8>() : loop.template operator()<3, 27>();
 }
 } // namespace
 
-template <int dim>
-void find_gradients(const CellTables &tables, const double *u, double factor, Gradient *out)
+void FiniteElementSpace::gradients(const Vector &u, std::span<Gradient> out, double factor) const
 {
-  const Pointers t(tables);
-  if (is_linear<dim>(tables))
-    cell_gradients<dim, power(2, dim)>(t, u, factor, out);
-  else
-    cell_gradients<dim, power(3, dim)>(t, u, factor, out);
+  for_shape_of(*this,
+               [&]<int dim, int n>() { cell_gradients<dim, n>(Pointers(*this), u.begin(), factor, out.data()); });
 }
 
-template <int dim>
-void add_stress_divergence(const CellTables &tables, const Stress *stresses, double *f)
+void FiniteElementSpace::add_internal_force(std::span<const Stress> stresses, Vector &f) const
 {
-  const Pointers t(tables);
-  if (is_linear<dim>(tables))
-    cell_forces<dim, power(2, dim)>(t, stresses, f);
-  else
-    cell_forces<dim, power(3, dim)>(t, stresses, f);
+  for_shape_of(*this, [&]<int dim, int n>() { cell_forces<dim, n>(Pointers(*this), stresses.data(), f.begin()); });
+  if (shared_out_)
+    f.add_ghosts_to_owners();
 }
 
-#define ISOSTAT_INSTANTIATE(dim) \
-  template void find_gradients<dim>(const CellTables &, const double *, double, Gradient *); \
-  template void add_stress_divergence<dim>(const CellTables &, const Stress *, double *);
-ISOSTAT_INSTANTIATE(1)
-ISOSTAT_INSTANTIATE(2)
-ISOSTAT_INSTANTIATE(3)
+Vector FiniteElementSpace::lumped_mass() const
+{
+  Vector mass = displacement_vector();
+  for (std::size_t cell = 0; cell < n_cells(); ++cell)
+    for (std::size_t a = 0; a < n_nodes; ++a)
+      for (unsigned c = 0; c < 3; ++c)
+        mass.local_element(cell_dofs[(cell * n_nodes + a) * 3 + c]) +=
+            mesh_.soil.layers[cell_layer[cell]].density * nodal_share[cell * n_nodes + a];
+  mass.add_ghosts_to_owners();
+  return mass;
+}
+
+std::vector<double> FiniteElementSpace::point_pressures(const Vector &p) const
+{
+  std::vector<double> pressure(n_points(), 0.0);
+  Vector whole = p;
+  whole.update_ghost_values();
+  const std::size_t n_i = pressure_nodes_per_cell();
+  for (std::size_t q = 0; q < pressure.size(); ++q)
+    for (std::size_t i = 0; i < n_i; ++i)
+      pressure[q] += pressure_shape[q % n_gauss * n_i + i] * whole.local_element(cell_pressures[q / n_gauss * n_i + i]);
+  return pressure;
+}
+
+double FiniteElementSpace::max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
+{
+  double maximum = 0;
+  for (std::size_t cell = 0; cell < n_cells(); ++cell)
+    {
+      double modulus = 0;
+      for (std::size_t q = cell * n_gauss; q < (cell + 1) * n_gauss; ++q)
+        modulus = std::max(modulus, shear_only ? moduli[q].s : moduli[q].p);
+      maximum = std::max(maximum, modulus * cell_frequency_[cell]);
+    }
+  if (shared_out_)
+    MPI_Allreduce(MPI_IN_PLACE, &maximum, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+  return maximum;
+}
 } // namespace isostat

@@ -32,10 +32,16 @@ struct CellTables
 
   std::size_t n_cells() const { return cell_layer.size(); }
   std::size_t n_points() const { return weight.size(); }
-  std::size_t nodes_per_cell() const { return n_nodes; }
   std::size_t points_per_cell() const { return n_gauss; }
   std::size_t pressure_nodes_per_cell() const { return std::size_t(1) << dimension; }
 };
+
+/// Bound of each cell's largest omega^2 for rho V_p^2 = 1 Pa and a density of 1 kg/m3, 1/m2: the largest eigenvalue of
+/// its stiffness over its nodal volumes, for an isotropic skeleton. It is convex in V_s^2/V_p^2, so the larger of its
+/// values at the ends 0 and 3/4 (no bulk modulus) bounds it. omega of the mesh is at most that of its worst cell (Irons
+/// & Treharne 1971): docs/theory_column.md (10). cost: one eigenvalue problem for each shape of cell     tested:
+/// tests/fem/solve/dynamics_test.cpp
+std::vector<double> cell_frequencies(const CellTables &tables);
 
 /// Gauss points for volumes (MeshSpec::gauss_points along each axis), Gauss-Lobatto at the nodes for nodal_share.
 template <int dim>

@@ -31,7 +31,6 @@ public:
   const dealii::DoFHandler<dim> &pressure_nodes() const { return pressures_; }
   const VectorPartition &displacements() const { return displacement_partition_; }
   const VectorPartition &pressures() const { return pressure_partition_; }
-  MPI_Comm communicator() const { return communicator_; }
 
   /// Local unknown of a node, ties resolved.   @pre one of this rank's cells has the node
   unsigned dof_of_node(Index node, unsigned component) const;

@@ -42,10 +42,10 @@ std::vector<PorousLayer> porous_layers(const SoilProfile &soil)
   return layers;
 }
 
-template <int dim>
-BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, std::size_t cell)
+BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::size_t cell)
 {
-  const std::size_t n_a = space.nodes_per_cell(), n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
+  const std::size_t n_a = space.n_nodes, n_i = space.pressure_nodes_per_cell(), n_q = space.n_gauss,
+                    dim = space.dimension;
   const Eigen::MatrixXd to_u = Eigen::MatrixXd::Zero(n_i, 3 * n_a), to_p = Eigen::MatrixXd::Zero(n_i, n_i);
   BiotCell c{to_u, to_u, to_p, to_p};
   for (std::size_t i = 0; i < n_i; ++i)
@@ -57,13 +57,13 @@ BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, s
         for (std::size_t j = 0; j < n_i; ++j)
           {
             c.s(i, j) += w * layer.storage * value * space.pressure_shape[q * n_i + j];
-            for (int d = 0; d < dim; ++d)
+            for (std::size_t d = 0; d < dim; ++d)
               c.h(i, j) += w * layer.mobility * slope[d] * space.pressure_gradient[(point * n_i + j) * dim + d];
           }
         for (std::size_t a = 0; a < n_a; ++a)
-          for (int d = 0; d < dim; ++d)
+          for (std::size_t d = 0; d < dim; ++d)
             {
-              const std::size_t column = 3 * a + mesh_axes<dim>[d];
+              const std::size_t column = 3 * a + mesh_axes[dim][d];
               c.g(i, column) += w * value * space.gradient[(point * n_a + a) * dim + d];
               c.l(i, column) += w * layer.mobility * layer.fluid_density * slope[d] * space.shape[q * n_a + a];
             }
@@ -71,31 +71,28 @@ BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, s
   return c;
 }
 
-template <int dim>
-BiotOperator<dim>::BiotOperator(const Discretisation<dim> &space) : space_(space)
+BiotOperator::BiotOperator(const FiniteElementSpace &space) : space_(space)
 {
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], cell));
 }
 
-template <int dim>
-void BiotOperator<dim>::add_pore_force(const Vector &p, Vector &f) const
+void BiotOperator::add_pore_force(const Vector &p, Vector &f) const
 {
   const WithGhosts ghosts(p);
-  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = space_.pressure_nodes_per_cell();
+  const std::size_t n_u = 3 * space_.n_nodes, n_i = space_.pressure_nodes_per_cell();
   for (std::size_t cell = 0; cell < cells_.size(); ++cell)
     scatter_add(cells_[cell].g.transpose() * gathered(p, &space_.cell_pressures[cell * n_i], n_i),
                 &space_.cell_dofs[cell * n_u], f);
   f.add_ghosts_to_owners();
 }
 
-template <int dim>
-void BiotOperator<dim>::add_water_volume(const Vector &u, const Vector &p, const Vector &p_now, double theta,
-                                         Vector &r) const
+void BiotOperator::add_water_volume(const Vector &u, const Vector &p, const Vector &p_now, double theta,
+                                    Vector &r) const
 {
   const WithGhosts ghosts_u(u), ghosts_p(p), ghosts_now(p_now);
-  const std::size_t n_u = 3 * space_.nodes_per_cell(), n_i = space_.pressure_nodes_per_cell();
+  const std::size_t n_u = 3 * space_.n_nodes, n_i = space_.pressure_nodes_per_cell();
   for (std::size_t cell = 0; cell < cells_.size(); ++cell)
     {
       const BiotCell &c = cells_[cell];
@@ -106,11 +103,4 @@ void BiotOperator<dim>::add_water_volume(const Vector &u, const Vector &p, const
     }
   r.add_ghosts_to_owners();
 }
-
-template class BiotOperator<1>;
-template class BiotOperator<2>;
-template class BiotOperator<3>;
-template BiotCell biot_cell<1>(const Discretisation<1> &, const PorousLayer &, std::size_t);
-template BiotCell biot_cell<2>(const Discretisation<2> &, const PorousLayer &, std::size_t);
-template BiotCell biot_cell<3>(const Discretisation<3> &, const PorousLayer &, std::size_t);
 } // namespace isostat

@@ -25,16 +25,14 @@ struct BiotCell
 
 /// @param layer  coefficients of the cell's layer
 /// tested: tests/fem/water/pressure_system_test.cpp, tests/verification/consolidation_test.cpp
-template <int dim>
-BiotCell biot_cell(const Discretisation<dim> &space, const PorousLayer &layer, std::size_t cell);
+BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::size_t cell);
 
 /// The integrals of all cells, and their products with vectors. Displacements and pressures of other ranks are fetched
 /// and results brought home.   tested: tests/verification/consolidation_test.cpp, tests/verification/mandel_test.cpp
-template <int dim>
 class BiotOperator
 {
 public:
-  explicit BiotOperator(const Discretisation<dim> &space);
+  explicit BiotOperator(const FiniteElementSpace &space);
 
   const BiotCell &cell(std::size_t number) const { return cells_[number]; }
   /// f += G^T p, N.
@@ -43,7 +41,7 @@ public:
   void add_water_volume(const Vector &u, const Vector &p, const Vector &p_now, double theta, Vector &r) const;
 
 private:
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   std::vector<BiotCell> cells_;
 };
 } // namespace isostat

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/pressure_system.hpp"
 
-#include "fem/water/biot_entries.hpp"
+#include "fem/linear/petsc.hpp"
+#include "fem/water/biot_integrals.hpp"
+
+#include <utility>
 
 namespace isostat
 {
-template <int dim>
-struct PressureSystem<dim>::Matrices
+struct PressureSystem::Matrices
 {
   PetscMatrix storage;             ///< S/(2 dt)
   PetscMatrix to_force;            ///< G^T
@@ -20,6 +22,84 @@ struct PressureSystem<dim>::Matrices
 
 namespace
 {
+/// G, L, S and H of docs/theory_column.md (7), of all cells of this rank, as entries of sparse matrices over all ranks:
+/// rows are pressures; columns displacements (G, L, the same entries) or pressures (S, H; every diagonal one,
+/// of S also for unknowns that no cell has).
+struct BiotEntries
+{
+  PetscEntries g, l, s, h;
+  std::size_t n_pressures = 0, n_displacements = 0; ///< owned by this rank
+  MPI_Comm communicator = MPI_COMM_SELF;
+
+  BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers);
+
+  PetscMatrix coupling(double a, double b) const; ///< a G + b L
+  PetscMatrix to_force() const;                   ///< G^T
+  PetscMatrix storage(double divisor) const;      ///< S / divisor
+  PetscMatrix seepage() const;                    ///< H
+};
+
+BiotEntries::BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
+    : communicator(space.communicator())
+{
+  const Vector u = space.displacement_vector(), p = space.pressure_vector();
+  n_displacements = u.locally_owned_size();
+  n_pressures = p.locally_owned_size();
+  const std::size_t n_u = 3 * space.n_nodes, n_i = space.pressure_nodes_per_cell();
+  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
+    {
+      const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], cell);
+      for (std::size_t i = 0; i < n_i; ++i)
+        {
+          const PetscInt row = p.global_index(space.cell_pressures[cell * n_i + i]);
+          for (std::size_t j = 0; j < n_i; ++j)
+            {
+              const PetscInt column = p.global_index(space.cell_pressures[cell * n_i + j]);
+              s.add(row, column, c.s(i, j));
+              h.add(row, column, c.h(i, j));
+            }
+          for (std::size_t k = 0; k < n_u; ++k)
+            if (c.g(i, k) != 0 || c.l(i, k) != 0)
+              {
+                const PetscInt column = u.global_index(space.cell_dofs[cell * n_u + k]);
+                g.add(row, column, c.g(i, k));
+                l.add(row, column, c.l(i, k));
+              }
+        }
+    }
+  for (std::size_t i = 0; i < n_pressures; ++i)
+    s.add(p.first_owned() + i, p.first_owned() + i, 0);
+}
+
+PetscMatrix BiotEntries::coupling(double a, double b) const
+{
+  PetscEntries sum = g;
+  for (std::size_t k = 0; k < sum.values.size(); ++k)
+    sum.values[k] = a * g.values[k] + b * l.values[k];
+  return petsc_matrix(communicator, n_pressures, n_displacements, sum);
+}
+
+PetscMatrix BiotEntries::to_force() const
+{
+  PetscEntries transposed = g;
+  std::swap(transposed.rows, transposed.columns);
+  return petsc_matrix(communicator, n_displacements, n_pressures, transposed);
+}
+
+PetscMatrix BiotEntries::storage(double divisor) const
+{
+  PetscEntries scaled = s;
+  for (double &value : scaled.values)
+    value /= divisor;
+  return petsc_matrix(communicator, n_pressures, n_pressures, scaled);
+}
+
+PetscMatrix BiotEntries::seepage() const
+{
+  PetscEntries entries = h;
+  return petsc_matrix(communicator, n_pressures, n_pressures, entries);
+}
+
 /// LU of a square matrix: PETSc's own on one rank, MUMPS on several.
 PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
 {
@@ -42,8 +122,7 @@ PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
 
 /// Owned pressures that are 0: drained, or not in any cell. Soil without permeability does not feel that its surface is
 /// drained.
-template <int dim>
-std::vector<unsigned> held_pressures(const Discretisation<dim> &space, std::size_t n_owned)
+std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
 {
   std::vector<bool> is_held(n_owned, true), can_flow(n_owned, false);
   const std::size_t n_i = space.pressure_nodes_per_cell();
@@ -63,8 +142,7 @@ std::vector<unsigned> held_pressures(const Discretisation<dim> &space, std::size
   return held;
 }
 
-template <int dim>
-std::array<Vector, 3> base_flows(const Discretisation<dim> &space, const std::vector<PorousLayer> &layers)
+std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
 {
   const std::size_t n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
   std::array<Vector, 3> flows;
@@ -74,10 +152,10 @@ std::array<Vector, 3> base_flows(const Discretisation<dim> &space, const std::ve
     {
       const PorousLayer &layer = layers[space.cell_layer[point / n_q]];
       for (std::size_t i = 0; i < n_i; ++i)
-        for (int d = 0; d < dim; ++d)
-          flows[mesh_axes<dim>[d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
+        for (unsigned d = 0; d < space.dimension; ++d)
+          flows[mesh_axes[space.dimension][d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
               space.weight[point] * layer.mobility * layer.fluid_density *
-              space.pressure_gradient[(point * n_i + i) * dim + d];
+              space.pressure_gradient[(point * n_i + i) * space.dimension + d];
     }
   for (Vector &flow : flows)
     flow.add_ghosts_to_owners();
@@ -103,8 +181,7 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, Mat to_forc
 }
 } // namespace
 
-template <int dim>
-PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double time_step, const Vector &update)
+PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step, const Vector &update)
 {
   const MPI_Comm communicator = space.communicator();
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
@@ -130,16 +207,13 @@ PressureSystem<dim>::PressureSystem(const Discretisation<dim> &space, double tim
   const PetscMatrix matrix =
       pressure_matrix(entries, m.storage.get(), m.to_force.get(), time_step, m.of_u.of(update), held);
   m.of_u.release();
-  m.factor = factorised(matrix.get(), communicator, dim == 1);
+  m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
 }
 
-template <int dim>
-PressureSystem<dim>::~PressureSystem() = default;
+PressureSystem::~PressureSystem() = default;
 
-template <int dim>
-void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
-                                const Vector &p_before_that, const std::array<double, 3> &base_acceleration,
-                                Vector &p) const
+void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
+                           const Vector &p_before_that, const std::array<double, 3> &base_acceleration, Vector &p) const
 {
   const Matrices &m = *matrices_;
   const std::size_t n = m.work.locally_owned_size();
@@ -172,16 +246,11 @@ void PressureSystem<dim>::solve(const Vector &v_star, const Vector &v_before, co
   m.of_residual.release();
 }
 
-template <int dim>
-void PressureSystem<dim>::force(const Vector &p, Vector &f) const
+void PressureSystem::force(const Vector &p, Vector &f) const
 {
   const Matrices &m = *matrices_;
   petsc_check(MatMult(m.to_force.get(), m.of_p.of(p), m.of_u.of(f)));
   m.of_p.release();
   m.of_u.release();
 }
-
-template class PressureSystem<1>;
-template class PressureSystem<2>;
-template class PressureSystem<3>;
 } // namespace isostat

@@ -19,12 +19,11 @@ namespace isostat
 /// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
 /// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains).
 /// tested: tests/fem/water/pressure_system_test.cpp
-template <int dim>
 class PressureSystem
 {
 public:
   /// @param update  D: v+ per unit force, for each displacement unknown (0 where it is fixed)
-  PressureSystem(const Discretisation<dim> &space, double time_step, const Vector &update);
+  PressureSystem(const FiniteElementSpace &space, double time_step, const Vector &update);
   ~PressureSystem();
 
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2

@@ -27,12 +27,12 @@ void run(Drainage drainage)
                          .water = {}},
                 .width = {4, 3},
                 .cells_across = {2, 2}};
-  const Discretisation<dim> space(mesh, shaken_supports<dim>(false), MPI_COMM_WORLD);
+  const Discretisation<dim> space(mesh, shaken_supports(false), MPI_COMM_WORLD);
   Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
   DynamicsSettings settings{.time_step = 5e-4, .drainage = drainage};
   for (int axis = 0; axis < 3; ++axis)
     settings.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, 0.1, 1e-3);
-  Dynamics<dim> run(space, material, settings);
+  Dynamics run(space, material, settings);
   for (int k = 0; k < 400; ++k)
     run.step();
   const long top = space.find_dof({0, 0, 10}, 0), middle = space.find_pressure({0, 0, 6});

@@ -92,7 +92,7 @@ struct Terzaghi
 
   Discretisation<1> space;
   Elastic soil;
-  Statics<1> statics;
+  Statics statics;
   double biot_modulus, storage, seconds_per_tv;
 };
 } // namespace

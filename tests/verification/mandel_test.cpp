@@ -79,7 +79,7 @@ struct Mandel
   ElasticParameters elastic{.shear_modulus = 5e7, .poisson_ratio = 0.2};
   Discretisation<2> space;
   Elastic soil;
-  Statics<2> statics;
+  Statics statics;
   double skempton, nu_u, seconds;
   std::vector<double> roots;
 };

@@ -81,7 +81,7 @@ private:
 
 Discretisation<1> column(double height, unsigned cells)
 {
-  return Discretisation<1>({.soil = one_layer(height, 1970, cells), .degree = 1}, shaken_supports<1>(false));
+  return Discretisation<1>({.soil = one_layer(height, 1970, cells), .degree = 1}, shaken_supports(false));
 }
 } // namespace
 
@@ -94,7 +94,7 @@ TEST(RveColumn, OneElementIsThePackingAloneToTheBit)
   Recording material(packing);
   DynamicsSettings settings{.safety = 0.5, .drainage = Drainage::undrained};
   settings.motion[0] = harmonic_motion(45, 4, 2, 0.2, 1e-3);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   RveSettings same; // in its own axes, as an element test
   same.min_steps = RveMaterialSettings{}.min_steps;
   Rve alone(specimen, same);
@@ -121,7 +121,7 @@ std::vector<std::complex<double>> transfer(const Discretisation<1> &space, Mater
   DynamicsSettings settings{.time_step = time_step, .mass_damping = 20, .drainage = Drainage::undrained};
   settings.motion[0] = ricker_motion(amplitude, 12, 0.12, 5e-4);
   Recording record(material);
-  Dynamics<1> run(space, record, settings);
+  Dynamics run(space, record, settings);
   const auto top = static_cast<unsigned>(space.find_dof({0, 0, space.mesh().soil.height()}, 0));
   std::vector<std::complex<double>> surface(frequencies.size()), base(frequencies.size());
   std::vector<double> gamma(space.n_points(), 0.0);
@@ -156,7 +156,7 @@ TEST(RveColumn, TinyMotionMeetsTheStiffnessOfThePackings)
   std::vector<Stiffness> stiffnesses(4);
   packings.skeleton_stiffness(stiffnesses);
   GivenStiffness twin(stiffnesses, packings);
-  const double step = 0.5 * Dynamics<1>(space, twin, {.drainage = Drainage::undrained}).stable_step();
+  const double step = 0.5 * Dynamics(space, twin, {.drainage = Drainage::undrained}).stable_step();
   double gamma = 0, gamma_of_twin = 0, worst = 0, peak = 0;
   const auto elastic = transfer(space, twin, 1e-3, step, frequencies, gamma_of_twin);
   const auto grains = transfer(space, packings, 1e-3, step, frequencies, gamma);

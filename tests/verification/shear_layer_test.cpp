@@ -23,12 +23,12 @@ struct Setting
 double transfer_error(const ShearLayer &layer, const Setting &setting)
 {
   SoilProfile soil = one_layer(layer.height, layer.density, setting.cells);
-  const Discretisation<1> space({.soil = soil, .degree = setting.degree}, shaken_supports<1>(setting.compliant));
+  const Discretisation<1> space({.soil = soil, .degree = setting.degree}, shaken_supports(setting.compliant));
   Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
   DynamicsSettings settings{.time_step = setting.time_step, .mass_damping = layer.mass_damping};
   settings.base.kind = setting.compliant ? BaseKind::compliant : BaseKind::rigid;
   settings.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   const long surface = space.find_dof({0, 0, layer.height}, 0);
   std::vector<double> top, below;
   while (run.time() < setting.duration)
@@ -113,13 +113,13 @@ TEST(ShearLayer, SecondOrderInTheMeshOrBetter)
 TEST(ShearLayer, AbsorbingBaseReturnsNothing)
 {
   const ShearLayer layer;
-  const Discretisation<1> space({.soil = one_layer(layer.height, layer.density, 80)}, shaken_supports<1>(true));
+  const Discretisation<1> space({.soil = one_layer(layer.height, layer.density, 80)}, shaken_supports(true));
   Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
   DynamicsSettings settings;
   settings.base = {
       .kind = BaseKind::compliant, .density = layer.density, .shear_velocity = layer.velocity, .p_velocity = {}};
   settings.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   const long surface = space.find_dof({0, 0, layer.height}, 0);
   const double travel = layer.height / layer.velocity;
   double worst = 0, left = 0, peak = 0;

@@ -2,7 +2,7 @@
 #include "base/files/hdf5.hpp"
 
 #include "base/error.hpp"
-#include "base/files/hdf5_bytes.hpp"
+#include "base/files/hdf5.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
-extern "C" int H5close(void); // of HDF5, whose header wants MPI's
+extern "C" int H5close(void); // of HDF5, whose header needs MPI's
 
 namespace isostat
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "coupling/in_situ/recipe.hpp"
+#include "coupling/in_situ/in_situ.hpp"
 
 #include <gmock/gmock.h>
 

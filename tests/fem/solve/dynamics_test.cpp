@@ -54,7 +54,7 @@ Discretisation<dim> block(unsigned cells = 10, unsigned across = 1, MPI_Comm com
   MeshSpec mesh{.soil = one_layer(20, 2000, cells), .width = {2, 3}, .cells_across = {across, across}};
   mesh.soil.layers[0].permeability = 1e-3;
   mesh.points_per_direction = 2;
-  return Discretisation<dim>(mesh, shaken_supports<dim>(false), communicator);
+  return Discretisation<dim>(mesh, shaken_supports(false), communicator);
 }
 
 /// Surface displacement (x, z) after some steps of a shaken and loaded column of `dim`.
@@ -68,7 +68,7 @@ std::array<double, 4> surface_after(Drainage drainage, unsigned across)
   settings.time_step = 8e-4;
   settings.motion[2] = ricker_motion(0.3, 4, 0.5, 1e-3);
   settings.surface_traction = [](double t) { return std::array<double, 3>{0, 0, -1e3 * std::min(1.0, t / 0.2)}; };
-  Dynamics<dim> run(space, material, settings);
+  Dynamics run(space, material, settings);
   for (int k = 0; k < 1500; ++k)
     run.step();
   const std::array<double, 3> top = {0, 0, 20};
@@ -87,7 +87,7 @@ TEST(Dynamics, ColumnAtRestStaysAtRestToTheBit)
       for (const auto &at : space.position)
         initial.push_back({-5e3 * (20 - at[2]), -5e3 * (20 - at[2]), -1e4 * (20 - at[2]), 0, 0, 0});
       material.set_initial_stress(initial);
-      Dynamics<1> run(space, material, {.drainage = drainage});
+      Dynamics run(space, material, {.drainage = drainage});
       for (int k = 0; k < 10000; ++k)
         run.step();
       EXPECT_EQ(run.displacement().linfty_norm(), 0);
@@ -101,7 +101,7 @@ TEST(Dynamics, EnergyBalanceOfAnUndampedRun)
   const Discretisation<1> space = block<1>(40);
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
   const double shear = 2000 * 200 * 200, lame = shear; // nu = 0.25
-  Dynamics<1> run(space, material, shaken());
+  Dynamics run(space, material, shaken());
   double largest = 0, worst = 0, worst_stored = 0;
   for (int k = 0; k < 10000; ++k)
     {
@@ -130,12 +130,12 @@ TEST(Dynamics, StepAboveTheStableOneIsRefused)
 {
   const Discretisation<1> space = block<1>();
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
-  const double stable = Dynamics<1>(space, material, {}).stable_step();
+  const double stable = Dynamics(space, material, {}).stable_step();
   EXPECT_NEAR_BECAUSE(stable, 2 / std::sqrt(24) * 2 / (200 * std::sqrt(3)), 1e-9,
                       "tolerance of the power iteration"); // degree 2: omega h/c = sqrt(24)
   try
     {
-      Dynamics<1>(space, material, {.time_step = 1.01 * stable});
+      Dynamics(space, material, {.time_step = 1.01 * stable});
       FAIL();
     }
   catch (const InputError &error)
@@ -148,7 +148,7 @@ TEST(Dynamics, StableStepIsABoundAndClose)
 {
   const Discretisation<2> space = block<2>(6, 2);
   Stiffening material(space.n_points(), false);
-  Dynamics<2> run(space, material, {});
+  Dynamics run(space, material, {});
   // Largest omega^2 of the mesh by power iteration on M^-1 K.
   const Vector mass = space.lumped_mass();
   Vector x = space.displacement_vector(), f = x;
@@ -187,7 +187,7 @@ TEST(Dynamics, StiffeningIsFoundBeforeItExplodes)
   for (const bool honest : {true, false})
     {
       Stiffening material(space.n_points(), honest);
-      Dynamics<1> run(space, material, shaken());
+      Dynamics run(space, material, shaken());
       for (int k = 0; k < 500; ++k)
         run.step();
       material.factor = 16; // shear waves, which alone are there, have sqrt(3) of room
@@ -236,7 +236,7 @@ TEST(Dynamics, RestoredRunGoesOnToTheSameBits)
       settings.drainage = drainage;
       settings.lagged_compressibility = drainage == Drainage::undrained;
       Elastic first = elastic_of(space.n_points(), 2000, 200, 0.25), second = first;
-      Dynamics<1> whole(space, first, settings), resumed(space, second, settings);
+      Dynamics whole(space, first, settings), resumed(space, second, settings);
       for (int k = 0; k < 300; ++k)
         whole.step();
       const SolverState saved = whole.save();
@@ -258,7 +258,7 @@ TEST(Dynamics, StateOfAnotherMeshIsRefused)
   const Discretisation<1> space = block<1>(), other = block<1>(11);
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
   Elastic of_other = elastic_of(other.n_points(), 2000, 200, 0.25);
-  Dynamics<1> run(space, material, {.time_step = 1e-4}), into(other, of_other, {.time_step = 1e-4});
+  Dynamics run(space, material, {.time_step = 1e-4}), into(other, of_other, {.time_step = 1e-4});
   EXPECT_THROW(into.restore(run.save()), InputError);
 }
 
@@ -277,11 +277,11 @@ TEST(Dynamics, SettingsThatCannotBeAreRefused)
   };
   const Discretisation<2> plane = block<2>(2);
   Elastic in_plane = elastic_of(plane.n_points(), 2000, 200, 0.25);
-  EXPECT_THAT(message([&] { Dynamics<2>(plane, in_plane, {.drainage = Drainage::undrained}); }),
+  EXPECT_THAT(message([&] { Dynamics(plane, in_plane, {.drainage = Drainage::undrained}); }),
               HasSubstr("columns only"));
-  const Discretisation<1> linear({.soil = one_layer(20, 2000, 4), .degree = 1}, shaken_supports<1>(false));
+  const Discretisation<1> linear({.soil = one_layer(20, 2000, 4), .degree = 1}, shaken_supports(false));
   Elastic few = elastic_of(linear.n_points(), 2000, 200, 0.25);
-  EXPECT_THAT(message([&] { Dynamics<1>(linear, few, {.drainage = Drainage::coupled}); }), HasSubstr("degree = 2"));
+  EXPECT_THAT(message([&] { Dynamics(linear, few, {.drainage = Drainage::coupled}); }), HasSubstr("degree = 2"));
   EXPECT_THAT(message([&] { Discretisation<1>({.soil = one_layer(0, 2000, 4)}, {}); }), HasSubstr("thickness"));
   SoilProfile soil = one_layer(5, 2000, 4);
   soil.layers[0].permeability = -1e-5;

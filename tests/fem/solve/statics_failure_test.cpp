@@ -28,7 +28,7 @@ TEST(StaticsFailure, RefusedIncrementsAreHalved)
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
   SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
   soil.largest_increment = 5e-4;
-  Statics<1> statics(space, soil, sheared(0.8e5));
+  Statics statics(space, soil, sheared(0.8e5));
   statics.step(1);
   const double u = statics.displacement().local_element(space.find_dof({0, 0, 1}, 0)), exact = 0.8e5 / 5e7 / 0.2;
   std::printf("refused %u times: %u sub-steps, %u rejected, error %.1e\n", soil.refusals, statics.effort().substeps,
@@ -53,7 +53,7 @@ TEST(StaticsFailure, MoreThanTheStrength)
   settings.tractions = {{Face::surface, [](double t, const Place &) {
                            return Place{t <= 1.5 ? 1e5 * t : 0.5e5, 0, 0};
                          }}};
-  Statics<1> statics(space, soil, settings);
+  Statics statics(space, soil, settings);
   EXPECT_THAT([&] { statics.step(1.5); },
               ThrowsMessage<RunFailure>(AllOf(HasSubstr("no equilibrium in step 1"), HasSubstr("residual"),
                                               HasSubstr("the last with equilibrium"))));
@@ -84,7 +84,7 @@ TEST(StaticsFailure, MaterialThatNeverAnswers)
 {
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
   SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
-  Statics<1> statics(space, soil, sheared(0.5e5));
+  Statics statics(space, soil, sheared(0.5e5));
   statics.step(0.5);
   const SolverState before = statics.save();
   soil.largest_strain = 0;
@@ -102,7 +102,7 @@ TEST(StaticsFailure, ABodyThatIsNotHeld)
   Supports free;
   const Discretisation<1> space(sheared_column_mesh(1), free);
   Elastic soil({5e7, 0.3}, space.n_points());
-  Statics<1> statics(space, soil, sheared(1e4));
+  Statics statics(space, soil, sheared(1e4));
   EXPECT_THROW(statics.step(1), RunFailure);
 }
 
@@ -110,21 +110,21 @@ TEST(StaticsFailure, Mistakes)
 {
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
   Elastic soil({5e7, 0.3}, space.n_points()), other({5e7, 0.3}, 3);
-  EXPECT_THAT([&] { Statics<1>(space, other, {}); }, ThrowsMessage<InputError>(HasSubstr("the material has 3 points")));
+  EXPECT_THAT([&] { Statics(space, other, {}); }, ThrowsMessage<InputError>(HasSubstr("the material has 3 points")));
   StaticsSettings free;
   free.displacements = {{{Face::surface, 0}, [](double, const Place &) { return 1.0; }}};
-  EXPECT_THAT([&] { Statics<1>(space, soil, free); },
+  EXPECT_THAT([&] { Statics(space, soil, free); },
               ThrowsMessage<InputError>(HasSubstr("u_x of face surface, which is free")));
-  EXPECT_THAT([&] { Statics<1>(space, soil, {.newton = {.tolerance = 0}}); },
+  EXPECT_THAT([&] { Statics(space, soil, {.newton = {.tolerance = 0}}); },
               ThrowsMessage<InputError>(HasSubstr("tolerance")));
-  EXPECT_THROW(Statics<1>(space, soil, {.newton = {.max_iterations = 0}}), InputError);
+  EXPECT_THROW(Statics(space, soil, {.newton = {.max_iterations = 0}}), InputError);
   MeshSpec linear = sheared_column_mesh();
   linear.degree = 1;
   const Discretisation<1> coarse(linear, fixed_base());
   Elastic few({5e7, 0.3}, coarse.n_points());
-  EXPECT_THAT([&] { Statics<1>(coarse, few, {.pore_water = true}); },
+  EXPECT_THAT([&] { Statics(coarse, few, {.pore_water = true}); },
               ThrowsMessage<InputError>(HasSubstr("pore water with degree 1")));
-  Statics<1> wet(space, soil, {.pore_water = true}), dry(space, soil, {});
+  Statics wet(space, soil, {.pore_water = true}), dry(space, soil, {});
   EXPECT_THROW(wet.step(0), InputError);
   EXPECT_THROW(wet.step(-1), InputError);
   EXPECT_THROW(dry.step_undrained(), InputError);

@@ -70,7 +70,7 @@ struct Footing
 
   Discretisation<dim> space;
   Elastic soil;
-  Statics<dim> statics;
+  Statics statics;
 };
 
 template <int dim>

@@ -35,7 +35,7 @@ struct Sand
   }
   Discretisation<1> space;
   Iwan soil;
-  Statics<1> statics;
+  Statics statics;
 };
 } // namespace
 
@@ -66,7 +66,7 @@ TEST(StaticsState, SandUnderShearThatDrains)
 TEST(StaticsState, ResumesToTheBit)
 {
   Sand whole, first, second;
-  const auto some_steps = [](Statics<1> &statics) {
+  const auto some_steps = [](Statics &statics) {
     for (int k = 0; k < 12; ++k)
       statics.step(0.01 + 0.002 * (k % 3));
   };
@@ -105,7 +105,7 @@ TEST(StaticsState, RestStaysAtRest)
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
   Iwan soil(IwanParameters{}, space.n_points());
   Sand::start(soil);
-  Statics<1> statics(space, soil, {.pore_water = true});
+  Statics statics(space, soil, {.pore_water = true});
   const SolverState before = statics.save();
   for (int k = 0; k < 3; ++k)
     statics.step(10);

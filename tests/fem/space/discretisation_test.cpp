@@ -46,7 +46,7 @@ void patch_test(unsigned degree)
   std::vector<Gradient> found(space.n_points());
   space.gradients(linear_field(space, h), found);
   for (std::size_t i = 0; i < 9; ++i) // along axes that are not meshed nothing varies
-    if (std::find(mesh_axes<dim>.begin(), mesh_axes<dim>.end(), static_cast<int>(i % 3)) == mesh_axes<dim>.end())
+    if (std::find(mesh_axes[dim].begin(), mesh_axes[dim].end(), static_cast<int>(i % 3)) == mesh_axes[dim].end())
       h[i] = 0;
   double worst = 0;
   for (const Gradient &g : found)
@@ -66,7 +66,7 @@ void patch_test(unsigned degree)
   for (std::size_t i = 0; i < places.size(); ++i)
     {
       bool on_boundary = false;
-      for (int axis : mesh_axes<dim>)
+      for (int axis : mesh_axes[dim])
         on_boundary = on_boundary || places[i][axis] < 1e-9 || places[i][axis] > high[axis] - 1e-9;
       if (!on_boundary)
         inside = std::max(inside, std::abs(f.local_element(i)));

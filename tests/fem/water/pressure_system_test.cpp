@@ -49,17 +49,17 @@ std::array<double, 2> response(const Regime &regime)
                                                   .porosity = 0.33,
                                                   .permeability = regime.permeability,
                                                   .cells = static_cast<unsigned>(cells)});
-  const Discretisation<1> space({.soil = soil}, shaken_supports<1>(false));
+  const Discretisation<1> space({.soil = soil}, shaken_supports(false));
   Elastic material({.shear_modulus = 0.375e8, .poisson_ratio = 0.2}, space.n_points()); // D = K + 4G/3 = 1e8
   DynamicsSettings settings{.drainage = Drainage::coupled};
   const double omega = 2 * std::numbers::pi * regime.frequency;
   settings.surface_traction = [=](double t) {
     return std::array<double, 3>{0, 0, 1e3 * std::sin(omega * t) * std::min(1.0, t * regime.frequency / 4)};
   };
-  const double wanted = Dynamics<1>(space, material, settings).time_step();
-  const auto per_period = static_cast<std::size_t>(std::ceil(1 / (regime.frequency * wanted)));
+  const double stable = Dynamics(space, material, settings).time_step();
+  const auto per_period = static_cast<std::size_t>(std::ceil(1 / (regime.frequency * stable)));
   settings.time_step = 1 / (regime.frequency * per_period);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   const long top = space.find_dof({0, 0, 10}, 2), base = space.find_pressure({0, 0, 0});
   std::vector<double> u, p;
   for (std::size_t k = 0; k < per_period * regime.periods; ++k)
@@ -103,7 +103,7 @@ Shaken shake(Drainage drainage, double permeability, double water_modulus, bool 
   SoilProfile soil = one_layer(10, 1900, 20);
   soil.layers[0].permeability = permeability;
   soil.water.bulk_modulus = water_modulus;
-  const Discretisation<1> space({.soil = soil}, shaken_supports<1>(false));
+  const Discretisation<1> space({.soil = soil}, shaken_supports(false));
   Iwan material({}, space.n_points());
   std::vector<Stress> initial;
   for (const auto &at : space.position)
@@ -114,7 +114,7 @@ Shaken shake(Drainage drainage, double permeability, double water_modulus, bool 
   material.set_initial_stress(initial);
   DynamicsSettings settings{.time_step = 2e-4, .drainage = drainage, .lagged_compressibility = lagged};
   settings.motion[0] = harmonic_motion(0.5, 2, 3, 1, 1e-3);
-  Dynamics<1> run(space, material, settings);
+  Dynamics run(space, material, settings);
   const long top = space.find_dof({0, 0, 10}, 0);
   Shaken found;
   while (run.time() < 3)
