@@ -116,12 +116,12 @@ double Assembly::move_grains(const AffineStep *affine)
 {
   const double dt = settings.time_step, speed_limit = explosion_speed(min_radius_, dt);
   const Partition &partition = forces_.list().partition();
+  const LeapfrogStep how{dt, settings.damping, speed_limit, settings.measure_energy, affine};
   forces_known_ = false;
   motion_reports_.resize(partition.n_chunks);
   forces_.finish_step(force_input(), [&](std::size_t chunk) {
     motion_reports_[chunk] =
-        integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), forces_.action().data(), dt,
-                  settings.damping, speed_limit, settings.measure_energy, affine);
+        integrate(packing_, partition.begin(chunk), partition.begin(chunk + 1), forces_.action().data(), how);
   });
   const MotionReport report = sum_of(motion_reports_);
   if (report.exploded)
