@@ -287,7 +287,7 @@ TEST(Convergence, RotationOfHistoryIsOfFirstOrder)
 /// The stored packing of 1,000 grains at 200 kPa, grains at rest at t = 0.
 Snapshot packing_at_rest(const LinearRolling &law)
 {
-  Snapshot s = import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", "comp", "step0", law, 2650);
+  Snapshot s = import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", law, 2650);
   set_velocities(s.grains, s.grains, -1, s.grains);
   return s;
 }

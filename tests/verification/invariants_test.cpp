@@ -79,7 +79,7 @@ Momentum momentum(const Packing &grains)
 
 Snapshot reference_packing(const std::string &name)
 {
-  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, "comp", "step0", paper_law(), 2650);
+  return import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, paper_law(), 2650);
 }
 
 /// The stored packing at rest with its forces.
