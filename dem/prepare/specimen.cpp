@@ -91,9 +91,9 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
   const SpecimenSpec &spec = scene.specimen;
   const Preparation how{spec, observer, threads};
   const Cloud cloud = make_cloud(scene.grading);
-  const GradingReport grading = grading_report(scene.grading);
   observer.event(fmt::format("cloud: {} grains, d50 {:.3f} mm (scaled up {:.2f} times), Cu {:.2f}, sizes 1:{:.2f}",
-                             cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling, grading.uniformity,
+                             cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
+                             uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
   PreparedDensity prepared;
   Specimen specimen;
