@@ -76,6 +76,8 @@ struct RveState
 {
   AssemblyState grains;
   RveDrive drive;
+
+  ISOSTAT_FIELDS(grains, drive)
   std::size_t bytes() const { return grains.bytes() + sizeof(RveDrive); }
 };
 
