@@ -49,7 +49,7 @@ private:
     state_.loading = {};
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
-    state_.pace.rate = RateControl(programme_.motion, std::nullopt).initial_rate();
+    state_.pace.rate = initial_rate(programme_.motion);
     stage_.begin(context_);
   }
 

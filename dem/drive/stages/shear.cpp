@@ -47,7 +47,7 @@ const ShearMode simple_shear_mode{
 void ShearStage::begin(const StageContext &c) const
 {
   c.state.loading.direction = direction;
-  c.state.pace.rate = RateControl(c.motion, strain_rate).initial_rate();
+  c.state.pace.rate = initial_rate(c.motion, strain_rate);
 }
 
 void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
@@ -68,7 +68,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
 {
   DriveState &state = c.state;
   if (state.place.steps % rate_interval == 0)
-    RateControl(c.motion, strain_rate).update(c.assembly, seen.p, state.path.p0(), state.pace);
+    update_rate(c.motion, strain_rate, c.assembly, seen.p, state.path.p0(), state.pace);
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step;
   update_slope(loading, present, state.place.steps);
