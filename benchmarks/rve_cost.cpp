@@ -8,7 +8,6 @@
 //
 //   rve_cost --grains 1000 --rounds 7
 #include "apps/common/command_line.hpp"
-#include "dem/drive/strain_path.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
@@ -38,7 +37,7 @@ double median(std::vector<double> values)
 class Sheared
 {
 public:
-  explicit Sheared(const Snapshot &specimen) : assembly(specimen), path_{specimen.box}
+  explicit Sheared(const Snapshot &specimen) : assembly(specimen), reference_{specimen.box}
   {
     assembly.settings.time_step =
         0.8 * critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
@@ -54,7 +53,7 @@ public:
         if (assembly.cell())
           assembly.deform(Mat3(isochoric(step).asDiagonal()));
         else
-          assembly.move(path_.box(isochoric(axial_)));
+          assembly.move(reference_.strained(isochoric(axial_)));
       }
   }
   std::size_t contacts()
@@ -67,7 +66,7 @@ public:
   double stress = 0;
 
 private:
-  StrainPath path_;
+  RigidBox reference_;
   double axial_ = 0;
 };
 

@@ -12,7 +12,6 @@
 #include "base/files/replace_file.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
-#include "dem/drive/strain_path.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/measure/stress.hpp"
@@ -85,7 +84,7 @@ void measure(const Options &options)
   assembly.settings.time_step = options.time_step;
   assembly.settings.threads = options.threads;
   assembly.settings.damping = options.damping;
-  const StrainPath path{assembly.box()};
+  const RigidBox reference = assembly.box();
   double axial = 0, stress = 0;
   const auto run = [&](int steps) {
     for (int k = 0; k < steps; ++k)
@@ -93,7 +92,7 @@ void measure(const Options &options)
         assembly.compute_forces();
         stress += invariants(assembly.wall_stress()).q; // what a driver looks at every step
         axial += options.rate * options.time_step;
-        assembly.move(path.box(isochoric(axial)));
+        assembly.move(reference.strained(isochoric(axial)));
       }
   };
   run(options.warm_up);

@@ -96,7 +96,7 @@ void BlockFiles::map(double axial_strain, const Statics &statics)
         continue;
       const Micromechanics grains = micromechanics(material_.grains->element(q)->snapshot());
       point.void_ratio = grains.void_ratio;
-      point.redundancy = grains.redundancy;
+      point.redundancy = grains.network.redundancy_index();
     }
   for (std::size_t k = 0; k < rows_.size(); ++k)
     for (const PointState &point : points)

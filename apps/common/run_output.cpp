@@ -52,7 +52,7 @@ void RunOutput::record(const Assembly &assembly, const DriveState &state, const 
 {
   Snapshot now = assembly.snapshot();
   const Micromechanics m = micromechanics(now);
-  written_.redundancy = m.redundancy;
+  written_.redundancy = m.network.redundancy_index();
   recorder_.append(history_row(scene_, assembly, state, seen, m));
   if (!snapshot)
     return;

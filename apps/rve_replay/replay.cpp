@@ -129,7 +129,7 @@ ReplayResult replay(const StrainRecord &record, const ReplayChanges &changes, co
       if ((k + 1) % every == 0)
         {
           const Micromechanics m = micromechanics(element.rve().snapshot());
-          result.min_redundancy = std::min(result.min_redundancy, m.redundancy);
+          result.min_redundancy = std::min(result.min_redundancy, m.network.redundancy_index());
           files.micromechanics(k + 1, record.time[k], m);
         }
       tell(k + 1);

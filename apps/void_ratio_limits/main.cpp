@@ -78,7 +78,7 @@ void keep(const fs::path &path, const Scene &scene, const Snapshot &state, const
   specimen.numbers["seed"] = static_cast<double>(scene.grading.seed);
   specimen.numbers["grains"] = static_cast<double>(state.grains.n_grains());
   specimen.numbers["d50_m"] = state.grains.d50();
-  specimen.numbers["coordination"] = micromechanics(state).coordination;
+  specimen.numbers["coordination"] = micromechanics(state).network.coordination_number();
   write_specimen(path, specimen);
 }
 
@@ -101,7 +101,7 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"pressure", "Pa", scene.specimen.pressure},
           {"young", "Pa", scene.contact->young},
           {"friction", "deg", (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0},
-          {"coordination_dense", "-", micromechanics(dense.state).coordination},
+          {"coordination_dense", "-", micromechanics(dense.state).network.coordination_number()},
           {"fall", "-", how.fall},
           {"fall_speed", "m/s", loose.fall_speed},
           {"deposition_damping", "-", how.damping},
@@ -109,7 +109,7 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"deposit_height", "m", loose.height},
           {"max_overlap", "d50", loose.max_overlap},
           {"resting_overlap", "d50", loose.resting_overlap},
-          {"coordination_loose", "-", micromechanics(state).coordination}};
+          {"coordination_loose", "-", micromechanics(state).network.coordination_number()}};
 }
 
 void write_limits(const fs::path &folder, const std::vector<Value> &values)

@@ -4,6 +4,7 @@
 #include "base/files/hdf5.hpp"
 #include "base/types.hpp"
 
+#include <map>
 #include <optional>
 #include <type_traits>
 
@@ -40,6 +41,14 @@ void write_field(Group &group, const std::string &name, const std::optional<T> &
   if (value)
     write_field(group, name, *value);
 }
+/// A map as a group of attributes.
+template <class T>
+void write_field(Group &group, const std::string &name, const std::map<std::string, T> &values)
+{
+  Group below = group.create_group(name);
+  for (const auto &[key, value] : values)
+    below.set_attribute(key, value);
+}
 
 /// The way back.  @throws InputError naming the field that is missing or of another type
 template <class T>
@@ -64,5 +73,12 @@ void read_field(const Group &group, const std::string &name, std::optional<T> &v
   value.reset();
   if (group.has(name) || group.has_attribute(name))
     read_field(group, name, value.emplace());
+}
+template <class T>
+void read_field(const Group &group, const std::string &name, std::map<std::string, T> &values)
+{
+  const Group below = group.group(name);
+  for (const std::string &key : below.attribute_names())
+    values[key] = below.attribute<T>(key);
 }
 } // namespace isostat::hdf5

@@ -53,11 +53,6 @@ KeyRun splice(std::string section, SceneFragment<Part> fragment, unsigned kinds,
   return {fragment.keys, std::move(section), kinds, part};
 }
 
-/// The keys of an array of tables whose kinds describe their own: kind k takes keys_of_kinds[k], in their order. Keys of
-/// one path stand side by side (the manual joins those that read alike); any other stands before the next one of its
-/// kind that is there already.
-std::vector<Key> interleave(std::span<const std::vector<Key>> keys_of_kinds);
-
 /// The keys of a kind of scene, or of a fragment made of others, in the order in which they are written.
 /// tested: tests/base/scene/fragment_test.cpp
 class KeyTable

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/assembly/assembly_state.hpp"
 #include "dem/assembly/contact_forces.hpp"
 #include "dem/assembly/energy_meter.hpp"
 #include "dem/assembly/wall_forces.hpp"
@@ -10,6 +9,30 @@
 
 namespace isostat
 {
+/// Bytes in use.
+struct MemoryUse
+{
+  std::size_t state;   ///< what the next step depends on: grains, and pair and history of closed contacts
+  std::size_t working; ///< the rest: pairs that are only near, slots, forces, positions the lists were made from
+};
+
+/// What the next step of a periodic assembly depends on, besides sizes, masses and law: 15 numbers a grain, 12 and a
+/// pair of indices for each closed contact.
+/// tested: tests/dem/rve/rve_test.cpp
+struct AssemblyState
+{
+  std::vector<double> grains; ///< x (3), v (3), spin (3), force (3), torque (3) of each grain; SI
+  std::vector<ContactList::Pair> pairs;
+  std::vector<double> history; ///< n', fs, [mb], [mt] of each pair
+  Mat3 virial = Mat3::Zero();  ///< sum of F b, J
+  PeriodicCell cell;
+  double time = 0, time_step = 0;
+  std::uint64_t step = 0;
+
+  ISOSTAT_FIELDS(grains, pairs, history, virial, cell, time, time_step, step)
+  std::size_t bytes() const;
+};
+
 /// The granular assembly in its rigid box or periodic cell, and one time step of it in two halves:
 ///
 ///     compute_forces()    x, v, history  ->  contact and wall forces, new history

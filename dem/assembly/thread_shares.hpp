@@ -61,9 +61,9 @@ private:
     for (std::size_t t = 0; t + 1 < threads_.size(); ++t)
       {
         sum += threads_[t].speed;
-        const double wanted = cost_before(n_chunks) * sum / total;
+        const double target = cost_before(n_chunks) * sum / total;
         std::size_t chunk = begin_.back();
-        while (chunk < n_chunks && cost_before(chunk) + cost_before(chunk + 1) < 2 * wanted)
+        while (chunk < n_chunks && cost_before(chunk) + cost_before(chunk + 1) < 2 * target)
           ++chunk;
         begin_.push_back(chunk);
       }

@@ -14,7 +14,7 @@ namespace isostat
 namespace HWY_NAMESPACE
 {
 /// Adds to each grain what its ghosts have, and clears them.
-void AddGhosts(const Ghost *ghosts, std::size_t n, double *action)
+void add_ghosts(const Ghost *ghosts, std::size_t n, double *action)
 {
   const D d;
   for (std::size_t g = 0; g < n; ++g)
@@ -27,7 +27,7 @@ void AddGhosts(const Ghost *ghosts, std::size_t n, double *action)
       }
 }
 
-const char *InstructionSet() { return hwy::TargetName(HWY_TARGET); }
+const char *instruction_set() { return hwy::TargetName(HWY_TARGET); }
 } // namespace HWY_NAMESPACE
 } // namespace isostat
 HWY_AFTER_NAMESPACE();
@@ -35,14 +35,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isostat
 {
-HWY_EXPORT(AddGhosts);
-HWY_EXPORT(InstructionSet);
+HWY_EXPORT(add_ghosts);
+HWY_EXPORT(instruction_set);
 
 void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
 {
-  HWY_DYNAMIC_DISPATCH(AddGhosts)(list.ghosts(chunk).data(), list.ghosts(chunk).size(), action);
+  HWY_DYNAMIC_DISPATCH(add_ghosts)(list.ghosts(chunk).data(), list.ghosts(chunk).size(), action);
 }
 
-std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
+std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
 } // namespace isostat
 #endif

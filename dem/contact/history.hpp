@@ -2,6 +2,7 @@
 #pragma once
 #include "base/types.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -42,13 +43,7 @@ struct HistoryLayout
   std::array<bool, history_vectors.size()> keeps{};
   std::size_t n_own = 0;
 
-  std::size_t n_components() const
-  {
-    std::size_t n = n_own;
-    for (const bool kept : keeps)
-      n += kept ? 3 : 0;
-    return n;
-  }
+  std::size_t n_components() const { return 3 * std::count(keeps.begin(), keeps.end(), true) + n_own; }
   bool operator==(const HistoryLayout &) const = default;
 };
 } // namespace isostat

@@ -60,8 +60,7 @@ struct ContactLaw
   virtual const char *name() const = 0; ///< as `contact.law` in scenes
   virtual std::unique_ptr<ContactLaw> clone() const = 0;
   /// The parameters as keys of the section [contact], "young"; fields are doubles and bools, found by law_field
-  /// (law_parameters.hpp). Names
-  /// in files and bytes, keys of caches and equality of laws follow from this table.
+  /// (law_parameters.hpp). Names in files and bytes, keys of caches and equality of laws follow from this table.
   virtual std::span<const Key> keys() const = 0;
 
   /// What the present parameters need to remember of a contact.

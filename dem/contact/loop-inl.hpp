@@ -77,7 +77,7 @@ HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Tripl
 
 /// One law over the contacts of a chunk. A law over lanes has
 ///
-///     Numbers                    its parameters as the lanes want them: plain doubles
+///     Numbers                    its parameters as the lanes use them: plain doubles
 ///     n_components               of its history; 0: no memory. With memory its first three are n', kept by the law
 ///     is_central                 only a normal force: velocities and spins are not read, Energy is not asked for
 ///     normal_force(numbers, pairs) -> V                                        of a central law

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Grain records to vectors of lanes and back. Records are four numbers [x y z w], loaded whole, subtracted as records
-// where only the difference is wanted, and transposed in registers; `action` is [F 0 T 0]. Included once per
+// where only the difference is needed, and transposed in registers; `action` is [F 0 T 0]. Included once per
 // instruction set by SIMD sources (hence no #pragma once).
 // tested: tests/dem/contact/loop_test.cpp
 #if defined(ISOSTAT_RECORDS_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/fields.hpp"
 #include "base/types.hpp"
 
 #include <optional>
@@ -28,7 +29,7 @@ inline Eigen::Vector3i image_shift(ImageCode code)
 ///     a  |   |  /         so that all it ever sees is stretch; laboratory = rotation * own
 ///        |___| /
 ///
-/// A step with displacement gradient H = L dt (laboratory) is split at mid-step (Hughes & Winget 1980): with Q the
+/// A step with displacement gradient H = L dt (laboratory) is split at mid-step (Hughes & Winget 1980, doi:10.1002/nme.1620151210): with Q the
 /// rotation half a step on, E = sym(Q'HQ) stretches cell and grains by A = I + E + E^2/2, and rotation <- rotation
 /// exp(skew). A rigid rotation thus changes no bit of grains and forces, and stress turns with `rotation` alone.
 /// Volume is set, not accumulated: det(edges) = reference_volume exp(sum tr E), to round-off after any number of steps.
@@ -59,14 +60,8 @@ struct PeriodicCell
   /// another; the threshold above one half keeps a cell under cyclic shear from flipping to and fro.
   std::optional<Mat3> upright_edges() const;
 
-  /// visit(name, field) for every field of a cell, const or not: what files and bytes hold of it.
-  template <typename Cell, typename Visit>
-  static void for_each(Cell &cell, const Visit &visit)
-  {
-    visit("edges", cell.edges), visit("deformation", cell.deformation), visit("rotation", cell.rotation);
-    visit("strain_step", cell.strain_step), visit("volume_strain", cell.volume_strain);
-    visit("reference_volume", cell.reference_volume), visit("flips", cell.flips);
-  }
+  /// What files and bytes hold of a cell.
+  ISOSTAT_FIELDS(edges, deformation, rotation, strain_step, volume_strain, reference_volume, flips)
 
   /// Tensor from own frame to laboratory.
   Mat3 to_laboratory(const Mat3 &own) const { return rotation * own * rotation.transpose(); }

@@ -2,11 +2,11 @@
 // What drivers remember from step to step, by concept. Stresses and strains here are in the soil-mechanics convention
 // (compression positive) because q_amp and p' are.
 //
-// Every struct lists its fields once, for_each(self, f) calls f(name, field); checkpoints (dem/io/checkpoint.cpp) and
-// packed elements (dem/rve/rve_bytes.cpp) go by it. It takes the struct apart with a structured binding, so that a field
-// that is not listed does not compile.
+// Every struct lists its fields once (base/fields.hpp): checkpoints (dem/io/checkpoint.cpp) and packed elements
+// (dem/rve/rve_bytes.cpp) go by that list.
 // tested: tests/dem/io/checkpoint_test.cpp (every field comes back to the bit)
 #pragma once
+#include "base/fields.hpp"
 #include "dem/domain/rigid_box.hpp"
 
 #include <cstdint>
@@ -20,12 +20,7 @@ struct ProgrammePlace
   std::uint64_t stage = 0;
   std::uint64_t steps = 0; ///< of this stage so far
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[stage_, steps_] = self;
-    f("stage", stage_), f("steps", steps_);
-  }
+  ISOSTAT_FIELDS(stage, steps)
 };
 
 /// How fast a packing is strained.
@@ -35,12 +30,7 @@ struct Pace
   double time_step = 0; ///< s
   double indicator = 0; ///< quasi-static error indicator of the last control, see rate_control.hpp [-]
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[rate_, time_step_, indicator_] = self;
-    f("rate", rate_), f("time_step", time_step_), f("indicator", indicator_);
-  }
+  ISOSTAT_FIELDS(rate, time_step, indicator)
 };
 
 enum class LoadDirection
@@ -65,13 +55,7 @@ struct Loading
   double slope = 0;                          ///< |d load/d strain|, Pa
   double window_load = 0, window_strain = 0; ///< where the window began that the slope is taken over, Pa and [-]
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[strain_, signed_rate_, direction_, slope_, window_load_, window_strain_] = self;
-    f("strain", strain_), f("signed_rate", signed_rate_), f("direction", direction_), f("slope", slope_);
-    f("window_load", window_load_), f("window_strain", window_strain_);
-  }
+  ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.
@@ -80,12 +64,7 @@ struct ShearStart
   Vec3 edges = Vec3::Zero(); ///< of the box, m
   double p0 = 0;             ///< mean effective stress, Pa
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[edges_, p0_] = self;
-    f("edges", edges_), f("p0", p0_);
-  }
+  ISOSTAT_FIELDS(edges, p0)
 };
 
 /// The way that the specimen went.
@@ -117,12 +96,7 @@ struct ServoState
   Vec3 modulus = Vec3::Zero();       ///< of a cell: affine modulus along x, y, z, Pa
   std::uint64_t balanced_checks = 0; ///< consecutive checks in which the stage's balance held
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[step_, shear_, modulus_, balanced_checks_] = self;
-    f("step", step_), f("shear", shear_), f("modulus", modulus_), f("balanced_checks", balanced_checks_);
-  }
+  ISOSTAT_FIELDS(step, shear, modulus, balanced_checks)
 };
 
 /// The moment at which p'/p0 first fell below the ratio of its stage.
@@ -131,12 +105,7 @@ struct Liquefaction
   std::uint64_t step = 0, reversals = 0;
   double strain = 0; ///< driven, since the start of shearing [-]
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[step_, reversals_, strain_] = self;
-    f("step", step_), f("reversals", reversals_), f("strain", strain_);
-  }
+  ISOSTAT_FIELDS(step, reversals, strain)
 };
 
 /// What happened at constant volume, over all stages.
@@ -150,13 +119,7 @@ struct UndrainedRecord
   /// 0 as long as there is none.
   std::uint64_t reversals_to_liquefaction() const { return liquefaction ? liquefaction->reversals : 0; }
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[reversals_, worst_overshoot_, liquefaction_, max_strain_before_] = self;
-    f("reversals", reversals_), f("worst_overshoot", worst_overshoot_), f("liquefaction", liquefaction_);
-    f("max_strain_before", max_strain_before_);
-  }
+  ISOSTAT_FIELDS(reversals, worst_overshoot, liquefaction, max_strain_before)
 };
 
 /// The last row of the history, and the last snapshot.
@@ -166,12 +129,7 @@ struct RecordedState
   std::optional<std::uint64_t> step;
   double snapshot_strain = 0;
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[p_, load_, strain_, step_, snapshot_strain_] = self;
-    f("p", p_), f("load", load_), f("strain", strain_), f("step", step_), f("snapshot_strain", snapshot_strain_);
-  }
+  ISOSTAT_FIELDS(p, load, strain, step, snapshot_strain)
 };
 
 /// All of it: a resumed run goes on from here to the same bits.
@@ -185,12 +143,6 @@ struct DriveState
   UndrainedRecord undrained;
   RecordedState recorded;
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[place_, pace_, loading_, path_, servo_, undrained_, recorded_] = self;
-    f("place", place_), f("pace", pace_), f("loading", loading_), f("path", path_), f("servo", servo_);
-    f("undrained", undrained_), f("recorded", recorded_);
-  }
+  ISOSTAT_FIELDS(place, pace, loading, path, servo, undrained, recorded)
 };
 } // namespace isostat

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/fields.hpp"
 #include "base/scene/fragment.hpp"
 
 namespace isostat
 {
-/// How grains move and how fast they are driven. for_each() is the one list of the fields: scene keys are checked
-/// against it, keys of caches are made from it.
+/// How grains move and how fast they are driven. Scene keys are checked against the list of its fields, keys of caches
+/// are made from it.
 struct MotionSpec
 {
   double damping = 0.2;                       ///< local (non-viscous) damping coefficient [-]
@@ -18,15 +19,8 @@ struct MotionSpec
 
   bool operator==(const MotionSpec &) const = default;
 
-  /// f(name of its key, field); a field that is not listed does not compile.
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[damping_, strain_rate_, inertial_number_, tolerance_, floor_, ceiling_, safety_, time_step_] = self;
-    f("damping", damping_), f("strain_rate", strain_rate_), f("inertial_number", inertial_number_);
-    f("quasi_static_tolerance", tolerance_), f("rate_floor", floor_), f("rate_ceiling", ceiling_);
-    f("time_step_safety", safety_), f("time_step", time_step_);
-  }
+  ISOSTAT_FIELDS(damping, strain_rate, inertial_number, quasi_static_tolerance, rate_floor, rate_ceiling,
+                 time_step_safety, time_step)
 };
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)

@@ -49,7 +49,7 @@ private:
     state_.loading = {};
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
-    state_.pace.rate = RateControl(programme_.motion, std::nullopt).initial_rate();
+    state_.pace.rate = initial_rate(programme_.motion);
     stage_.begin(context_);
   }
 
@@ -67,17 +67,18 @@ private:
   {
     if (!verdict.event.empty())
       observer_.event(verdict.event);
-    const RecordMoment now{.step = seen.step,
-                           .p = seen.p,
-                           .load = stage_.load(seen),
-                           .strain = stage_.strain(seen),
-                           .edge = state_.place.steps == 0 || verdict.finished,
-                           .notable = verdict.notable};
+    const RecordSpec &spec = programme_.record;
     RecordedState &last = state_.recorded;
-    if (!row_due(programme_.record, now, last))
+    const double load = stage_.load(seen), strain = stage_.strain(seen);
+    const bool always = state_.place.steps == 0 || verdict.finished || verdict.notable;
+    if (!always && last.step && seen.step - *last.step < spec.record_steps &&
+        std::abs(seen.p - last.p) < spec.record_stress && std::abs(load - last.load) < spec.record_stress &&
+        std::abs(strain - last.strain) < spec.record_strain)
       return;
-    const bool snapshot = stage_.shears() && snapshot_due(programme_.record, now, last);
-    last = {now.p, now.load, now.strain, now.step, snapshot ? now.strain : last.snapshot_strain};
+    const bool by_strain =
+        spec.snapshots == "strain" && std::abs(strain - last.snapshot_strain) >= spec.snapshot_strain;
+    const bool snapshot = stage_.shears() && spec.snapshots != "none" && (always || by_strain);
+    last = {seen.p, load, strain, seen.step, snapshot ? strain : last.snapshot_strain};
     observer_.record(assembly_, state_, seen, snapshot);
   }
 

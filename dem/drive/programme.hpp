@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/drive/recording.hpp"
 #include "dem/drive/stages/stages.hpp"
 
 #include <string>
 
 namespace isostat
 {
+/// How often a row of the history, and a stored snapshot, is due.
+struct RecordSpec
+{
+  double record_stress = 1e3;          ///< a history row whenever p' or the driven load has moved by this much, Pa
+  double record_strain = 1e-4;         ///< ... or the driven strain by this much
+  std::uint64_t record_steps = 5000;   ///< ... or after so many steps
+  std::string snapshots = "reversals"; ///< "none", "reversals" (and stage ends), "strain"
+  double snapshot_strain = 0.01;       ///< spacing for "strain"
+
+  bool operator==(const RecordSpec &) const = default;
+};
+
 /// What the laboratory does: the stages in their order, and how all of them are run.
 struct Programme
 {

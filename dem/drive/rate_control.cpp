@@ -7,10 +7,10 @@
 
 namespace isostat
 {
-RateControl::RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate)
-    : fixed_(stage_rate ? stage_rate : motion.strain_rate), inertial_number_(motion.inertial_number),
-      tolerance_(motion.quasi_static_tolerance), floor_(motion.rate_floor), ceiling_(motion.rate_ceiling)
-{}
+double initial_rate(const MotionSpec &motion, const std::optional<double> &stage_rate)
+{
+  return stage_rate.value_or(motion.strain_rate.value_or(motion.rate_floor));
+}
 
 double reference_stress(double mean_stress, double p0) { return std::max(mean_stress, 0.05 * p0); }
 
@@ -28,22 +28,21 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
   return std::max({inertia, difference / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
-void RateControl::update(const Assembly &assembly, double mean_stress, double p0, Pace &pace) const
+void update_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
+                 double mean_stress, double p0, Pace &pace)
 {
   pace.indicator = quasi_static_indicator(assembly, mean_stress, p0, pace.rate);
-  if (fixed_)
+  if (stage_rate || motion.strain_rate)
+    pace.rate = initial_rate(motion, stage_rate);
+  else if (motion.inertial_number)
+    pace.rate =
+        rate_of(*motion.inertial_number, assembly.d50(), assembly.packing().density, reference_stress(mean_stress, p0));
+  else
     {
-      pace.rate = *fixed_;
-      return;
+      const double factor =
+          std::clamp(std::sqrt(motion.quasi_static_tolerance / std::max(pace.indicator, 1e-12)), 0.7, 1.2);
+      pace.rate = std::clamp(pace.rate * factor, motion.rate_floor, motion.rate_ceiling);
     }
-  if (inertial_number_)
-    {
-      pace.rate =
-          rate_of(*inertial_number_, assembly.d50(), assembly.packing().density, reference_stress(mean_stress, p0));
-      return;
-    }
-  const double factor = std::clamp(std::sqrt(tolerance_ / std::max(pace.indicator, 1e-12)), 0.7, 1.2);
-  pace.rate = std::clamp(pace.rate * factor, floor_, ceiling_);
 }
 
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step)

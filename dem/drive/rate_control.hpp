@@ -18,21 +18,14 @@ namespace isostat
 /// or, with a fixed inertial number, rate <- I sqrt(p_r/rho)/d50, without bounds. A fixed rate of a stage goes before
 /// both.
 /// tested: tests/dem/drive/rate_control_test.cpp
-class RateControl
-{
-public:
-  RateControl(const MotionSpec &motion, const std::optional<double> &stage_rate);
+/// @param stage_rate  fixed rate of the stage, 1/s     @param p0  mean effective stress when shearing began, Pa
+/// @pre compute_forces()
+void update_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
+                 double mean_stress, double p0, Pace &pace);
 
-  /// The rate a stage starts with, 1/s. With a fixed inertial number it is the floor until the first update, which
-  /// comes before the first step of a shear stage.
-  double initial_rate() const { return fixed_ ? *fixed_ : floor_; }
-  /// Updates rate and indicator.   @param p0  mean effective stress when shearing began, Pa     @pre compute_forces()
-  void update(const Assembly &assembly, double mean_stress, double p0, Pace &pace) const;
-
-private:
-  std::optional<double> fixed_, inertial_number_;
-  double tolerance_, floor_, ceiling_;
-};
+/// The rate a stage starts with, 1/s. With a fixed inertial number it is the floor until the first update, which comes
+/// before the first step of a shear stage.
+double initial_rate(const MotionSpec &motion, const std::optional<double> &stage_rate = {});
 
 /// p_r = max(p', 0.05 p0), the stress that inertia is judged against, Pa.
 double reference_stress(double mean_stress, double p0);

@@ -24,26 +24,26 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
         const double cap = 0.5 * rate_cap * edges[axis] * assembly.settings.time_step;
         const double missing_force = (target[axis] - stress[axis]) * assembly.box().area(axis);
         const double stiffness = 0.5 * assembly.wall_stiffness_sum(axis);
-        const double wanted = stiffness > 0 ? missing_force / stiffness : cap;
+        const double requested = stiffness > 0 ? missing_force / stiffness : cap;
         double &step = state.step[axis];
-        step = 0.8 * step + 0.2 * std::clamp(wanted, -cap, cap);
+        step = 0.8 * step + 0.2 * std::clamp(requested, -cap, cap);
         edges[axis] -= 2 * step;
       }
   return edges;
 }
 
-Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
+Mat3 stress_servo(const Assembly &assembly, const Mat3 &target, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double rate_cap, std::uint64_t step_number, ServoState &state)
 {
   if (step_number % modulus_interval == 0)
     state.modulus = affine_moduli(assembly.live_contacts(), assembly.volume());
-  const Mat3 missing = wanted - assembly.stress();
+  const Mat3 missing = target - assembly.stress();
   const double cap = rate_cap * assembly.settings.time_step;
   Mat3 strain = Mat3::Zero();
   const auto follow = [&](int i, int j, double modulus, double &step) {
     if (!controlled(i, j))
       return;
-    if (!(modulus > 0) && missing(i, j) == 0) // nothing in contact, nothing wanted
+    if (!(modulus > 0) && missing(i, j) == 0) // nothing in contact, nothing requested
       return;
     const double towards = modulus > 0 ? missing(i, j) / modulus : std::copysign(cap, missing(i, j));
     step = 0.8 * step + 0.2 * std::clamp(towards, -cap, cap);

@@ -19,13 +19,13 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 
 /// The same in a periodic cell, for any components of stress: strain of this step, tension positive [-]. Along an axis
 /// the cell is strained by
-///     D = 0.8 D' + 0.2 clamp((wanted - sigma)/M, +-cap)
+///     D = 0.8 D' + 0.2 clamp((target - sigma)/M, +-cap)
 /// with M the affine modulus (all grains following the strain), which is above the true one: the servo is slow rather
 /// than unstable. It is looked at every 20 steps; shear counts 0.4 of the mean of the three, that of an isotropic net.
-/// @param wanted      stress, Pa, tension positive      @param controlled  symmetric; the other components get 0
+/// @param target      stress, Pa, tension positive      @param controlled  symmetric; the other components get 0
 /// @param rate_cap    bound on the strain rate, 1/s     @param step_number  of the stage: when to look at M
 /// tested: tests/verification/cell_programme_test.cpp, tests/dem/rve/rve_test.cpp
-Mat3 stress_servo(const Assembly &assembly, const Mat3 &wanted, const Eigen::Matrix<bool, 3, 3> &controlled,
+Mat3 stress_servo(const Assembly &assembly, const Mat3 &target, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double rate_cap, std::uint64_t step_number, ServoState &state);
 
 /// Largest |sigma_k / target_k - 1| over the controlled axes, and in a cell |shear stress| / mean target.

@@ -12,19 +12,6 @@ namespace
 {
 constexpr std::uint64_t servo_interval = 200, shear_interval = 2000;
 constexpr int power_iterations = 300;
-
-void check_fixed_step(double fixed, const Assembly &assembly)
-{
-  const double bound = critical_step_bound(assembly.law(), assembly.packing(), assembly.walls(), assembly.contacts());
-  if (fixed <= bound)
-    return;
-  const double critical = critical_step_by_power_iteration(assembly.law(), assembly.packing(), assembly.walls(),
-                                                           assembly.contacts(), power_iterations);
-  if (fixed > critical)
-    throw RunFailure(fmt::format("step {}: unstable: motion.time_step = {:.4g} s exceeds the critical step {:.4g} s of "
-                                 "the closed contacts. Set it below {:.4g} s or leave it out.",
-                                 assembly.step(), fixed, critical, bound));
-}
 } // namespace
 
 void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t step_number, Assembly &assembly,
@@ -33,12 +20,17 @@ void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t ste
   const std::uint64_t interval = shearing ? shear_interval : servo_interval;
   if (pace.time_step > 0 && step_number % interval != 0)
     return;
-  if (motion.time_step)
-    check_fixed_step(*motion.time_step, assembly);
-  pace.time_step = motion.time_step
-                       ? *motion.time_step
-                       : motion.time_step_safety * critical_step_bound(assembly.law(), assembly.packing(),
-                                                                       assembly.walls(), assembly.contacts());
+  const ContactLaw &law = assembly.law();
+  const double bound = critical_step_bound(law, assembly.packing(), assembly.walls(), assembly.contacts());
+  if (motion.time_step.value_or(0) > bound)
+    if (const double critical = critical_step_by_power_iteration(law, assembly.packing(), assembly.walls(),
+                                                                 assembly.contacts(), power_iterations);
+        *motion.time_step > critical)
+      throw RunFailure(
+          fmt::format("step {}: unstable: motion.time_step = {:.4g} s exceeds the critical step {:.4g} s of "
+                      "the closed contacts. Set it below {:.4g} s or leave it out.",
+                      assembly.step(), *motion.time_step, critical, bound));
+  pace.time_step = motion.time_step.value_or(motion.time_step_safety * bound);
   assembly.settings.time_step = pace.time_step;
 }
 } // namespace isostat

@@ -12,20 +12,6 @@ namespace
 const std::string format_name = "isostat-checkpoint";
 constexpr std::uint64_t schema_version = 2; // 1: every number as double, those of the energy balance without names
 
-void write_numbers(hdf5::Group group, const std::map<std::string, double> &numbers)
-{
-  for (const auto &[name, value] : numbers)
-    group.set_attribute(name, value);
-}
-
-std::map<std::string, double> read_numbers(const hdf5::Group &group)
-{
-  std::map<std::string, double> numbers;
-  for (const std::string &name : group.attribute_names())
-    numbers[name] = group.attribute<double>(name);
-  return numbers;
-}
-
 Checkpoint read_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
@@ -36,8 +22,8 @@ Checkpoint read_file(const std::filesystem::path &path)
   checkpoint.state = read_snapshot(root.group("state"));
   hdf5::read_field(root, "drive", checkpoint.drive);
   hdf5::read_field(root, "written", checkpoint.written);
-  checkpoint.assembly = read_numbers(root.group("assembly"));
-  checkpoint.specimen = read_numbers(root.group("specimen"));
+  hdf5::read_field(root, "assembly", checkpoint.assembly);
+  hdf5::read_field(root, "specimen", checkpoint.specimen);
   return checkpoint;
 }
 } // namespace
@@ -50,8 +36,8 @@ void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &che
     write_snapshot(root.create_group("state"), checkpoint.state);
     hdf5::write_field(root, "drive", checkpoint.drive);
     hdf5::write_field(root, "written", checkpoint.written);
-    write_numbers(root.create_group("assembly"), checkpoint.assembly);
-    write_numbers(root.create_group("specimen"), checkpoint.specimen);
+    hdf5::write_field(root, "assembly", checkpoint.assembly);
+    hdf5::write_field(root, "specimen", checkpoint.specimen);
   });
 }
 

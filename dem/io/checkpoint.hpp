@@ -15,12 +15,7 @@ struct WrittenSoFar
   std::uint64_t rows = 0, snapshots = 0; ///< of the history; stored
   double redundancy = 0;                 ///< of the last row, for the progress line
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[rows_, snapshots_, redundancy_] = self;
-    f("rows", rows_), f("snapshots", snapshots_), f("redundancy", redundancy_);
-  }
+  ISOSTAT_FIELDS(rows, snapshots, redundancy)
 };
 
 /// All that a killed run needs to go on to the same bits: grains with the history of their contacts (after a move), and

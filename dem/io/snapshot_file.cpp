@@ -5,9 +5,10 @@
 #include "dem/contact/law_parameters.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <fmt/format.h>
+#include <functional>
+#include <limits>
 
 namespace isostat
 {
@@ -15,24 +16,25 @@ namespace
 {
 using hdf5::Group;
 
-/// One field of all rows as a column.
-template <typename T, typename Row, typename Field>
-std::vector<T> column(const std::vector<Row> &rows, Field field)
+/// One field of all rows as a column, whole numbers with 32 bits, and back.
+template <typename Row, typename T>
+void write_column(Group &group, const char *name, const std::vector<Row> &rows, T Row::*field, const char *unit)
 {
-  std::vector<T> values(rows.size());
-  std::transform(rows.begin(), rows.end(), values.begin(), field);
-  return values;
+  std::vector<std::conditional_t<std::is_integral_v<T>, std::uint32_t, T>> values(rows.size());
+  std::transform(rows.begin(), rows.end(), values.begin(), std::mem_fn(field));
+  group.write(name, values, unit);
 }
 
-template <typename Row, typename Field>
-std::vector<double> vector_column(const std::vector<Row> &rows, Field field)
+template <typename Row, typename T>
+void read_column(const Group &group, const char *name, std::vector<Row> &rows, T Row::*field)
 {
-  std::vector<double> values;
-  values.reserve(3 * rows.size());
-  for (const Row &row : rows)
-    for (double component : field(row))
-      values.push_back(component);
-  return values;
+  using Stored = std::conditional_t<std::is_integral_v<T>, std::uint32_t, T>;
+  const std::vector<Stored> values = group.read<Stored>(name, {rows.size()});
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if constexpr (std::is_integral_v<T>) // what does not fit stays out of range
+      rows[i].*field = static_cast<T>(std::min<Stored>(values[i], std::numeric_limits<T>::max()));
+    else
+      rows[i].*field = values[i];
 }
 
 void write_law(Group group, Law law)
@@ -92,13 +94,17 @@ Packing read_grains(const Group &group, double density)
 
 void write_contacts(Group group, const std::vector<Contact> &rows)
 {
-  group.write("first", column<std::uint32_t>(rows, [](const Contact &c) { return c.first; }), "-");
-  group.write("second", column<std::uint32_t>(rows, [](const Contact &c) { return c.second; }), "-");
-  group.write("overlap", column<double>(rows, [](const Contact &c) { return c.overlap; }), "m");
-  group.write("normal_force", column<double>(rows, [](const Contact &c) { return c.normal_force; }), "N");
+  write_column(group, "first", rows, &Contact::first, "-");
+  write_column(group, "second", rows, &Contact::second, "-");
+  write_column(group, "overlap", rows, &Contact::overlap, "m");
+  write_column(group, "normal_force", rows, &Contact::normal_force, "N");
   for (const HistoryVector &v : history_vectors)
-    group.write(v.name, vector_column(rows, [&](const Contact &c) -> const Vec3 & { return c.history.*v.place; }),
-                v.unit, 3);
+    {
+      std::vector<double> values;
+      for (const Contact &c : rows)
+        values.insert(values.end(), (c.history.*v.place).begin(), (c.history.*v.place).end());
+      group.write(v.name, values, v.unit, 3);
+    }
   if (const std::size_t n = rows.empty() ? 0 : rows[0].history.own.size(); n > 0)
     {
       std::vector<double> own;
@@ -110,56 +116,56 @@ void write_contacts(Group group, const std::vector<Contact> &rows)
 
 std::vector<Contact> read_contacts(const Group &group, std::size_t n_grains)
 {
-  const std::vector<std::uint32_t> first = group.read<std::uint32_t>("first");
-  const std::size_t n = first.size();
-  const auto second = group.read<std::uint32_t>("second", {n});
-  const auto overlap = group.read<double>("overlap", {n}), normal_force = group.read<double>("normal_force", {n});
-  std::array<std::vector<double>, history_vectors.size()> vectors;
-  for (std::size_t v = 0; v < vectors.size(); ++v)
-    vectors[v] = group.read<double>(history_vectors[v].name, {n, 3});
-  const std::vector<double> own = group.has("own") ? group.read<double>("own") : std::vector<double>();
-  std::vector<Contact> rows(n);
-  for (std::size_t i = 0; i < n; ++i)
+  std::vector<Contact> rows(group.shape("first")[0]);
+  read_column(group, "first", rows, &Contact::first);
+  read_column(group, "second", rows, &Contact::second);
+  read_column(group, "overlap", rows, &Contact::overlap);
+  read_column(group, "normal_force", rows, &Contact::normal_force);
+  for (const HistoryVector &v : history_vectors)
     {
-      if (!(first[i] < second[i] && second[i] < n_grains))
+      const std::vector<double> values = group.read<double>(v.name, {rows.size(), 3});
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        rows[i].history.*v.place = Vec3(&values[3 * i]);
+    }
+  const std::vector<double> own = group.has("own") ? group.read<double>("own") : std::vector<double>();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const auto [first, second] = std::pair(rows[i].first, rows[i].second);
+      if (!(first < second && second < n_grains))
         throw InputError(
             fmt::format("{}: contact {} joins grains {} and {}; expected first < second < {} (the number of "
                         "grains). The file is damaged: write it again",
-                        group.where(), i, first[i], second[i], n_grains));
-      rows[i] = {first[i], second[i], overlap[i], normal_force[i], {}};
-      for (std::size_t v = 0; v < vectors.size(); ++v)
-        rows[i].history.*history_vectors[v].place = Vec3(&vectors[v][3 * i]);
-      rows[i].history.own.assign(own.begin() + i * (own.size() / n), own.begin() + (i + 1) * (own.size() / n));
+                        group.where(), i, first, second, n_grains));
+      const std::size_t n_own = own.size() / rows.size();
+      rows[i].history.own.assign(own.begin() + i * n_own, own.begin() + (i + 1) * n_own);
     }
   return rows;
 }
 
 void write_wall_contacts(Group group, const std::vector<WallContact> &rows)
 {
-  group.write("grain", column<std::uint32_t>(rows, [](const WallContact &c) { return c.grain; }), "-");
-  group.write("wall", column<std::uint32_t>(rows, [](const WallContact &c) { return c.wall; }), "-");
-  group.write("overlap", column<double>(rows, [](const WallContact &c) { return c.overlap; }), "m");
-  group.write("normal_force", column<double>(rows, [](const WallContact &c) { return c.normal_force; }), "N");
+  write_column(group, "grain", rows, &WallContact::grain, "-");
+  write_column(group, "wall", rows, &WallContact::wall, "-");
+  write_column(group, "overlap", rows, &WallContact::overlap, "m");
+  write_column(group, "normal_force", rows, &WallContact::normal_force, "N");
 }
 
 std::vector<WallContact> read_wall_contacts(const Group &group, std::size_t n_grains)
 {
-  const std::vector<std::uint32_t> grain = group.read<std::uint32_t>("grain");
-  const std::size_t n = grain.size();
-  const auto wall = group.read<std::uint32_t>("wall", {n});
-  const auto overlap = group.read<double>("overlap", {n}), normal_force = group.read<double>("normal_force", {n});
-  std::vector<WallContact> rows(n);
-  for (std::size_t i = 0; i < n; ++i)
-    {
-      if (!(grain[i] < n_grains && wall[i] < 6))
-        throw InputError(
-            fmt::format("{}: wall contact {} joins grain {} and wall {}; expected grain < {} and wall < 6. The "
-                        "file is damaged: write it again",
-                        group.where(), i, grain[i], wall[i], n_grains));
-      rows[i] = {grain[i], static_cast<std::uint8_t>(wall[i]), overlap[i], normal_force[i]};
-    }
+  std::vector<WallContact> rows(group.shape("grain")[0]);
+  read_column(group, "grain", rows, &WallContact::grain);
+  read_column(group, "wall", rows, &WallContact::wall);
+  read_column(group, "overlap", rows, &WallContact::overlap);
+  read_column(group, "normal_force", rows, &WallContact::normal_force);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!(rows[i].grain < n_grains && rows[i].wall < 6))
+      throw InputError(
+          fmt::format("{}: wall contact {} joins grain {} and wall {}; expected grain < {} and wall < 6. The file is "
+                      "damaged: write it again",
+                      group.where(), i, rows[i].grain, rows[i].wall, n_grains));
   return rows;
 }
+
 void write_cell(Group group, const PeriodicCell &cell)
 {
   PeriodicCell::for_each(cell, [&]<typename Value>(const char *name, const Value &value) {
@@ -194,13 +200,9 @@ void write_snapshot(Group group, const Snapshot &snapshot)
   group.set_attribute("time", snapshot.time);
   group.set_attribute("step", snapshot.step);
   group.set_attribute("density", snapshot.grains.density);
-  std::vector<double> box(6);
-  for (int k = 0; k < 3; ++k)
-    {
-      box[k] = snapshot.box.lower[k];
-      box[3 + k] = snapshot.box.upper[k];
-    }
-  group.write("box", box, "m", 3);
+  Eigen::Matrix<double, 6, 1> box;
+  box << snapshot.box.lower, snapshot.box.upper;
+  group.write("box", std::span(box.data(), 6), "m", 3);
   group.write("strain", std::span(snapshot.strain.data(), 3), "-");
   write_law(group.create_group("law"), snapshot.law);
   write_grains(group.create_group("grains"), snapshot.grains);

@@ -11,8 +11,9 @@ namespace isostat
 ///     @time s  @step -  @density kg/m3        box (2,3) lower, upper   strain (3)
 ///     law/            its parameters as attributes, see for_each_parameter; @name of any but the default law
 ///     grains/         position (N,4) x y z radius    velocity (N,4) vx vy vz 1/mass    spin (N,4) wx wy wz 1/inertia
-///     id (N) contacts/       first second overlap normal_force (C)   normal shear_force bending_moment twisting_moment
-///     (C,3), and own (C,k) of a law that keeps k numbers of its own
+///                     id (N)
+///     contacts/       first second overlap normal_force (C)   normal shear_force bending_moment twisting_moment (C,3),
+///                     and own (C,k) of a law that keeps k numbers of its own
 ///     wall_contacts/  grain wall overlap normal_force (W)
 ///
 ///     cell/           of a periodic packing only: edges deformation rotation strain_step (3,3) @volume_strain

@@ -2,7 +2,8 @@
 #include "dem/io/specimen_file.hpp"
 
 #include "base/error.hpp"
-#include "base/files/hdf5.hpp"
+#include "base/files/hdf5_fields.hpp"
+#include "base/record/checkpoint_folder.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <cmath>
@@ -20,14 +21,12 @@ std::string grain_fault(const Packing &grains)
     return "it has no grains; expected at least one";
   for (std::size_t i = 0; i < grains.n_grains(); ++i)
     {
-      for (const auto *records : {&grains.position, &grains.velocity, &grains.spin})
+      for (const auto &[name, records] : {std::pair("position", &grains.position),
+                                          std::pair("velocity", &grains.velocity), std::pair("spin", &grains.spin)})
         for (std::size_t k = 4 * i; k < 4 * i + 4; ++k)
           if (!std::isfinite((*records)[k]))
             return fmt::format("grain {} (id {}) has a value of {} in its {}; expected finite numbers", i, grains.id[i],
-                               (*records)[k],
-                               records == &grains.position   ? "position"
-                               : records == &grains.velocity ? "velocity"
-                                                             : "spin");
+                               (*records)[k], name);
       const double r = grains.radius(i), inverse_mass = grains.velocity[4 * i + 3],
                    inverse_inertia = grains.spin[4 * i + 3];
       if (!(r > 0 && inverse_mass > 0 && inverse_inertia > 0))
@@ -84,37 +83,36 @@ std::string fault(const Snapshot &state)
   const std::string grains = grain_fault(state.grains);
   return grains.empty() ? contact_fault(state) : grains;
 }
-
-void check_header(const hdf5::Group &root)
-{
-  const std::string file = root.file_path().string();
-  if (!root.has_attribute("format"))
-    throw InputError(
-        fmt::format("{}: HDF5, but without the attribute format = \"{}\"; another program wrote it. Give a "
-                    "specimen made by Isostat",
-                    file, format_name));
-  const auto format = root.attribute<std::string>("format");
-  if (format != format_name)
-    throw InputError(fmt::format("{}: format = \"{}\", expected \"{}\"; give a specimen made by Isostat, of a library "
-                                 "one of its entries ({}#s0001)",
-                                 file, format, format_name, file));
-  const auto version = root.attribute<std::uint64_t>("schema_version");
-  if (version != specimen_schema_version)
-    throw InputError(fmt::format("{}: schema_version = {}, this program reads {}; prepare the specimen again with this "
-                                 "version, or read it with the one that wrote it",
-                                 file, version, specimen_schema_version));
-}
 } // namespace
+
+std::string format_of(const hdf5::Group &root)
+{
+  return root.has_attribute("format") ? root.attribute<std::string>("format") : "";
+}
+
+void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
+                      const std::string &remedy)
+{
+  const std::string file = root.file_path().string(), found = format_of(root);
+  if (found != format)
+    throw InputError(fmt::format("{}: {}, expected format = \"{}\"; give {}", file,
+                                 found.empty() ? "HDF5, but without the attribute format; another program wrote it"
+                                               : fmt::format("format = \"{}\"", found),
+                                 format, remedy));
+  const auto found_version = root.attribute<std::uint64_t>("schema_version");
+  if (found_version != version)
+    throw InputError(
+        fmt::format("{}: schema_version = {}, this program reads {}; prepare it again with this version, or "
+                    "read it with the one that wrote it",
+                    file, found_version, version));
+}
 
 void write_specimen(hdf5::Group group, const Specimen &specimen)
 {
   if (const std::string found = fault(specimen.state); !found.empty())
     throw RunFailure(fmt::format("{}: the specimen is not written: {}", group.where(), found));
-  hdf5::Group provenance = group.create_group("provenance"), numbers = group.create_group("numbers");
-  for (const auto &[key, text] : specimen.provenance)
-    provenance.set_attribute(key, text);
-  for (const auto &[key, value] : specimen.numbers)
-    numbers.set_attribute(key, value);
+  hdf5::write_field(group, "provenance", specimen.provenance);
+  hdf5::write_field(group, "numbers", specimen.numbers);
   write_snapshot(group.create_group("snapshot"), specimen.state);
 }
 
@@ -122,8 +120,7 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 {
   hdf5::File file = hdf5::File::create(path);
   hdf5::Group root = file.root();
-  root.set_attribute("format", format_name);
-  root.set_attribute("schema_version", specimen_schema_version);
+  set_format(root, format_name, specimen_schema_version);
   write_specimen(root, specimen);
   file.commit();
 }
@@ -131,11 +128,8 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 Specimen read_specimen_description(const hdf5::Group &group)
 {
   Specimen specimen;
-  const hdf5::Group provenance = group.group("provenance"), numbers = group.group("numbers");
-  for (const std::string &key : provenance.attribute_names())
-    specimen.provenance[key] = provenance.attribute<std::string>(key);
-  for (const std::string &key : numbers.attribute_names())
-    specimen.numbers[key] = numbers.attribute<double>(key);
+  hdf5::read_field(group, "provenance", specimen.provenance);
+  hdf5::read_field(group, "numbers", specimen.numbers);
   return specimen;
 }
 
@@ -151,7 +145,9 @@ Specimen read_specimen(const hdf5::Group &group)
 Specimen read_specimen(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
-  check_header(file.root());
+  expect_specimens(
+      file.root(), format_name, specimen_schema_version,
+      fmt::format("a specimen made by Isostat, of a library one of its entries ({}#s0001)", path.string()));
   return read_specimen(file.root());
 }
 } // namespace isostat

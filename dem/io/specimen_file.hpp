@@ -36,6 +36,13 @@ Specimen read_specimen(const std::filesystem::path &path);
 void write_specimen(hdf5::Group group, const Specimen &specimen);
 Specimen read_specimen(const hdf5::Group &group);
 
+/// What a file calls itself; empty where it does not say.
+std::string format_of(const hdf5::Group &root);
+/// @param remedy  what to give instead
+/// @throws InputError  a file of another format or version
+void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
+                      const std::string &remedy);
+
 /// Only what stands in attributes: `state` is left empty and not looked at.
 Specimen read_specimen_description(const hdf5::Group &group);
 } // namespace isostat

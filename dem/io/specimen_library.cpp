@@ -2,6 +2,7 @@
 #include "dem/io/specimen_library.hpp"
 
 #include "base/error.hpp"
+#include "base/record/checkpoint_folder.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -16,24 +17,9 @@ namespace
 const std::string format_name = "isostat-specimen-library";
 constexpr std::size_t most_in_message = 40;
 
-std::string format_of(const hdf5::Group &root)
-{
-  return root.has_attribute("format") ? root.attribute<std::string>("format") : "";
-}
-
 void check_header(const hdf5::Group &root)
 {
-  const std::string file = root.file_path().string(), format = format_of(root);
-  if (format != format_name)
-    throw InputError(
-        fmt::format("{}: {}, expected format = \"{}\"; give a library made by specimen_library", file,
-                    format.empty() ? "HDF5, but without the attribute format" : fmt::format("format = \"{}\"", format),
-                    format_name));
-  const auto version = root.attribute<std::uint64_t>("schema_version");
-  if (version != library_schema_version)
-    throw InputError(fmt::format("{}: schema_version = {}, this program reads {}; make the library again with this "
-                                 "version, or read it with the one that wrote it",
-                                 file, version, library_schema_version));
+  expect_specimens(root, format_name, library_schema_version, "a library made by specimen_library");
 }
 
 std::vector<LibraryEntry> entries_of(const hdf5::Group &root)
@@ -54,6 +40,23 @@ std::uint64_t number_of(const std::string &name)
                        std::all_of(name.begin() + 1, name.end(), [](unsigned char c) { return std::isdigit(c); });
   return counted ? std::stoull(name.substr(1)) : 0;
 }
+
+/// Of library_table().
+struct Column
+{
+  const char *head, *number;
+  int width, decimals;
+  double unit = 1;
+};
+constexpr Column columns[] = {{"seed", "seed", 6, 0},
+                              {"grains", "grains", 8, 0},
+                              {"sigma_v kPa", "vertical_stress_Pa", 13, 2, 1e3},
+                              {"p' kPa", "pressure_Pa", 10, 2, 1e3},
+                              {"K0", "K0", 7, 3},
+                              {"e", "void_ratio", 8, 4},
+                              {"D_r", "relative_density", 7, 3},
+                              {"Z", "coordination", 7, 3},
+                              {"I_R", "redundancy_index", 7, 3}};
 
 std::string cell(double value, int width, int decimals)
 {
@@ -104,20 +107,19 @@ Specimen read_library_entry(const std::filesystem::path &path, const std::string
 
 std::string library_table(const std::vector<LibraryEntry> &entries, std::size_t most)
 {
-  std::string text = fmt::format("  {:<8} {:<10}{:>6}{:>8}{:>13}{:>10}{:>7}{:>8}{:>7}{:>7}{:>7}\n", "entry", "stress",
-                                 "seed", "grains", "sigma_v kPa", "p' kPa", "K0", "e", "D_r", "Z", "I_R");
+  std::string text = fmt::format("  {:<8} {:<10}", "entry", "stress");
+  for (const Column &column : columns)
+    text += fmt::format("{:>{}}", column.head, column.width);
   const std::size_t shown = std::min(most, entries.size());
   for (std::size_t i = 0; i < shown; ++i)
     {
       const LibraryEntry &entry = entries[i];
       const std::string consolidation = entry.text("consolidation");
-      text += fmt::format("  {:<8} {:<10}", entry.name, consolidation.empty() ? "-" : consolidation);
-      text += cell(entry.number("seed"), 6, 0) + cell(entry.number("grains"), 8, 0);
-      text += cell(entry.number("vertical_stress_Pa") / 1e3, 13, 2) + cell(entry.number("pressure_Pa") / 1e3, 10, 2);
-      text += cell(entry.number("K0"), 7, 3) + cell(entry.number("void_ratio"), 8, 4);
-      text += cell(entry.number("relative_density"), 7, 3) + cell(entry.number("coordination"), 7, 3);
-      text += cell(entry.number("redundancy_index"), 7, 3) + "\n";
+      text += fmt::format("\n  {:<8} {:<10}", entry.name, consolidation.empty() ? "-" : consolidation);
+      for (const Column &column : columns)
+        text += cell(entry.number(column.number) / column.unit, column.width, column.decimals);
     }
+  text += "\n";
   if (shown < entries.size())
     text += fmt::format("  and {} more\n", entries.size() - shown);
   return text;
@@ -126,9 +128,7 @@ std::string library_table(const std::vector<LibraryEntry> &entries, std::size_t 
 LibraryWriter LibraryWriter::create(const std::filesystem::path &path)
 {
   LibraryWriter writer(hdf5::File::create(path));
-  hdf5::Group root = writer.file_.root();
-  root.set_attribute("format", format_name);
-  root.set_attribute("schema_version", library_schema_version);
+  set_format(writer.file_.root(), format_name, library_schema_version);
   return writer;
 }
 

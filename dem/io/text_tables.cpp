@@ -17,14 +17,13 @@ namespace
 {
 namespace fs = std::filesystem;
 
-fs::path find_table(const fs::path &folder, const std::string &prefix, const std::string &what, const std::string &tag)
+fs::path find_table(const fs::path &folder, const std::string &what)
 {
-  const std::string name = fmt::format("{}_{}_{}.csv", prefix, what, tag);
+  const std::string name = fmt::format("comp_{}_step0.csv", what);
   for (const char *ending : {"", ".gz"})
     if (std::error_code ignored; fs::exists(folder / (name + ending), ignored))
       return folder / (name + ending);
-  throw InputError(fmt::format("{}: neither {} nor {}.gz is there; check folder, prefix (\"{}\") and tag (\"{}\")",
-                               folder.string(), name, name, prefix, tag));
+  throw InputError(fmt::format("{}: neither {} nor {}.gz is there; check the folder", folder.string(), name, name));
 }
 
 RigidBox read_box(const fs::path &path)
@@ -211,43 +210,21 @@ RigidBox bounding_box(const std::vector<Vec3> &centres, const std::vector<double
   return box;
 }
 
-void check_density(double density)
+void read_tables(const fs::path &folder, double density, Snapshot &snapshot)
 {
-  if (!(density > 0 && std::isfinite(density)))
-    throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
-}
-} // namespace
-
-Snapshot import_tables(const fs::path &path, const Law &law, double density)
-{
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored))
-    return import_yade_tables(path, "comp", "step0", law, density);
-  return import_spheres(path, law, density);
-}
-
-Snapshot import_yade_tables(const fs::path &folder, const std::string &prefix, const std::string &tag, const Law &law,
-                            double density)
-{
-  check_density(density);
-  Snapshot snapshot;
-  snapshot.law = law;
-  snapshot.box = read_box(find_table(folder, prefix, "walls", tag));
+  snapshot.box = read_box(find_table(folder, "walls"));
   IndexOfId index_of_id;
-  snapshot.grains = read_particles(find_table(folder, prefix, "particles", tag), snapshot.box, density, index_of_id);
-  read_contacts(find_table(folder, prefix, "contacts", tag), index_of_id, snapshot);
-  return snapshot;
+  snapshot.grains = read_particles(find_table(folder, "particles"), snapshot.box, density, index_of_id);
+  read_contacts(find_table(folder, "contacts"), index_of_id, snapshot);
 }
 
-Snapshot import_spheres(const fs::path &path, const Law &law, double density)
+void read_spheres(const fs::path &path, double density, Snapshot &snapshot)
 {
-  check_density(density);
   const std::string text = read_text(path);
   const std::vector<std::string_view> lines = split_lines(text);
   std::vector<Vec3> centres;
   std::vector<double> radii;
   std::vector<std::size_t> line_of;
-  Snapshot snapshot;
   bool box_given = false, header_seen = false;
   for (std::size_t l = 0; l < lines.size(); ++l)
     {
@@ -277,8 +254,18 @@ Snapshot import_spheres(const fs::path &path, const Law &law, double density)
     snapshot.box = bounding_box(centres, radii);
   for (std::size_t i = 0; i < centres.size(); ++i)
     check_inside(path, line_of[i], centres[i], snapshot.box);
-  snapshot.law = law;
   snapshot.grains = make_packing(centres, radii, density);
+}
+} // namespace
+
+Snapshot import_tables(const fs::path &path, const Law &law, double density)
+{
+  if (!(density > 0 && std::isfinite(density)))
+    throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
+  Snapshot snapshot;
+  snapshot.law = law;
+  std::error_code ignored;
+  fs::is_directory(path, ignored) ? read_tables(path, density, snapshot) : read_spheres(path, density, snapshot);
   return snapshot;
 }
 } // namespace isostat

@@ -3,20 +3,15 @@
 #include "dem/state/snapshot.hpp"
 
 #include <filesystem>
-#include <string>
 
 namespace isostat
 {
-/// A packing from text: a folder is read by import_yade_tables with prefix "comp" and tag "step0", a file by
-/// import_spheres.
-Snapshot import_tables(const std::filesystem::path &path, const Law &law, double density);
-
-/// A packing with contact history, from three tables of comma separated columns named in the first line, each plain or
-/// gzipped (.csv or .csv.gz):
+/// A packing from text. A folder holds one with contact history, in three tables of comma separated columns named in the
+/// first line, each plain or gzipped (.csv or .csv.gz):
 ///
-///     <prefix>_particles_<tag>   id,x,y,z,r,vx,vy,vz,wx,wy,wz
-///     <prefix>_contacts_<tag>    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2
-///     <prefix>_walls_<tag>       wall (0..5 = x-,x+,y-,y+,z-,z+),pos
+///     comp_particles_step0   id,x,y,z,r,vx,vy,vz,wx,wy,wz
+///     comp_contacts_step0    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2
+///     comp_walls_step0       wall (0..5 = x-,x+,y-,y+,z-,z+),pos
 ///
 /// Columns may stand in any order; others are ignored. Units m, m/s, rad/s, N, N m. In the contact table the ids -1..-6
 /// are the walls x-..z+. Where `un` is nan the overlap is fn/kn. Rows with fn = 0 do not touch and are left out.
@@ -25,14 +20,12 @@ Snapshot import_tables(const std::filesystem::path &path, const Law &law, double
 /// Such tables hold the state *after* a move: forces and history belong to the positions one step before those in the
 /// table. A run starts from them with a force evaluation at the new positions. Time, step and strain are 0.
 /// Stiffnesses follow from `law`; the columns are not compared with it.
+///
+/// A file holds resting spheres without contacts as lines `x y z r` (m; separated by blanks, tabs or commas), plain or
+/// gzipped. Lines that begin with # are comments; the first other line may be a header of words. The box is that of a
+/// comment `# box xlo xhi ylo yhi zlo zhi`, otherwise the bounding box of the spheres.
 /// @param law  friction and stiffness are the caller's   @param density  grain density, kg/m3
 /// Every mistake is an InputError that begins with file:line.
 /// tested: tests/dem/io/text_tables_test.cpp
-Snapshot import_yade_tables(const std::filesystem::path &folder, const std::string &prefix, const std::string &tag,
-                            const Law &law, double density);
-
-/// Resting spheres without contacts from lines `x y z r` (m; separated by blanks, tabs or commas), plain or gzipped.
-/// Lines that begin with # are comments; the first other line may be a header of words. The box is that of a comment
-/// `# box xlo xhi ylo yhi zlo zhi`, otherwise the bounding box of the spheres.
-Snapshot import_spheres(const std::filesystem::path &path, const Law &law, double density);
+Snapshot import_tables(const std::filesystem::path &path, const Law &law, double density);
 } // namespace isostat

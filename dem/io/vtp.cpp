@@ -2,6 +2,7 @@
 #include "dem/io/vtp.hpp"
 
 #include "base/files/vtk_xml.hpp"
+#include "dem/measure/redundancy.hpp"
 
 #include <cstring>
 #include <fmt/format.h>
@@ -86,19 +87,6 @@ pugi::xml_node add_piece(pugi::xml_document &document, const Packing &grains, st
   add_array(piece.append_child("Points"), "position", vectors(grains.position, grains.n_grains()), 3);
   return piece;
 }
-
-std::vector<std::uint32_t> coordination(const Snapshot &snapshot)
-{
-  std::vector<std::uint32_t> count(snapshot.grains.n_grains(), 0);
-  for (const Contact &c : snapshot.contacts)
-    {
-      ++count[c.first];
-      ++count[c.second];
-    }
-  for (const WallContact &c : snapshot.wall_contacts)
-    ++count[c.grain];
-  return count;
-}
 } // namespace
 
 std::vector<double> grain_pressure(const Snapshot &snapshot)
@@ -128,15 +116,12 @@ void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapsho
   pugi::xml_node verts = piece.append_child("Verts");
   add_array(verts, "connectivity", counting(n, 0));
   add_array(verts, "offsets", counting(n, 1));
-  std::vector<double> radius(n);
-  for (std::size_t i = 0; i < n; ++i)
-    radius[i] = grains.radius(i);
   pugi::xml_node data = piece.append_child("PointData");
   add_array(data, "id", grains.id);
-  add_array(data, "radius", radius);
+  add_array(data, "radius", grains.radii());
   add_array(data, "velocity", vectors(grains.velocity, n), 3);
   add_array(data, "spin", vectors(grains.spin, n), 3);
-  add_array(data, "coordination", coordination(snapshot));
+  add_array(data, "coordination", contacts_of_grains(snapshot, true));
   add_array(data, "pressure", grain_pressure(snapshot));
   save_xml(document, path);
 }

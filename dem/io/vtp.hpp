@@ -10,8 +10,7 @@ namespace isostat
 {
 /// Pressure in each grain, Pa, compression positive: the mean stress of the grain's own volume under its contact
 /// forces,
-///     p = sum fn (r - u/2) / (4 pi r^3)        (Weber's stress of one grain; tangential forces have no part in the
-///     trace)
+///     p = sum fn (r - u/2) / (4 pi r^3)        (Weber's stress of one grain; tangential forces do not enter the trace)
 /// Walls count like grains. A grain without contact has 0.   tested: tests/dem/io/vtp_test.cpp
 std::vector<double> grain_pressure(const Snapshot &snapshot);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/fields.hpp"
 #include "dem/state/snapshot.hpp"
 
 namespace isostat
@@ -15,13 +16,7 @@ struct StoredEnergy
   double twisting = 0;    ///< sum 1/2 mt^2/kt
   double wall = 0;        ///< grain-wall contacts, sum 1/2 fn^2/(E R)
 
-  /// visit(name, J) for each of them.
-  template <typename Visit>
-  void for_each(const Visit &visit) const
-  {
-    visit("translation", translation), visit("rotation", rotation), visit("normal", normal), visit("shear", shear);
-    visit("rolling", rolling), visit("twisting", twisting), visit("wall", wall);
-  }
+  ISOSTAT_FIELDS(translation, rotation, normal, shear, rolling, twisting, wall)
   double kinetic() const { return translation + rotation; }
   double elastic() const { return normal + shear + rolling + twisting + wall; }
   double total() const { return kinetic() + elastic(); }
@@ -46,14 +41,7 @@ struct EnergyBalance
   double damping = 0;       ///< taken out by local damping, >= 0
   double created = 0;       ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
 
-  /// visit(name, J) for each of them, const or not.
-  template <typename Balance, typename Visit>
-  static void for_each(Balance &b, const Visit &visit)
-  {
-    visit("boundary_work", b.boundary_work), visit("kinetic", b.kinetic), visit("elastic", b.elastic);
-    visit("sliding", b.sliding), visit("rolling", b.rolling), visit("released", b.released);
-    visit("damping", b.damping), visit("created", b.created);
-  }
+  ISOSTAT_FIELDS(boundary_work, kinetic, elastic, sliding, rolling, released, damping, created)
   double dissipated() const { return sliding + rolling + released + damping; }
   /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the time step.
   double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Equation numbers are those of "Micromechanical analysis of the cyclic mechanical response of granular materials through
+// DEM simulations".
 #pragma once
 #include "dem/state/snapshot.hpp"
 
@@ -6,15 +8,15 @@
 
 namespace isostat
 {
-/// Contact-normal fabric F_ij = (1/N_c) sum n_i n_j      Satake (1982), Eq. (3) of the paper
+/// Contact-normal fabric F_ij = (1/N_c) sum n_i n_j      Satake (1982), Eq. (3)
 /// Grain-grain contacts only, each once; n and -n are the same.
 /// @return symmetric (3,3) [-], trace 1; zero where there is no contact      cost 6 multiply-adds per contact
 /// tested: tests/dem/measure/fabric_test.cpp (cubic lattice 1/3, one direction, rotation)
 Mat3 contact_fabric(const Snapshot &snapshot);
 
-/// F_[y-x] = F_yy - F_xx, Eq. (4) of the paper; positive after compression along y [-].
+/// F_[y-x] = F_yy - F_xx, Eq. (4); positive after compression along y [-].
 inline double fabric_y_minus_x(const Mat3 &fabric) { return fabric(1, 1) - fabric(0, 0); }
-/// F_[y-z] = F_yy - F_zz, Eq. (5) of the paper [-].
+/// F_[y-z] = F_yy - F_zz, Eq. (5) [-].
 inline double fabric_y_minus_z(const Mat3 &fabric) { return fabric(1, 1) - fabric(2, 2); }
 
 /// A second-order anisotropy: symmetric, deviatoric (3,3) [-].
@@ -42,7 +44,7 @@ struct Anisotropies
 /// Smallest relative contact density for which a force is divided by it.
 inline constexpr double density_floor = 0.1;
 
-/// Anisotropies of second order (Rothenburg & Bathurst 1989; Chantawarangul 1993; in the notation of Guo & Zhao 2013,
+/// Anisotropies of second order (Rothenburg & Bathurst 1989, doi:10.1680/geot.1989.39.4.601; Chantawarangul 1993; in the notation of Guo & Zhao 2013,
 /// Computers and Geotechnics 47, section 4):
 ///
 ///     density  E(n) = (1 + a_c:nn)/4pi          a_c = 15/2 dev F                     F: contact_fabric
@@ -57,7 +59,7 @@ inline constexpr double density_floor = 0.1;
 Anisotropies anisotropies(const Snapshot &snapshot);
 
 /// Fabric of the contacts above (strong: the force chains) and below or at (weak) the mean normal force; Radjai et al.
-/// (1998), Phys. Rev. Lett. 80, 61. Every contact is in one of the two.
+/// (1998), doi:10.1103/PhysRevLett.80.61. Every contact is in one of the two.
 struct ForceChains
 {
   Mat3 strong = Mat3::Zero(), weak = Mat3::Zero(); ///< as contact_fabric: trace 1, or zero without such contacts

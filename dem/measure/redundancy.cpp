@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/measure/redundancy.hpp"
 
+#include <algorithm>
+
 namespace isostat
 {
 namespace
@@ -18,28 +20,29 @@ ContactClasses classify(const Snapshot &snapshot)
 
 GrainCounts count(const Snapshot &snapshot)
 {
-  std::vector<std::uint32_t> degree(snapshot.grains.n_grains(), 0);
-  for (const Contact &c : snapshot.contacts)
-    {
-      ++degree[c.first];
-      ++degree[c.second];
-    }
-  GrainCounts counts;
-  counts.all = degree.size();
-  for (std::uint32_t d : degree)
-    {
-      counts.without += d == 0;
-      counts.single += d == 1;
-    }
-  for (const WallContact &c : snapshot.wall_contacts)
-    ++degree[c.grain];
-  for (std::uint32_t d : degree)
-    counts.without_walls += d == 0;
-  return counts;
+  const auto with_grains = contacts_of_grains(snapshot, false), with_walls = contacts_of_grains(snapshot, true);
+  const auto number = [](const std::vector<std::uint32_t> &contacts, std::uint32_t n) {
+    return static_cast<std::size_t>(std::ranges::count(contacts, n));
+  };
+  return {with_grains.size(), number(with_grains, 0), number(with_grains, 1), number(with_walls, 0)};
 }
 
 double quotient(double numerator, double denominator) { return denominator > 0 ? numerator / denominator : 0.0; }
 } // namespace
+
+std::vector<std::uint32_t> contacts_of_grains(const Snapshot &snapshot, bool with_walls)
+{
+  std::vector<std::uint32_t> count(snapshot.grains.n_grains(), 0);
+  for (const Contact &c : snapshot.contacts)
+    {
+      ++count[c.first];
+      ++count[c.second];
+    }
+  if (with_walls)
+    for (const WallContact &c : snapshot.wall_contacts)
+      ++count[c.grain];
+  return count;
+}
 
 double ContactNetwork::index(double nsr, double s, double r, double sr) const
 {

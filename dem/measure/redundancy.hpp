@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// "The source" is "Micromechanical analysis of the cyclic mechanical response of granular materials through DEM
+// simulations".
 #pragma once
 #include "dem/state/snapshot.hpp"
 
 namespace isostat
 {
-/// Grain-grain contacts by what has yielded (paper, section 4). Every contact is in exactly one class. What the law
+/// Grain-grain contacts by what has yielded (the source, section 4). Every contact is in exactly one class. What the law
 /// leaves out never yields: without rolling C_R = C_SR = 0; without friction all are C_NSR although each holds a single
 /// constraint, so none of the indices below is meant for a frictionless law.
 struct ContactClasses
@@ -26,25 +28,25 @@ struct GrainCounts
   std::size_t without_walls = 0; ///< as N0, but a contact with a wall counts too: touches nothing at all; <= N0
 };
 
-/// How many constraints a packing has for its degrees of freedom. Walls are left out of all of it, as in the paper.
+/// How many constraints a packing has for its degrees of freedom. Walls are left out of all of it, as in the source.
 /// Every quotient is 0 where its denominator is: a packing without contacts has I_R = 0.
 struct ContactNetwork
 {
   ContactClasses classes;
   GrainCounts grains;
 
-  /// Eq. (2) of the paper: I_R = (6 C_NSR + 4 C_S + 4 C_R + 2 C_SR) / (6 (N - N0)). The twisting moment counts as a
+  /// Eq. (2) of the source: I_R = (6 C_NSR + 4 C_S + 4 C_R + 2 C_SR) / (6 (N - N0)). The twisting moment counts as a
   /// constraint, whatever the sentence above the equation says. Nothing yields: I_R = Z/2, isostatic at Z = 2.
   /// Always >= 1/6 if there is a contact: each of N - N0 grains has at least half of one, worth at least 2.
   double redundancy_index() const { return index(6, 4, 4, 2); }
 
-  /// Twist-free form, the words of the paper instead of its equation: one constraint fewer in every contact,
+  /// Twist-free form, the words of the source instead of its equation: one constraint fewer in every contact,
   /// (5 C_NSR + 3 C_S + 3 C_R + C_SR) / (6 (N - N0)). Nothing yields: 5Z/12, isostatic at Z = 2.4.
   double redundancy_index_without_twist() const { return index(5, 3, 3, 1); }
 
   /// Sliding-only form: contact forces as constraints and no moments, three if the contact sticks, one if it slides,
   /// against the six degrees of freedom of a sphere that friction can turn: (3 (C_NSR + C_R) + C_S + C_SR)/(6 (N - N0))
-  /// = Z (3 - 2f)/12 with f the sliding fraction (in the manner of Gong, Thornton & Chan 2012, ref. 6 of the paper).
+  /// = Z (3 - 2f)/12 with f the sliding fraction (in the manner of Gong, Thornton & Chan 2012, its ref. 6).
   /// Nothing slides: Z/4, isostatic at Z = 4 as known for frictional spheres. With three degrees of freedom in the
   /// denominator it would be twice as large and isostatic at Z = 2, which no packing of rough spheres is.
   double redundancy_index_sliding() const { return index(3, 1, 3, 1); }
@@ -52,7 +54,7 @@ struct ContactNetwork
   /// Z = 2C / (N - N0): mean number of contacts of the grains that have any.
   double coordination_number() const;
 
-  /// Z_m = (2C - N1) / (N - N0 - N1), Thornton (2000), Geotechnique 50(1): grains with fewer than two contacts carry no
+  /// Z_m = (2C - N1) / (N - N0 - N1), Thornton (2000), doi:10.1680/geot.2000.50.1.43: grains with fewer than two contacts carry no
   /// load. One pass, not iterated: what loses a contact by this stays in. Z_m >= Z, unless no grain has two contacts
   /// (then Z_m = 0).
   double mechanical_coordination_number() const;
@@ -63,6 +65,9 @@ struct ContactNetwork
 private:
   double index(double nsr, double s, double r, double sr) const;
 };
+
+/// Number of contacts of each grain, those with other grains, and with walls if requested.
+std::vector<std::uint32_t> contacts_of_grains(const Snapshot &snapshot, bool with_walls);
 
 /// Classes and counts of a snapshot; the contact law says what slides and rolls.
 /// @pre the moments and forces are those after the plastic return     cost two norms per contact

@@ -25,8 +25,6 @@ using Mat12 = Eigen::Matrix<double, 12, 12>;
 constexpr int most_factorised = 9000; // unknowns; fill-in grows fast in three periodic directions
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-double cell_volume(const Snapshot &snapshot) { return snapshot.volume(); }
-
 /// One closed contact as an elastic element; its deformation is (v, w2 - w1).
 struct Element
 {
@@ -265,7 +263,7 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding)
           own.row(i) = motion.row(at[i]);
       sum += energy(e, imposed(e) + compatibility(e) * own);
     }
-  return checked(sum, cell_volume(snapshot));
+  return checked(sum, snapshot.volume());
 }
 
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
@@ -276,7 +274,7 @@ Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
   Mat6 sum = Mat6::Zero();
   for (const Element &e : elements)
     sum += energy(e, imposed(e));
-  return checked(sum, cell_volume(snapshot));
+  return checked(sum, snapshot.volume());
 }
 
 Vec3 affine_moduli(const LiveContacts &contacts, double volume)

@@ -21,7 +21,7 @@ double unbalanced_force(const Snapshot &snapshot);
 /// tested: tests/dem/assembly/assembly_test.cpp (against the above)
 double unbalanced_force(const LiveContacts &contacts, const double *action, const Vec3 &gravity);
 
-/// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004)
+/// Inertial number I = rate d50 sqrt(rho/p')      GDR MiDi (2004), doi:10.1140/epje/i2003-10153-0
 /// @param strain_rate  1/s, its magnitude counts     @param d50  m     @param density  of the grains, kg/m3
 /// @param pressure  p', Pa, compression positive
 /// @return [-]; infinite where p' <= 0 and the packing is strained: nothing is quasi-static without pressure

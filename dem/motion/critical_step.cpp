@@ -60,18 +60,10 @@ Mat6 body_block(const Element &e, double radius, double sign)
 template <typename Visit>
 void for_wall_contacts(const ContactLaw &law, const Packing &packing, const RigidBox *walls, const Visit &visit)
 {
-  if (!walls)
-    return;
-  const RigidBox &box = *walls;
-  for (std::size_t i = 0; i < packing.n_grains(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      {
-        const double x = packing.position[4 * i + axis], r = packing.radius(i);
-        if (x - box.lower[axis] < r)
-          visit(i, axis, law.wall(r, r - (x - box.lower[axis])).stiffness);
-        if (box.upper[axis] - x < r)
-          visit(i, axis, law.wall(r, r - (box.upper[axis] - x)).stiffness);
-      }
+  for (std::size_t i = 0; walls && i < packing.n_grains(); ++i)
+    for (int wall = 0; wall < 6; ++wall)
+      if (const double overlap = -wall_gap(packing, *walls, i, wall); overlap > 0)
+        visit(i, wall / 2, law.wall(packing.radius(i), overlap).stiffness);
 }
 
 /// Upper bound of the largest eigenvalue of a symmetric positive matrix: |B^8|_F^(1/8).
@@ -87,13 +79,6 @@ double eigenvalue_bound(const Mat6 &b)
 }
 
 using Blocks = std::vector<Mat6, Eigen::aligned_allocator<Mat6>>;
-
-Blocks wall_blocks(const ContactLaw &law, const Packing &packing, const RigidBox *walls)
-{
-  Blocks blocks(packing.n_grains(), Mat6::Zero());
-  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { blocks[i](axis, axis) += k; });
-  return blocks;
-}
 
 /// M^-1/2 B M^-1/2
 Mat6 scaled_block(const Packing &packing, std::size_t i, const Mat6 &block)
@@ -163,7 +148,8 @@ double critical_step_bound(const ContactLaw &law, const Packing &packing, const 
                            const ContactList &contacts)
 {
   const std::vector<Element> elements = closed_contacts(law, packing, contacts);
-  const Blocks held = wall_blocks(law, packing, walls);
+  Blocks held(packing.n_grains(), Mat6::Zero());
+  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i](axis, axis) += k; });
   Blocks alone = held;
   for (const Element &e : elements)
     {

@@ -42,11 +42,12 @@ struct Advance
 
 template <bool Measure, bool Affine>
 MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t end, double *action,
-                             const Advance &advance, double speed_limit, const AffineStep *affine)
+                             const LeapfrogStep &how)
 {
   const D4 d;
+  const Advance advance{how.dt, how.damping};
   constexpr std::size_t width = hn::MaxLanes(D4());
-  const V4 limit2 = hn::Set(d, speed_limit * speed_limit), step = hn::Set(d, advance.dt);
+  const V4 limit2 = hn::Set(d, how.speed_limit * how.speed_limit), step = hn::Set(d, advance.dt);
   V4 loss = hn::Zero(d), maximum = hn::Zero(d);
   auto sane = hn::Ge(maximum, maximum);
   double *x = packing.position.data() + 4 * begin, *v = packing.velocity.data() + 4 * begin,
@@ -56,7 +57,7 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   if constexpr (Affine)
     for (int k = 0; k < 3; ++k)
       for (std::size_t half = 0; half < 4; half += width)
-        columns[k][half / width] = hn::Load(d, affine->columns + 4 * k + half);
+        columns[k][half / width] = hn::Load(d, how.affine->columns + 4 * k + half);
   for (std::size_t i = begin; i < end; ++i, x += 4, v += 4, w += 4, action += 8)
     {
       const V4 inverse_mass = hn::Set(d, v[3]), inverse_inertia = hn::Set(d, w[3]);
@@ -97,17 +98,12 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   return report;
 }
 
-#define ISOSTAT_VARIANT(NAME, MEASURE, AFFINE) \
-  MotionReport NAME(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping, \
-                    double speed_limit, const AffineStep *affine) \
-  { \
-    return integrate_range<MEASURE, AFFINE>(packing, begin, end, action, {dt, damping}, speed_limit, affine); \
-  }
-ISOSTAT_VARIANT(Integrate, false, false)
-ISOSTAT_VARIANT(IntegrateMeasured, true, false)
-ISOSTAT_VARIANT(IntegrateAffine, false, true)
-ISOSTAT_VARIANT(IntegrateAffineMeasured, true, true)
-#undef ISOSTAT_VARIANT
+MotionReport leapfrog(Packing &packing, std::size_t begin, std::size_t end, double *action, const LeapfrogStep &how)
+{
+  const auto run = how.affine ? (how.measure_damping ? integrate_range<true, true> : integrate_range<false, true>)
+                              : (how.measure_damping ? integrate_range<true, false> : integrate_range<false, false>);
+  return run(packing, begin, end, action, how);
+}
 } // namespace HWY_NAMESPACE
 } // namespace isostat
 HWY_AFTER_NAMESPACE();
@@ -115,24 +111,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isostat
 {
-HWY_EXPORT(Integrate);
-HWY_EXPORT(IntegrateMeasured);
-HWY_EXPORT(IntegrateAffine);
-HWY_EXPORT(IntegrateAffineMeasured);
+HWY_EXPORT(leapfrog);
 
-MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
-                       double speed_limit, bool measure_damping, const AffineStep *affine)
+MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, const LeapfrogStep &how)
 {
-  const auto run =
-      affine ? (measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateAffineMeasured) : HWY_DYNAMIC_DISPATCH(IntegrateAffine))
-             : (measure_damping ? HWY_DYNAMIC_DISPATCH(IntegrateMeasured) : HWY_DYNAMIC_DISPATCH(Integrate));
-  return run(packing, begin, end, action, dt, damping, speed_limit, affine);
-}
-
-MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
-                       bool measure_damping)
-{
-  return integrate(packing, 0, packing.n_grains(), action, dt, damping, speed_limit, measure_damping);
+  return HWY_DYNAMIC_DISPATCH(leapfrog)(packing, begin, end, action, how);
 }
 } // namespace isostat
 #endif

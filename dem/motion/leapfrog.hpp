@@ -24,21 +24,24 @@ struct AffineStep
   alignas(64) double columns[12] = {}; ///< of A - I, four numbers each, the last 0
 };
 
-/// Leapfrog with local (non-viscous) damping for all grains, and the clearing of their forces:
+/// How grains are moved in one step.
+struct LeapfrogStep
+{
+  double dt;                          ///< s
+  double damping;                     ///< d [-], [0, 1)
+  double speed_limit;                 ///< m/s; a grain with a faster velocity component is reported as exploded
+  bool measure_damping = false;       ///< also sum the energy that damping takes, exact: d |F| |v_mid| dt
+  const AffineStep *affine = nullptr; ///< of a periodic cell, whose velocities are fluctuations: damping acts on these
+                                      ///< alone; nullptr in a box
+};
+
+/// Leapfrog with local (non-viscous) damping for the grains [begin, end), and the clearing of their forces:
 ///
 ///     A_i = F_i/m;   A_i <- A_i (1 - d sign[A_i (v_i + dt A_i/2)]);   v <- v + dt A;   x <- x + dt v
 ///
 /// component by component, the same for torque and spin (docs/theory.md; damping acts on absolute velocity).
-/// @param action  [F 0 T 0] per grain, N and N m; zero afterwards      @param dt  s      @param damping  d [-], [0, 1)
-/// @param speed_limit  m/s; a grain with a faster velocity component is reported as exploded
-/// @param measure_damping  also sum the energy that damping takes, exact for this scheme: d |F| |v_mid| dt
-/// @param affine  of a periodic cell, whose velocities are fluctuations: damping acts on these alone; nullptr in a box
+/// @param action  [F 0 T 0] per grain, N and N m; zero afterwards
 /// cost: 2 x 15 vector operations and 260 bytes of traffic per grain
 /// tested: tests/dem/motion/leapfrog_test.cpp
-MotionReport integrate(Packing &packing, double *action, double dt, double damping, double speed_limit,
-                       bool measure_damping);
-
-/// The same for grains [begin, end).
-MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, double dt, double damping,
-                       double speed_limit, bool measure_damping, const AffineStep *affine = nullptr);
+MotionReport integrate(Packing &packing, std::size_t begin, std::size_t end, double *action, const LeapfrogStep &how);
 } // namespace isostat

@@ -108,7 +108,7 @@ void check(const GradingSpec &spec)
 }
 
 /// Centres of spheres in the cube 0 ... edge, in the order of `radii` (decreasing).
-std::vector<Vec3> placed_at_random(const std::vector<double> &radii, const GradingSpec &spec, std::uint64_t &attempts)
+std::vector<Vec3> placed_at_random(const std::vector<double> &radii, const GradingSpec &spec)
 {
   PlacedSpheres placed(spec.cloud_edge, radii.size());
   for (std::size_t grain = 0; grain < radii.size(); ++grain)
@@ -129,7 +129,6 @@ std::vector<Vec3> placed_at_random(const std::vector<double> &radii, const Gradi
             centre[k] = std::min(radius + u[k] * (upper - radius), upper);
         }
       while (placed.overlaps(centre, radius));
-      attempts += attempt;
       placed.add(centre, radius);
     }
   return placed.all_centres();
@@ -152,7 +151,7 @@ Cloud make_cloud(const GradingSpec &spec)
                                  "than cloud_edge = {:g} m. Take more grains or a lower solid_fraction.",
                                  spec.grains, spec.solid_fraction, 2 * radii.front(), spec.cloud_edge));
 
-  const std::vector<Vec3> centres = placed_at_random(radii, spec, cloud.attempts);
+  const std::vector<Vec3> centres = placed_at_random(radii, spec);
   const std::vector<std::uint32_t> order = morton_order(centres);
   std::vector<Vec3> stored_centres(order.size());
   std::vector<double> stored_radii(order.size());

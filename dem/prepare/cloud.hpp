@@ -9,10 +9,9 @@ namespace isostat
 /// A loose random packing without contacts, and the box around it: where every prepared specimen starts.
 struct Cloud
 {
-  Packing packing;            ///< at rest; stored along a Morton curve, `id` counts from the largest grain (0) down
-  RigidBox box;               ///< 0 ... cloud_edge on each axis
-  double upscaling = 1;       ///< diameter in the cloud / diameter of the grading [-]
-  std::uint64_t attempts = 0; ///< positions tried, all grains together
+  Packing packing;      ///< at rest; stored along a Morton curve, `id` counts from the largest grain (0) down
+  RigidBox box;         ///< 0 ... cloud_edge on each axis
+  double upscaling = 1; ///< diameter in the cloud / diameter of the grading [-]
 };
 
 /// Random cloud of spheres that follow the grading, in a cube.

@@ -7,21 +7,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace isostat
 {
 namespace
 {
-struct BuiltInCurve
+/// As measured: they need not reach 0 and 100 %.
+const std::map<std::string, GradingCurve> &built_in_curves()
 {
-  std::string name;
-  GradingCurve curve; // as measured: need not reach 0 and 100 %
-};
-
-const std::vector<BuiltInCurve> &built_in_curves()
-{
-  static const std::vector<BuiltInCurve> curves = {
+  static const std::map<std::string, GradingCurve> curves = {
       {"karlsruhe-fine-sand",
        {{0.0631e-3, 0.0795e-3, 0.1002e-3, 0.1249e-3, 0.1581e-3, 0.2441e-3, 0.3135e-3},
         {1.53, 4.83, 11.96, 28.24, 84.99, 99.75, 100}}}};
@@ -30,13 +26,12 @@ const std::vector<BuiltInCurve> &built_in_curves()
 
 GradingCurve curve_by_name(const std::string &name)
 {
+  const auto &curves = built_in_curves();
+  if (const auto found = curves.find(name); found != curves.end())
+    return found->second;
   std::string known;
-  for (const BuiltInCurve &c : built_in_curves())
-    {
-      if (c.name == name)
-        return c.curve;
-      known += (known.empty() ? "\"" : ", \"") + c.name + "\"";
-    }
+  for (const auto &[other, curve] : curves)
+    known += (known.empty() ? "\"" : ", \"") + other + "\"";
   throw InputError(fmt::format("grading.curve = \"{}\"; known curves are {}. Take one of them or give "
                                "grading.table = [[diameter, percent finer], ...].",
                                name, known));
@@ -72,11 +67,6 @@ GradingCurve checked_table(const std::vector<std::pair<double, double>> &table)
       curve.percent_finer.push_back(percent);
     }
   return curve;
-}
-
-GradingCurve given_curve(const GradingSpec &spec)
-{
-  return spec.table.empty() ? curve_by_name(spec.curve) : checked_table(spec.table);
 }
 
 /// Diameter (m) at `percent` in segment k: log-linear, and exact at both ends.
@@ -139,26 +129,8 @@ double inverse_cube(double d) { return 1.0 / (d * d * d); }
 
 GradingCurve grading_curve(const GradingSpec &spec)
 {
-  const GradingCurve given = given_curve(spec);
+  const GradingCurve given = spec.table.empty() ? curve_by_name(spec.curve) : checked_table(spec.table);
   return cut_and_rescaled(given, effective_cut(spec, given));
-}
-
-GradingReport grading_report(const GradingSpec &spec)
-{
-  const GradingCurve given = given_curve(spec);
-  const Cut cut = effective_cut(spec, given);
-  GradingReport report;
-  report.name = spec.table.empty() ? spec.curve : "table";
-  report.curve = cut_and_rescaled(given, cut);
-  report.d50 = d_at(report.curve, 50);
-  report.uniformity = uniformity_coefficient(report.curve);
-  report.min_diameter = report.curve.diameter.front();
-  report.max_diameter = report.curve.diameter.back();
-  report.finest_percent = cut.fine;
-  report.coarsest_percent = cut.coarse;
-  report.unresolved_fine = given.percent_finer.front();
-  report.unresolved_coarse = 100 - given.percent_finer.back();
-  return report;
 }
 
 double d_at(const GradingCurve &curve, double percent)
@@ -169,18 +141,6 @@ double d_at(const GradingCurve &curve, double percent)
   const auto &p = curve.percent_finer;
   const std::size_t next = std::lower_bound(p.begin() + 1, p.end() - 1, percent) - p.begin();
   return interpolated_diameter(curve, next - 1, percent);
-}
-
-double percent_finer(const GradingCurve &curve, double diameter)
-{
-  const auto &d = curve.diameter;
-  if (diameter <= d.front())
-    return 0;
-  if (diameter >= d.back())
-    return 100;
-  const std::size_t next = std::upper_bound(d.begin(), d.end(), diameter) - d.begin();
-  const double p0 = curve.percent_finer[next - 1], p1 = curve.percent_finer[next];
-  return p0 + (p1 - p0) * std::log(diameter / d[next - 1]) / std::log(d[next] / d[next - 1]);
 }
 
 double uniformity_coefficient(const GradingCurve &curve) { return d_at(curve, 60) / d_at(curve, 10); }

@@ -2,7 +2,6 @@
 #pragma once
 #include "dem/scene/scene.hpp"
 
-#include <string>
 #include <vector>
 
 namespace isostat
@@ -23,19 +22,6 @@ struct GradingCurve
   std::vector<double> percent_finer; ///< % by mass
 };
 
-/// The grading a specimen is made from and what was left out on the way: what a run prints and stores.
-struct GradingReport
-{
-  std::string name;                                  ///< built-in curve, or "table"
-  GradingCurve curve;                                ///< cut and rescaled to 0 ... 100 %
-  double d50 = 0;                                    ///< median diameter by mass, m
-  double uniformity = 0;                             ///< Cu = d60/d10 [-]
-  double min_diameter = 0, max_diameter = 0;         ///< m
-  double finest_percent = 0, coarsest_percent = 100; ///< the given curve was kept between these, % by mass
-  double unresolved_fine = 0;   ///< % by mass that the given points leave below their first diameter; always left out
-  double unresolved_coarse = 0; ///< % by mass that they leave above their last diameter; always left out
-};
-
 /// The curve a scene asks for: built-in or table, cut to [finest_percent, coarsest_percent] and rescaled to 0 ... 100
 /// %. Mass below the first given point has no size (Karlsruhe fine sand: 1.53 % below 0.0631 mm): it is left out as if
 /// finest_percent stood there; likewise above a last point under 100 %. `table` goes before `curve`.
@@ -45,15 +31,9 @@ struct GradingReport
 /// tested: tests/dem/prepare/grading_test.cpp
 GradingCurve grading_curve(const GradingSpec &spec);
 
-/// The same with its characteristic numbers and the list of what was cut.   @throws InputError as grading_curve
-GradingReport grading_report(const GradingSpec &spec);
-
 /// Diameter d_p that `percent` by mass are finer than, m; the finest such diameter where the curve is level.
 /// @param percent  in [0, 100]   @throws InputError outside
 double d_at(const GradingCurve &curve, double percent);
-
-/// Percent by mass finer than a diameter (m): the inverse of d_at; 0 below and 100 above the curve.
-double percent_finer(const GradingCurve &curve, double diameter);
 
 /// Coefficient of uniformity Cu = d60/d10 [-]   (ISO 14688-2)
 double uniformity_coefficient(const GradingCurve &curve);

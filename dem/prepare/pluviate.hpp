@@ -30,7 +30,7 @@ struct Deposit
   double resting_overlap = 0;   ///< largest at the end, over d50 [-]
 };
 
-/// Deposits the cloud under gravity along -y into its own square box with frictionless walls (the paper's e_max).
+/// Deposits the cloud under gravity along -y into its own square box with frictionless walls: e_max of the sand.
 ///
 /// The cloud is stretched upwards `fall` times, so that grains rain down rather than settle as a block, and falls from
 /// rest. It ends when the kinetic energy is below 1e-5 of what lifting every grain by d50 would take. Two void ratios

@@ -14,10 +14,11 @@ enum class RandomStream : std::uint64_t
 };
 
 /// Four numbers uniform in [0, 1), multiples of 2^-53, from the counter-based generator Philox 4x64, 10 rounds.
-/// Salmon, Moraes, Dror and Shaw (2011), "Parallel random numbers: as easy as 1, 2, 3", Proc. SC11.
+/// Salmon, Moraes, Dror and Shaw (2011), "Parallel random numbers: as easy as 1, 2, 3", doi:10.1145/2063384.2063405.
 /// A pure function: no state, so the numbers depend neither on threads nor on the order of the calls.
-/// @param seed  realisation   @param stream  user of the numbers   @param counter, sub_counter  which draw of the
-/// stream tested: tests/dem/prepare/cloud_test.cpp (known answer, mean and variance, independence of the arguments)
+/// @param seed  realisation   @param stream  user of the numbers
+/// @param counter, sub_counter  which draw of the stream
+/// tested: tests/dem/prepare/cloud_test.cpp (known answer, mean and variance, independence of the arguments)
 inline std::array<double, 4> uniform(std::uint64_t seed, RandomStream stream, std::uint64_t counter,
                                      std::uint64_t sub_counter = 0)
 {

@@ -4,7 +4,7 @@
 
 namespace isostat
 {
-/// D_r = (e_max - e)/(e_max - e_min)      (paper, Eq. 1)
+/// D_r = (e_max - e)/(e_max - e_min)      (docs/theory.md, section 1)
 inline double relative_density(double void_ratio, double e_min, double e_max)
 {
   return (e_max - void_ratio) / (e_max - e_min);
@@ -24,7 +24,7 @@ struct PreparedDensity
 };
 
 /// Finds the preparation friction whose isotropic compression ends at a void ratio, within tolerance: bracketed root
-/// search (TOMS 748) on e(tan phi) between 0 and 60 degrees, each evaluation a full compression of the same cloud. With
+/// search (TOMS 748, doi:10.1145/210089.210111) on e(tan phi) between 0 and 60 degrees, each evaluation a full compression of the same cloud. With
 /// few grains e(tan phi) is noisy; where the bracket closes on a jump, frictions around it are tried in steps of 0.1
 /// degree.
 /// @param target, tolerance  void ratios [-]

@@ -35,11 +35,11 @@ void describe(const Scene &scene, Specimen &specimen)
   auto &numbers = specimen.numbers;
   numbers["void_ratio"] = e;
   numbers["relative_density"] = relative_density(e, scene.specimen.e_min, scene.specimen.e_max);
-  numbers["pressure_Pa"] = m.p_wall;
+  numbers["pressure_Pa"] = m.wall.p;
   numbers["grains"] = static_cast<double>(state.grains.n_grains());
-  numbers["coordination"] = m.coordination;
-  numbers["coordination_mechanical"] = m.coordination_mechanical;
-  numbers["redundancy_index"] = m.redundancy;
+  numbers["coordination"] = m.network.coordination_number();
+  numbers["coordination_mechanical"] = m.network.mechanical_coordination_number();
+  numbers["redundancy_index"] = m.network.redundancy_index();
   numbers["unbalanced_force"] = m.unbalanced;
   numbers["d50_m"] = state.grains.d50();
   if (state.cell)
@@ -91,9 +91,9 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
   const SpecimenSpec &spec = scene.specimen;
   const Preparation how{spec, observer, threads};
   const Cloud cloud = make_cloud(scene.grading);
-  const GradingReport grading = grading_report(scene.grading);
   observer.event(fmt::format("cloud: {} grains, d50 {:.3f} mm (scaled up {:.2f} times), Cu {:.2f}, sizes 1:{:.2f}",
-                             cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling, grading.uniformity,
+                             cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
+                             uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
   PreparedDensity prepared;
   Specimen specimen;

@@ -59,7 +59,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
     : settings_(settings), assembly_(periodic(specimen), {.damping = settings.motion.damping})
 {
   settings_.check();
-  drive_.pace.rate = RateControl(settings_.motion, std::nullopt).initial_rate();
+  drive_.pace.rate = initial_rate(settings_.motion);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
@@ -91,7 +91,7 @@ double Rve::saturated_density(double water) const
 void Rve::review()
 {
   if (drive_.steps % rate_interval == 0)
-    RateControl(settings_.motion, std::nullopt).update(assembly_, mean_stress(), drive_.p0, drive_.pace);
+    update_rate(settings_.motion, {}, assembly_, mean_stress(), drive_.p0, drive_.pace);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
 }
 

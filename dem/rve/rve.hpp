@@ -68,12 +68,7 @@ struct RveDrive
   double p0 = 0;           ///< mean effective stress it was made with, Pa
   std::uint64_t steps = 0; ///< time steps since then: what the intervals of control and servo count from
 
-  template <class Self, class F>
-  static void for_each(Self &self, F &&f)
-  {
-    auto &[pace_, servo_, p0_, steps_] = self;
-    f("pace", pace_), f("servo", servo_), f("p0", p0_), f("steps", steps_);
-  }
+  ISOSTAT_FIELDS(pace, servo, p0, steps)
 };
 
 /// The complete state of an element. Of the size of 15 numbers a grain and 13 a contact.
@@ -81,6 +76,8 @@ struct RveState
 {
   AssemblyState grains;
   RveDrive drive;
+
+  ISOSTAT_FIELDS(grains, drive)
   std::size_t bytes() const { return grains.bytes() + sizeof(RveDrive); }
 };
 

@@ -60,15 +60,6 @@ void fixed_part(Visitor &archive, Law &law, Grains &grains)
   archive(grains.density), archive(grains.id);
   archive(grains.position), archive(grains.velocity), archive(grains.spin);
 }
-
-template <typename Visitor, typename State>
-void moving_part(Visitor &archive, State &state)
-{
-  auto &g = state.grains;
-  archive(g.grains), archive(g.pairs), archive(g.history), archive(g.virial);
-  PeriodicCell::for_each(g.cell, [&](const char *, auto &field) { archive(field); });
-  archive(g.time), archive(g.time_step), archive(g.step);
-}
 } // namespace
 
 std::vector<std::byte> Rve::pack() const
@@ -82,8 +73,7 @@ std::vector<std::byte> Rve::pack() const
   if (version == named_law)
     body(std::vector<char>(name.begin(), name.end()));
   fixed_part(body, law, assembly_.packing());
-  moving_part(body, state);
-  for_each_leaf(state.drive, body);
+  for_each_leaf(state, body);
   body(cost_);
   const std::vector<std::byte> content = bytes.take();
   ByteWriter packed;
@@ -113,8 +103,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
       start.law = law_named({name.data(), name.size()});
     }
   fixed_part(body, start.law, start.grains);
-  moving_part(body, state);
-  for_each_leaf(state.drive, body);
+  for_each_leaf(state, body);
   body(cost);
   start.cell = state.grains.cell;
   Rve rve(start, settings);

@@ -12,45 +12,37 @@ namespace
 double cube(double r) { return r * r * r; }
 } // namespace
 
+std::vector<double> Packing::radii() const
+{
+  std::vector<double> radii(n_grains());
+  for (std::size_t i = 0; i < n_grains(); ++i)
+    radii[i] = radius(i);
+  return radii;
+}
+
 double Packing::solid_volume() const
 {
   double sum = 0;
-  for (std::size_t i = 0; i < n_grains(); ++i)
-    sum += cube(radius(i));
+  for (const double r : radii())
+    sum += cube(r);
   return 4.0 / 3.0 * std::numbers::pi * sum;
 }
 
-double Packing::min_radius() const
-{
-  double r = radius(0);
-  for (std::size_t i = 1; i < n_grains(); ++i)
-    r = std::min(r, radius(i));
-  return r;
-}
+double Packing::min_radius() const { return std::ranges::min(radii()); }
 
-double Packing::max_radius() const
-{
-  double r = 0;
-  for (std::size_t i = 0; i < n_grains(); ++i)
-    r = std::max(r, radius(i));
-  return r;
-}
+double Packing::max_radius() const { return std::ranges::max(radii()); }
 
 double Packing::d50() const
 {
-  std::vector<double> radii(n_grains());
-  double total = 0;
-  for (std::size_t i = 0; i < n_grains(); ++i)
-    {
-      radii[i] = radius(i);
-      total += cube(radii[i]);
-    }
-  std::sort(radii.begin(), radii.end());
-  double finer = 0;
-  for (double r : radii)
+  std::vector<double> sorted = radii();
+  double total = 0, finer = 0;
+  for (const double r : sorted)
+    total += cube(r);
+  std::sort(sorted.begin(), sorted.end());
+  for (const double r : sorted)
     if ((finer += cube(r)) >= 0.5 * total)
       return 2 * r;
-  return 2 * radii.back();
+  return 2 * sorted.back();
 }
 
 Packing make_packing(const std::vector<Vec3> &centres, const std::vector<double> &radii, double density)

@@ -37,7 +37,8 @@ struct Packing
 
   /// Volume of all grains, m3.
   double solid_volume() const;
-  double min_radius() const;
+  std::vector<double> radii() const;
+  double min_radius() const; ///< @pre at least one grain
   double max_radius() const;
   /// Median diameter by volume, m: half of the solid volume lies in grains that are not larger.
   double d50() const;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Real packings in a periodic cell under large strain: volume, symmetry of stress, flips of the cell, energy.
-#include "dem/drive/strain_path.hpp"
 #include "dem/measure/stress.hpp"
 #include "tests/support/cells.hpp"
 #include "tests/support/near.hpp"

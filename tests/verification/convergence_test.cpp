@@ -4,7 +4,6 @@
 // and a step old, as leapfrog wants them: with v(0) in the place of v(-dt/2) every order would be 1.
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
-#include "dem/drive/strain_path.hpp"
 #include "dem/io/text_tables.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
@@ -288,7 +287,7 @@ TEST(Convergence, RotationOfHistoryIsOfFirstOrder)
 /// The stored packing of 1,000 grains at 200 kPa, grains at rest at t = 0.
 Snapshot packing_at_rest(const LinearRolling &law)
 {
-  Snapshot s = import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", "comp", "step0", law, 2650);
+  Snapshot s = import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", law, 2650);
   set_velocities(s.grains, s.grains, -1, s.grains);
   return s;
 }
@@ -327,9 +326,9 @@ void compare_ends(const Snapshot &start, const Snapshot &end, PackingSeries &ser
 PackingSeries sheared_packing(const std::string &title, const Snapshot &s, double strain, double damping)
 {
   const double duration = 8e-6;
-  const StrainPath path{s.box};
+  const RigidBox reference = s.box;
   const auto box = [&](double t) {
-    return path.box(isochoric(strain * std::pow(std::sin(0.5 * M_PI * t / duration), 2)));
+    return reference.strained(isochoric(strain * std::pow(std::sin(0.5 * M_PI * t / duration), 2)));
   };
   std::vector<Assembly> runs;
   for (int n_steps = 200; n_steps <= 3200; n_steps *= 2)

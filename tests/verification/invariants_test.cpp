@@ -66,8 +66,7 @@ Momentum momentum(const Packing &grains)
 
 Snapshot reference_packing(const std::string &name)
 {
-  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, "comp", "step0", test::paper_law(),
-                            2650);
+  return import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/" + name, test::paper_law(), 2650);
 }
 
 /// The stored packing at rest with its forces.

@@ -51,7 +51,7 @@ private:
   {
     LinearRolling law;
     law.friction = std::tan(18 * M_PI / 180);
-    return import_yade_tables(folder_of(packing), "comp", "step0", law, 2650);
+    return import_tables(folder_of(packing), law, 2650);
   }
   Assembly assembly_;
 };

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parameters as keys of a scene; all else that knows them by name follows from this table.
+#include "base/scene/ranges.hpp"
 #include "dem/contact/law_parameters.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
-
-#include <limits>
 
 namespace isostat
 {
 namespace
 {
-constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
+using ranges::positive;
 
 // clang-format off
 constexpr Key keys_of_law[] = {
@@ -21,8 +20,8 @@ constexpr Key keys_of_law[] = {
    .text = "Tangential over normal stiffness, ks/kn.",
    .field = law_field<&LinearRolling::stiffness_ratio>},
   {.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
-   .presence = Presence::experiment, .value = "18 deg", .range = {0, 90, false, true},
-   .reason = "because tan() is used",
+   .presence = Presence::experiment, .value = "18 deg", .range = ranges::right_angle,
+   .reason = ranges::because_tan,
    .text = "Angle of friction between grains while the specimen is tested; left out or 0 deg: frictionless, and "
            "then without rolling and twisting resistance too. Walls are always frictionless.",
    .field = law_field<&LinearRolling::friction>},

@@ -47,8 +47,10 @@ ContactStiffness LinearRolling::stiffness(double r1, double r2, double) const
 
 YieldState LinearRolling::yield(const ClosedContact &c) const
 {
-  return {is_sliding(c.history.shear_force.norm(), c.normal_force, *this),
-          is_rolling(c.history.bending_moment.norm(), c.normal_force, rolling_length(c.r1, c.r2), *this)};
+  const LawFeatures on = active();
+  const double bending_limit = rolling_length(c.r1, c.r2);
+  return {on.friction && c.history.shear_force.norm() >= yield_margin * friction * c.normal_force,
+          on.rolling && c.history.bending_moment.norm() >= yield_margin * bending_limit * c.normal_force};
 }
 
 ContactEnergy LinearRolling::energy(const ClosedContact &c) const
@@ -122,15 +124,5 @@ ContactForce contact_force(const LinearRolling &law, const ContactPair &p, doubl
   result.torque1 = arm1.cross(-result.force) - moment;
   result.torque2 = arm2.cross(result.force) + moment;
   return result;
-}
-
-bool is_sliding(double shear_force, double normal_force, const LinearRolling &law)
-{
-  return law.active().friction && shear_force >= yield_margin * law.friction * normal_force;
-}
-
-bool is_rolling(double bending_moment, double normal_force, double rolling_length, const LinearRolling &law)
-{
-  return law.active().rolling && bending_moment >= yield_margin * rolling_length * normal_force;
 }
 } // namespace isostat

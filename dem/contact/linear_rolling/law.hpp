@@ -69,6 +69,7 @@ struct LinearRolling final : ContactLaw
   void add_forces(const LoopView &view) const override;
   double normal_force(double r1, double r2, double overlap) const override;
   ContactStiffness stiffness(double r1, double r2, double overlap = 0) const override;
+  /// Slides at |fs| >= (1 - 1e-9) mu fn, rolls at |mb| >= (1 - 1e-9) rho_r fn after the return; false where off.
   YieldState yield(const ClosedContact &contact) const override;
   ContactEnergy energy(const ClosedContact &contact) const override;
   WallResponse wall(double radius, double overlap) const override;
@@ -82,9 +83,4 @@ HistoryLayout history_of(LawFeatures on);
 /// same over lanes. Incremental, without granular ratcheting.
 /// @param dt  time step, s     @param history  of the step before; overwritten with that of this step
 ContactForce contact_force(const LinearRolling &law, const ContactPair &pair, double dt, ContactHistory &history);
-
-/// |fs| >= (1 - 1e-9) mu fn after the return: the contact slides.
-bool is_sliding(double shear_force, double normal_force, const LinearRolling &law);
-/// |mb| >= (1 - 1e-9) rho_r fn after the return: the contact rolls. False where rolling is off.
-bool is_rolling(double bending_moment, double normal_force, double rolling_length, const LinearRolling &law);
 } // namespace isostat

@@ -12,7 +12,7 @@ namespace isostat
 {
 namespace HWY_NAMESPACE
 {
-void AddLinearRolling(const LinearRolling &law, const LoopView &view)
+void add_linear_rolling(const LinearRolling &law, const LoopView &view)
 {
   const LawFeatures on = law.active();
   const LinearRollingNumbers numbers(law, view.dt);
@@ -34,8 +34,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isostat
 {
-HWY_EXPORT(AddLinearRolling);
+HWY_EXPORT(add_linear_rolling);
 
-void LinearRolling::add_forces(const LoopView &view) const { HWY_DYNAMIC_DISPATCH(AddLinearRolling)(*this, view); }
+void LinearRolling::add_forces(const LoopView &view) const { HWY_DYNAMIC_DISPATCH(add_linear_rolling)(*this, view); }
 } // namespace isostat
 #endif

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "base/scene/fragment.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/drive/drive_state.hpp"
 #include "dem/drive/motion_spec.hpp"
-#include "dem/drive/observation.hpp"
+
+#include <string>
 
 namespace isostat
 {
+/// What a driver sees of the specimen between force evaluation and motion. Soil convention, compression positive.
+struct Observation
+{
+  double p, q;  ///< of the walls or of the cell, Pa
+  double axial; ///< logarithmic strain since the start of shearing [-]
+  std::uint64_t step;
+  double tau = 0, gamma = 0; ///< sigma_xy (Pa) and shear strain gamma_xy since then [-], positive together; cell only
+};
+
+/// What came of an observation.
+struct Verdict
+{
+  bool finished = false;
+  bool notable = false;   ///< record a row and, if requested, a snapshot
+  std::string event = {}; ///< one line for the log; empty: nothing happened
+};
+
 /// The pressure that a specimen is prepared at, and how fast the servo may go there.
 struct ServoSpec
 {
@@ -24,16 +41,19 @@ struct StageContext
   const ServoSpec &servo;
   Assembly &assembly;
   DriveState &state;
+
+  /// A box of these edges about the centre of the one that the stage began with.
+  RigidBox box_of(const Vec3 &edges) const { return RigidBox::about(state.path.reference.centre(), edges); }
 };
 
-/// One stage of a programme, as the run loop (dem/drive/programme.hpp) sees it. A kind of stage is a class of its own
-/// in a file of its own: its settings, its keys in a scene, and what it does when it is asked. The kinds are listed in
-/// dem/drive/stages/stages.hpp.
+/// One stage of a programme, as the run loop (dem/drive/programme.hpp) sees it. A kind of stage is a class: its settings,
+/// and what it does when it is asked. The kinds are listed in dem/drive/stages/stages.hpp, their keys in stages.cpp.
 ///
 ///     begin -> { begin_shear (first step) -> judge -> next_box or next_gradient }  each step, until the verdict is finished
 ///
 /// The defaults are those of a specimen that is left alone. Nothing here may change the trajectory but through the box
 /// or gradient that is returned, the state, and begin().
+/// tested: tests/verification/programme_test.cpp
 class StageBehaviour
 {
 public:
@@ -82,19 +102,5 @@ public:
 protected:
   /// Whether the stage has come to its end by itself.
   virtual Verdict reached(const StageContext &, const Observation &) const = 0;
-  static Key max_steps_key();
 };
-
-/// Access to a setting of a kind, or of a family of kinds, for its scene key: `.field = InStage<&Drained::strain>{}`.
-template <auto setting>
-struct InStage;
-template <class Part, class T, T Part::*setting>
-/// tested: tests/verification/programme_test.cpp
-struct InStage<setting>
-{
-  Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }
-};
-
-/// A box of these edges about the centre of the one that the stage began with.
-RigidBox about_centre(const DriveState &state, const Vec3 &edges);
 } // namespace isostat

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/constant_volume.hpp"
 
-#include "base/scene/ranges.hpp"
-#include "dem/drive/strain_path.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -13,7 +10,7 @@ namespace isostat
 RigidBox ConstantVolume::next_box(const StageContext &c, const Observation &seen) const
 {
   driven_step(c, seen);
-  return StrainPath{c.state.path.reference}.box(isochoric(c.state.loading.strain));
+  return c.state.path.reference.strained(isochoric(c.state.loading.strain));
 }
 
 Mat3 ConstantVolume::next_gradient(const StageContext &c, const Observation &seen) const
@@ -23,38 +20,19 @@ Mat3 ConstantVolume::next_gradient(const StageContext &c, const Observation &see
 
 Verdict ConstantVolume::reached(const StageContext &c, const Observation &seen) const
 {
+  Verdict verdict = ShearStage::reached(c, seen);
   UndrainedRecord &record = c.state.undrained;
   if (record.liquefaction)
-    return {};
+    return verdict;
   const double now = strain(seen);
   record.max_strain_before = std::max(record.max_strain_before, std::abs(now));
   if (seen.p >= liquefaction_ratio * c.state.path.p0())
-    return {};
+    return verdict;
   record.liquefaction = Liquefaction{seen.step, record.reversals, now};
-  return {.notable = true,
-          .event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {} reversals, {} {:.4g} %",
-                               liquefaction_ratio, seen.step, record.reversals, mode().strain_name, 100 * now)};
-}
-
-Key ConstantVolume::liquefaction_ratio_key()
-{
-  return {.path = "liquefaction_ratio",
-          .value = "0.01",
-          .range = ranges::fraction,
-          .text = "p'/p0' below which the specimen counts as liquefied.",
-          .field = InStage<&ConstantVolume::liquefaction_ratio>{}};
-}
-
-Verdict MonotonicConstantVolume::reached(const StageContext &c, const Observation &seen) const
-{
-  Verdict verdict = ConstantVolume::reached(c, seen);
-  verdict.finished = strained_to(c.state, strain_end);
+  verdict.notable = true;
+  verdict.event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {} reversals, {} {:.4g} %",
+                              liquefaction_ratio, seen.step, record.reversals, mode().strain_name, 100 * now);
   return verdict;
-}
-
-std::vector<Key> MonotonicConstantVolume::keys_with(const Key &strain)
-{
-  return {direction_key(), strain, liquefaction_ratio_key(), strain_rate_key(), max_steps_key()};
 }
 
 Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &seen) const
@@ -94,29 +72,5 @@ std::optional<double> CyclicConstantVolume::fraction_done(const DriveState &stat
     return static_cast<double>(record.reversals - record.liquefaction->reversals) /
            static_cast<double>(reversals_after_liquefaction);
   return static_cast<double>(record.reversals) / (2.0 * static_cast<double>(max_cycles));
-}
-
-std::vector<Key> CyclicConstantVolume::keys_with(const Key &amplitude, const Key &strain)
-{
-  const Key until = {.path = "until",
-                     .kind = Kind::table,
-                     .presence = Presence::optional,
-                     .value = "{ reversals_after_liquefaction = 10 }",
-                     .text = "When the stage ends: at whichever of its conditions comes first.",
-                     .field = [](StageBehaviour &) -> Field { return {}; }};
-  const Key cycles = {.path = "until.cycles",
-                      .kind = Kind::integer,
-                      .value = "200",
-                      .range = {1, 1e9},
-                      .text = "After so many cycles.",
-                      .field = InStage<&CyclicConstantVolume::max_cycles>{}};
-  const Key reversals = {.path = "until.reversals_after_liquefaction",
-                         .kind = Kind::integer,
-                         .value = "10",
-                         .text =
-                             "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`.",
-                         .field = InStage<&CyclicConstantVolume::reversals_after_liquefaction>{}};
-  return {direction_key(), amplitude, liquefaction_ratio_key(), until,          cycles,
-          reversals,       strain,    strain_rate_key(),        max_steps_key()};
 }
 } // namespace isostat

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Undrained tests. Those in simple shear are tested in tests/verification/cell_programme_test.cpp.
 #pragma once
 #include "dem/drive/stages/shear.hpp"
 
@@ -20,24 +21,21 @@ public:
 protected:
   /// Notes initial liquefaction.
   Verdict reached(const StageContext &c, const Observation &seen) const override;
-  static Key liquefaction_ratio_key();
 };
 
-/// ... in one direction to a strain.
-class MonotonicConstantVolume : public ConstantVolume
+/// Axial strain to an end.
+class UndrainedMonotonic : public ConstantVolume
 {
 public:
-  double strain_end = 0; ///< driven, its amount [-]
+  const char *kind() const override { return "undrained-monotonic"; }
+};
 
-  bool operator==(const MonotonicConstantVolume &) const = default;
-  std::optional<double> fraction_done(const DriveState &state) const final
-  {
-    return strained_fraction(state, strain_end);
-  }
-
-protected:
-  Verdict reached(const StageContext &c, const Observation &seen) const final;
-  static std::vector<Key> keys_with(const Key &strain);
+/// Shear strain gamma_xy to an end; in a periodic cell only.
+class UndrainedSimpleShear : public ConstantVolume
+{
+public:
+  const char *kind() const override { return "undrained-simple-shear"; }
+  const ShearMode &mode() const override { return simple_shear_mode; }
 };
 
 /// ... between two equal and opposite loads. The direction turns when |load| reaches the limit of the kind; because the
@@ -62,10 +60,41 @@ public:
 
 protected:
   Verdict reached(const StageContext &c, const Observation &seen) const final;
-  /// @param amplitude, strain  keys of the kind: of its amplitude, and "until.strain"
-  static std::vector<Key> keys_with(const Key &amplitude, const Key &strain);
 
 private:
   void turn(const Observation &seen, DriveState &state, Verdict &verdict) const;
+};
+
+/// Axial loading between +-q_amp.
+class UndrainedCyclic : public CyclicConstantVolume
+{
+public:
+  double deviator_amplitude = 60e3; ///< q_amp, Pa
+
+  bool operator==(const UndrainedCyclic &) const = default;
+  const char *kind() const override { return "undrained-cyclic"; }
+  const char *stress_ratio_text() const override { return "q_amp / (2 p0')"; }
+  void set_stress_ratio(double ratio, double p0) override { deviator_amplitude = 2 * ratio * p0; }
+  void forget_stress_ratio() override { deviator_amplitude = UndrainedCyclic{}.deviator_amplitude; }
+
+protected:
+  double load_limit(const DriveState &) const override { return deviator_amplitude; }
+};
+
+/// Simple shear between +-CSR sigma'_v0, sigma'_v0 the vertical stress when the stage begins; in a periodic cell only.
+class UndrainedCyclicSimpleShear : public CyclicConstantVolume
+{
+public:
+  double stress_ratio = 0.15; ///< CSR = tau_amp / sigma'_v0 [-]
+
+  bool operator==(const UndrainedCyclicSimpleShear &) const = default;
+  const char *kind() const override { return "undrained-cyclic-simple-shear"; }
+  const ShearMode &mode() const override { return simple_shear_mode; }
+  const char *stress_ratio_text() const override { return "tau_amp / sigma'_v0"; }
+  void set_stress_ratio(double ratio, double) override { stress_ratio = ratio; }
+  void forget_stress_ratio() override { stress_ratio = UndrainedCyclicSimpleShear{}.stress_ratio; }
+
+protected:
+  double load_limit(const DriveState &state) const override { return stress_ratio * state.path.lateral_target[1]; }
 };
 } // namespace isostat

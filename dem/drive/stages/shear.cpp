@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/shear.hpp"
 
-#include "base/scene/ranges.hpp"
 #include "dem/drive/rate_control.hpp"
-#include "dem/drive/strain_path.hpp"
+#include "dem/drive/servo.hpp"
 #include "dem/measure/stress.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isostat
@@ -13,7 +13,7 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t rate_interval = 50;
-constexpr const char *direction_choices[] = {"compression", "extension"};
+constexpr double servo_rate_factor = 4; ///< the sides may move so much faster than the top
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -47,7 +47,7 @@ const ShearMode simple_shear_mode{
 void ShearStage::begin(const StageContext &c) const
 {
   c.state.loading.direction = direction;
-  c.state.pace.rate = RateControl(c.motion, strain_rate).initial_rate();
+  c.state.pace.rate = initial_rate(c.motion, strain_rate);
 }
 
 void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
@@ -68,7 +68,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
 {
   DriveState &state = c.state;
   if (state.place.steps % rate_interval == 0)
-    RateControl(c.motion, strain_rate).update(c.assembly, seen.p, state.path.p0(), state.pace);
+    update_rate(c.motion, strain_rate, c.assembly, seen.p, state.path.p0(), state.pace);
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step;
   update_slope(loading, present, state.place.steps);
@@ -78,58 +78,39 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
   return loading.signed_rate * dt;
 }
 
-Key ShearStage::direction_key()
+std::optional<double> ShearStage::fraction_done(const DriveState &state) const
 {
-  return {.path = "direction",
-          .kind = Kind::choice,
-          .value = "compression",
-          .choices = direction_choices,
-          .text =
-              "First direction of axial loading; in simple shear compression is towards positive gamma_xy, extension "
-              "towards negative.",
-          .field = InStage<&ShearStage::direction>{}};
+  return strain_end > 0 ? std::optional(std::abs(state.loading.strain) / strain_end) : std::nullopt;
 }
 
-Key ShearStage::strain_rate_key()
+Verdict ShearStage::reached(const StageContext &c, const Observation &) const
 {
-  return {.path = "strain_rate",
-          .kind = Kind::quantity,
-          .dimension = Dimension::rate,
-          .unit = "1/s",
-          .presence = Presence::optional,
-          .value = "0.5 1/s",
-          .range = ranges::positive,
-          .text = "Fixed axial strain rate of this stage, in simple shear that of gamma_xy, instead of what `[motion]` "
-                  "says.",
-          .field = InStage<&ShearStage::strain_rate>{}};
+  return {.finished = std::abs(c.state.loading.strain) >= strain_end};
 }
 
-bool strained_to(const DriveState &state, double end) { return std::abs(state.loading.strain) >= end; }
-
-std::optional<double> strained_fraction(const DriveState &state, double end)
+RigidBox ServoedShear::next_box(const StageContext &c, const Observation &seen) const
 {
-  return end > 0 ? std::optional(std::abs(state.loading.strain) / end) : std::nullopt;
+  driven_step(c, seen);
+  const double cap = servo_rate_factor * c.state.pace.rate;
+  Vec3 edges = servo_edges(c.assembly, lateral_stresses(c), {true, false, true}, cap, c.state.servo);
+  edges[1] = c.state.path.reference.edges()[1] * std::exp(-c.state.loading.strain);
+  return c.box_of(edges);
 }
 
-Key axial_strain_key(FieldAccess strain)
+Mat3 ServoedShear::next_gradient(const StageContext &c, const Observation &seen) const
 {
-  return {.path = "strain",
-          .presence = Presence::required,
-          .value = "0.05",
-          .range = ranges::to_one,
-          .reason = "because this is a strain, not percent; the sign comes from direction",
-          .text = "Axial strain (logarithmic, its amount) at which the stage ends.",
-          .field = strain};
+  const double axial = driven_step(c, seen);
+  Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
+  controlled(0, 0) = controlled(2, 2) = true;
+  Mat3 gradient = stress_servo(c.assembly, (-lateral_stresses(c)).asDiagonal(), controlled,
+                               servo_rate_factor * c.state.pace.rate, c.state.place.steps, c.state.servo);
+  gradient(1, 1) = -axial;
+  return gradient;
 }
 
-Key gamma_key(FieldAccess strain)
+Vec3 ConstantP::lateral_stresses(const StageContext &c) const
 {
-  return {.path = "strain",
-          .presence = Presence::required,
-          .value = "0.2",
-          .range = ranges::to_ten,
-          .reason = "because this is a shear strain, not percent: 1 is 100 percent",
-          .text = "Shear strain gamma_xy (its amount) at which the stage ends.",
-          .field = strain};
+  const double minus_axial = c.assembly.stress()(1, 1), p = c.state.path.lateral_target.mean();
+  return Vec3::Constant(std::max(0.0, 0.5 * (3 * p + minus_axial)));
 }
 } // namespace isostat

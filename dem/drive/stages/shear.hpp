@@ -13,19 +13,19 @@ struct ShearMode
   double gamma_factor;                        ///< engineering shear strain over driven strain at constant volume
   bool needs_cell;
   Mat3 (*constant_volume)(double step); ///< displacement gradient of constant volume for a step of driven strain
-
-  bool operator==(const ShearMode &) const = default;
 };
 extern const ShearMode triaxial_mode;     ///< q against axial (y) strain; laterally half of it in extension
 extern const ShearMode simple_shear_mode; ///< tau = sigma_xy against gamma_xy; nothing else moves
 
-/// A stage that drives a strain at the rate of the rate control (dem/drive/rate_control.hpp), with ramps.
+/// A stage that drives a strain at the rate of the rate control (dem/drive/rate_control.hpp), with ramps. It goes one
+/// way to a strain unless it turns.
 /// tested: tests/dem/drive/stages/constant_volume_test.cpp
 class ShearStage : public SteppedStage
 {
 public:
   LoadDirection direction = LoadDirection::compression; ///< of the first loading
   std::optional<double> strain_rate;                    ///< fixed, of the driven strain, 1/s; instead of the motion's
+  double strain_end = 0;                                ///< where it ends, one way: driven in this stage, amount [-]
 
   bool operator==(const ShearStage &) const = default;
   virtual const ShearMode &mode() const { return triaxial_mode; }
@@ -35,22 +35,47 @@ public:
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
   double load(const Observation &seen) const final { return seen.*mode().load; }
   double strain(const Observation &seen) const final { return seen.*mode().strain; }
+  std::optional<double> fraction_done(const DriveState &state) const override;
 
 protected:
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
   /// |load| at which the stage turns, Pa; 0: it does not.
   virtual double load_limit(const DriveState &) const { return 0; }
-
-  static Key direction_key();
-  static Key strain_rate_key();
+  Verdict reached(const StageContext &c, const Observation &) const override;
 };
 
-/// One-way shear to a strain; what the sides do is left to the kind.
-/// @param end  driven strain of this stage, its amount [-]
-bool strained_to(const DriveState &state, double end);
-std::optional<double> strained_fraction(const DriveState &state, double end);
+/// Triaxial shear with lateral stresses that a servo keeps on a target.
+/// tested: tests/verification/programme_test.cpp
+class ServoedShear : public ShearStage
+{
+public:
+  RigidBox next_box(const StageContext &c, const Observation &seen) const final;
+  Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;
 
-Key axial_strain_key(FieldAccess strain); ///< "strain", the end of a stage that drives axial strain
-Key gamma_key(FieldAccess strain);        ///< ... of one that drives gamma_xy
+protected:
+  /// Along x, y, z; that along y is not looked at. Pa, compression positive.
+  virtual Vec3 lateral_stresses(const StageContext &c) const = 0;
+};
+
+/// Lateral stresses are kept at what they are when the stage begins.
+class Drained : public ServoedShear
+{
+public:
+  const char *kind() const override { return "drained"; }
+
+protected:
+  Vec3 lateral_stresses(const StageContext &c) const override { return c.state.path.lateral_target; }
+};
+
+/// The mean stress is kept at what it is when the stage begins: the lateral stresses give way as the axial one rises,
+/// sigma_x = sigma_z = (3 p0 - sigma_y)/2 >= 0.
+class ConstantP : public ServoedShear
+{
+public:
+  const char *kind() const override { return "constant-p"; }
+
+protected:
+  Vec3 lateral_stresses(const StageContext &c) const override;
+};
 } // namespace isostat

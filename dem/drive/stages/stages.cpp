@@ -1,18 +1,118 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/stages.hpp"
 
+#include "base/scene/ranges.hpp"
+
 namespace isostat
 {
 namespace
 {
-template <class>
-struct Kinds;
-template <class... Kind>
-struct Kinds<std::variant<Kind...>>
+/// The bits of the kinds that are of a family, for Key::kinds.
+template <class Family, class... Kinds>
+constexpr unsigned kinds_of(const std::variant<Kinds...> *)
 {
-  static std::vector<const char *> names() { return {Kind{}.kind()...}; }
-  static std::vector<std::vector<Key>> keys() { return {Kind::keys()...}; }
+  unsigned kinds = 0, bit = 1;
+  ((kinds |= std::is_base_of_v<Family, Kinds> ? bit : 0, bit <<= 1), ...);
+  return kinds;
+}
+template <class... Family>
+constexpr unsigned kinds_in = (kinds_of<Family>(static_cast<const Stage *>(nullptr)) | ...);
+
+template <auto setting>
+struct InStage;
+template <class Part, class T, T Part::*setting>
+struct InStage<setting>
+{
+  static constexpr unsigned kinds = kinds_in<Part>;
+  Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }
 };
+
+/// The key of a setting. It belongs to the kinds given, or else to all that inherit the setting.
+template <auto setting, class... Kinds>
+constexpr Key of(Key key)
+{
+  if constexpr (sizeof...(Kinds) > 0)
+    key.kinds = kinds_in<Kinds...>;
+  else
+    key.kinds = InStage<setting>::kinds;
+  key.field = InStage<setting>{};
+  return key;
+}
+
+using Cyclic = CyclicConstantVolume;
+constexpr const char *directions[] = {"compression", "extension"};
+
+// clang-format off
+constexpr Key keys[] = {
+  of<&ServoStage::pressure>(
+    {.path = "pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+     .presence = Presence::optional, .value = "200 kPa", .range = ranges::positive,
+     .text = "Isotropic pressure of the servo; in k0-compress the vertical effective stress; left out: that of the "
+             "specimen."}),
+  of<&BalancedStage::balance>(
+    {.path = "balance", .value = "1e-4", .range = ranges::fraction,
+     .text = "Unbalanced-force ratio at which the stage ends."}),
+  of<&ShearStage::direction>(
+    {.path = "direction", .kind = Kind::choice, .value = "compression", .choices = directions,
+     .text = "First direction of axial loading; in simple shear compression is towards positive gamma_xy, extension "
+             "towards negative."}),
+  of<&ShearStage::strain_end, UndrainedMonotonic, ServoedShear>(
+    {.path = "strain", .presence = Presence::required, .value = "0.05", .range = ranges::to_one,
+     .reason = "because this is a strain, not percent; the sign comes from direction",
+     .text = "Axial strain (logarithmic, its amount) at which the stage ends."}),
+  of<&ShearStage::strain_end, UndrainedSimpleShear>(
+    {.path = "strain", .presence = Presence::required, .value = "0.2", .range = ranges::to_ten,
+     .reason = "because this is a shear strain, not percent: 1 is 100 percent",
+     .text = "Shear strain gamma_xy (its amount) at which the stage ends."}),
+  of<&UndrainedCyclic::deviator_amplitude>(
+    {.path = "deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+     .value = "60 kPa", .range = ranges::positive, .text = "q_amp: loading turns when |q| reaches it."}),
+  of<&UndrainedCyclicSimpleShear::stress_ratio>(
+    {.path = "stress_ratio", .value = "0.15", .range = ranges::to_one,
+     .reason = "because this is a ratio of stresses that friction has to carry",
+     .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns when |tau| "
+             "reaches tau_amp."}),
+  of<&ConstantVolume::liquefaction_ratio>(
+    {.path = "liquefaction_ratio", .value = "0.01", .range = ranges::fraction,
+     .text = "p'/p0' below which the specimen counts as liquefied."}),
+  {.path = "until", .kind = Kind::table, .presence = Presence::optional,
+   .value = "{ reversals_after_liquefaction = 10 }", .kinds = kinds_in<Cyclic>,
+   .text = "When the stage ends: at whichever of its conditions comes first.",
+   .field = [](StageBehaviour &) -> Field { return {}; }},
+  of<&Cyclic::max_cycles>(
+    {.path = "until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9},
+     .text = "After so many cycles."}),
+  of<&Cyclic::reversals_after_liquefaction>(
+    {.path = "until.reversals_after_liquefaction", .kind = Kind::integer, .value = "10",
+     .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`."}),
+  of<&Cyclic::max_strain, UndrainedCyclic>(
+    {.path = "until.strain", .value = "0.15", .range = ranges::to_one,
+     .reason = "because this is a strain, not percent",
+     .text = "When the amount of the axial strain exceeds this."}),
+  of<&Cyclic::max_strain, UndrainedCyclicSimpleShear>(
+    {.path = "until.strain", .value = "0.15", .range = ranges::to_ten,
+     .reason = "because this is a shear strain, not percent: 1 is 100 percent",
+     .text = "When the amount of the shear strain gamma_xy exceeds this."}),
+  of<&ShearStage::strain_rate>(
+    {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+     .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive,
+     .text = "Fixed axial strain rate of this stage, in simple shear that of gamma_xy, instead of what `[motion]` "
+             "says."}),
+  of<&SteppedStage::max_steps>(
+    {.path = "max_steps", .kind = Kind::integer, .value = "0",
+     .text = "Ends the stage after so many time steps; 0: no limit."}),
+  of<&Friction::friction>(
+    {.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+     .presence = Presence::required, .value = "18 deg", .range = ranges::right_angle, .reason = ranges::because_tan,
+     .text = "Angle of friction between grains from here on."}),
+};
+// clang-format on
+
+template <class... Kinds>
+std::vector<const char *> names_of(const std::variant<Kinds...> &)
+{
+  return {Kinds{}.kind()...};
+}
 } // namespace
 
 StageBehaviour &behaviour(Stage &stage)
@@ -20,20 +120,13 @@ StageBehaviour &behaviour(Stage &stage)
   return std::visit([](StageBehaviour &kind) -> StageBehaviour & { return kind; }, stage);
 }
 
-const StageBehaviour &behaviour(const Stage &stage)
-{
-  return std::visit([](const StageBehaviour &kind) -> const StageBehaviour & { return kind; }, stage);
-}
+const StageBehaviour &behaviour(const Stage &stage) { return behaviour(const_cast<Stage &>(stage)); }
 
 std::span<const char *const> stage_kind_names()
 {
-  static const std::vector<const char *> names = Kinds<Stage>::names();
+  static const std::vector<const char *> names = names_of(Stage());
   return names;
 }
 
-SceneFragment<StageBehaviour> stage_keys()
-{
-  static const std::vector<Key> keys = interleave(Kinds<Stage>::keys());
-  return {keys};
-}
+SceneFragment<StageBehaviour> stage_keys() { return {keys}; }
 } // namespace isostat

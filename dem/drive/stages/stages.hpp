@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kinds of stage there are. A new one is a file in this folder and its line in `Stage`.
+// The kinds of stage there are. A new one is a class, its name in `Stage`, and its keys in stages.cpp.
 #pragma once
-#include "dem/drive/stages/compress.hpp"
-#include "dem/drive/stages/constant_p.hpp"
-#include "dem/drive/stages/drained.hpp"
-#include "dem/drive/stages/friction.hpp"
-#include "dem/drive/stages/hold.hpp"
-#include "dem/drive/stages/k0_compress.hpp"
-#include "dem/drive/stages/rebalance.hpp"
-#include "dem/drive/stages/undrained_cyclic.hpp"
-#include "dem/drive/stages/undrained_cyclic_simple_shear.hpp"
-#include "dem/drive/stages/undrained_monotonic.hpp"
-#include "dem/drive/stages/undrained_simple_shear.hpp"
+#include "base/scene/fragment.hpp"
+#include "dem/drive/stages/consolidation.hpp"
+#include "dem/drive/stages/constant_volume.hpp"
 
 #include <variant>
 

@@ -24,7 +24,7 @@ Snapshot packing_at_pressure()
 {
   LinearRolling law;
   law.friction = std::tan(18 * M_PI / 180);
-  return import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/vloose", "comp", "step0", law, 2650);
+  return import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/vloose", law, 2650);
 }
 
 Assembly make_assembly(const Snapshot &start, bool measure_energy = false)

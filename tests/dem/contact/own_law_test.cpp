@@ -93,8 +93,7 @@ TEST(OwnLaw, TwoGrainsBounceBackAsFastAsTheyCame)
 
 TEST(OwnLaw, PackingKeepsItsEnergy)
 {
-  Snapshot start =
-      import_yade_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", "comp", "step0", SoftSpheres(), 2650);
+  Snapshot start = import_tables(ISOSTAT_SOURCE_DIR "/tests/reference/n1000/medium", SoftSpheres(), 2650);
   Assembly assembly(start);
   assembly.settings.damping = 0;
   assembly.settings.measure_energy = true;

@@ -58,14 +58,13 @@ TEST(RateControl, FixedRateStays)
   assembly.compute_forces();
   MotionSpec motion;
   motion.strain_rate = 0.7;
-  const RateControl control(motion, {});
   Pace pace;
-  pace.rate = control.initial_rate();
+  pace.rate = initial_rate(motion);
   EXPECT_EQ(pace.rate, 0.7);
-  control.update(assembly, 200e3, 200e3, pace);
+  update_rate(motion, {}, assembly, 200e3, 200e3, pace);
   EXPECT_EQ(pace.rate, 0.7);
   EXPECT_GT(pace.indicator, 0);
-  EXPECT_EQ(RateControl(motion, 0.3).initial_rate(), 0.3); // the stage's own rate goes before
+  EXPECT_EQ(initial_rate(motion, 0.3), 0.3); // the stage's own rate goes before
 }
 
 TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
@@ -77,14 +76,14 @@ TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
   motion.rate_floor = 0.1;
   motion.rate_ceiling = 1.0;
   Pace pace;
-  pace.rate = RateControl(motion, {}).initial_rate();
+  pace.rate = initial_rate(motion);
   EXPECT_EQ(pace.rate, 0.1);
   for (int k = 0; k < 50; ++k)
-    RateControl(motion, {}).update(assembly, 200e3, 200e3, pace);
+    update_rate(motion, {}, assembly, 200e3, 200e3, pace);
   EXPECT_EQ(pace.rate, 1.0);
   motion.quasi_static_tolerance = 1e-9;
   for (int k = 0; k < 50; ++k)
-    RateControl(motion, {}).update(assembly, 200e3, 200e3, pace);
+    update_rate(motion, {}, assembly, 200e3, 200e3, pace);
   EXPECT_EQ(pace.rate, 0.1);
 }
 
@@ -96,28 +95,26 @@ TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
   const double d50 = assembly.d50(), density = assembly.packing().density, p0 = 200e3;
   MotionSpec motion;
   motion.inertial_number = 1e-4;
-  const RateControl control(motion, {});
   Pace pace;
-  pace.rate = control.initial_rate();
+  pace.rate = initial_rate(motion);
   for (const double p : {200e3, 350e3, 20e3, 10e3, 200e3}) // up and down, at once: no memory, no floor or ceiling
     {
-      control.update(assembly, p, p0, pace);
+      update_rate(motion, {}, assembly, p, p0, pace);
       EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, p), 1e-4, 1e-16,
                           "round-off of a root and its square");
       EXPECT_GT(pace.indicator, 0);
     }
   for (const double p : {5e3, 100.0, 0.0, -1e3}) // below 5 % of p0 the rate is that of 5 %
     {
-      control.update(assembly, p, p0, pace);
+      update_rate(motion, {}, assembly, p, p0, pace);
       EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, 0.05 * p0), 1e-4, 1e-16,
                           "round-off of a root and its square");
     }
   motion.inertial_number = 1e-2;
-  RateControl(motion, {}).update(assembly, p0, p0, pace);
+  update_rate(motion, {}, assembly, p0, p0, pace);
   EXPECT_GT(pace.rate, motion.rate_ceiling);
   EXPECT_CLOSE_BECAUSE(pace.rate, 1e-2 * std::sqrt(p0 / density) / d50, 1e-9, "round-off of a root");
-  const RateControl stage_rate(motion, 0.3); // the stage's own rate goes before
-  stage_rate.update(assembly, p0, p0, pace);
+  update_rate(motion, 0.3, assembly, p0, p0, pace);
   EXPECT_EQ(pace.rate, 0.3);
 }
 

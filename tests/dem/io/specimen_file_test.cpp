@@ -79,7 +79,7 @@ TEST_F(SpecimenFile, ForeignFormatsAreRefused)
   file = hdf5::File::create(path);
   file.root().set_attribute("format", std::string("isostat-checkpoint"));
   file.commit();
-  EXPECT_THAT(refusal(), HasSubstr("\"isostat-checkpoint\", expected \"isostat-specimen\""));
+  EXPECT_THAT(refusal(), HasSubstr("\"isostat-checkpoint\", expected format = \"isostat-specimen\""));
   write_unchecked(small_snapshot(), 2);
   EXPECT_THAT(refusal(), HasSubstr("schema_version = 2, this program reads 1"));
 }

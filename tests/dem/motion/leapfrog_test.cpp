@@ -99,7 +99,7 @@ TEST_P(Leapfrog, FreeFlightIsStraight)
   Action action = resting_action(packing);
   const double dt = 0x1p-20; // so that steps add up exactly
   for (int step = 0; step < 1024; ++step)
-    integrate(packing, action.data(), dt, 0.2, no_limit, false);
+    integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.2, no_limit});
   EXPECT_EQ(packing.velocity, start.velocity);
   EXPECT_EQ(packing.spin, start.spin);
   for (std::size_t i = 0; i < 5; ++i)
@@ -127,7 +127,7 @@ TEST_P(Leapfrog, ConstantForceFollowsTheParabola)
             action[8 * i + k] = packing.mass(i) * acceleration[k];
             action[8 * i + 4 + k] = packing.inertia(i) * spin_up[k];
           }
-      integrate(packing, action.data(), dt, 0.0, no_limit, false);
+      integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.0, no_limit});
     }
   for (std::size_t i = 0; i < 3; ++i)
     {
@@ -151,7 +151,7 @@ TEST_P(Leapfrog, DampingFollowsTheFormula)
         Packing packing = before;
         Action action = random_action(packing, dt, 3);
         const Action force = action;
-        integrate(packing, action.data(), dt, damping, no_limit, measured);
+        integrate(packing, 0, packing.n_grains(), action.data(), {dt, damping, no_limit, measured});
         for (std::size_t i = 0; i < 40; ++i)
           for (int k = 0; k < 3; ++k)
             {
@@ -180,7 +180,8 @@ TEST_P(Leapfrog, DampingTakesWhatTheBalanceMisses)
       const Packing before = packing;
       Action action = random_action(packing, dt, step);
       const Action force = action;
-      const double loss = integrate(packing, action.data(), dt, 0.2, no_limit, true).damping_loss;
+      const double loss =
+          integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.2, no_limit, true}).damping_loss;
       const double energy = kinetic_energy(packing);
       EXPECT_NEAR_BECAUSE(loss, work(before, packing, force, dt) - (energy - kinetic_energy(before)), 1e-13 * energy,
                           "round-off of sums over 40 grains");
@@ -194,8 +195,8 @@ TEST_P(Leapfrog, MeasuringChangesNoBit)
   const double dt = 5e-8;
   Packing plain = moving_packing(40), measured = plain;
   Action a = random_action(plain, dt, 5), b = a;
-  const MotionReport first = integrate(plain, a.data(), dt, 0.2, no_limit, false);
-  const MotionReport second = integrate(measured, b.data(), dt, 0.2, no_limit, true);
+  const MotionReport first = integrate(plain, 0, plain.n_grains(), a.data(), {dt, 0.2, no_limit});
+  const MotionReport second = integrate(measured, 0, measured.n_grains(), b.data(), {dt, 0.2, no_limit, true});
   EXPECT_EQ(plain.position, measured.position);
   EXPECT_EQ(plain.velocity, measured.velocity);
   EXPECT_EQ(plain.spin, measured.spin);
@@ -209,7 +210,7 @@ TEST_P(Leapfrog, ClearsForcesAndLeavesRadiusMassAndPaddingAlone)
   const Packing before = moving_packing(7);
   Packing packing = before;
   Action action = random_action(packing, dt, 9);
-  integrate(packing, action.data(), dt, 0.2, no_limit, false);
+  integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.2, no_limit});
   EXPECT_EQ(action, resting_action(packing));
   for (std::size_t i = 0; i < 7 + Packing::n_padding; ++i)
     {
@@ -225,7 +226,7 @@ TEST_P(Leapfrog, ReportsTheGreatestSpeedAsABound)
 {
   Packing packing = moving_packing(40);
   Action action = resting_action(packing);
-  const MotionReport report = integrate(packing, action.data(), 1e-8, 0.2, no_limit, false);
+  const MotionReport report = integrate(packing, 0, packing.n_grains(), action.data(), {1e-8, 0.2, no_limit});
   double maximum = 0;
   for (std::size_t i = 0; i < 40; ++i)
     maximum = std::max(maximum, packing.linear_velocity(i).norm());
@@ -245,9 +246,9 @@ TEST_P(Leapfrog, ReportsAFastGrainAndNotANumber)
         {
           Packing packing = moving_packing(5);
           Action action = resting_action(packing);
-          EXPECT_FALSE(integrate(packing, action.data(), dt, 0.2, 1.0, false).exploded);
+          EXPECT_FALSE(integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.2, 1.0}).exploded);
           action[8 * grain + k] = force;
-          EXPECT_TRUE(integrate(packing, action.data(), dt, 0.2, 1.0, false).exploded)
+          EXPECT_TRUE(integrate(packing, 0, packing.n_grains(), action.data(), {dt, 0.2, 1.0}).exploded)
               << "grain " << grain << ' ' << force;
         }
 }
@@ -273,8 +274,8 @@ TEST_P(Leapfrog, HomogeneousStrainComesOnTopOfTheMotion)
       const Packing before = moving_packing(40);
       Packing packing = before, plain = before;
       Action action = random_action(packing, dt, 3), same = action;
-      const MotionReport report = integrate(packing, 0, 40, action.data(), dt, 0.2, no_limit, measured, &affine);
-      const MotionReport expected = integrate(plain, 0, 40, same.data(), dt, 0.2, no_limit, measured);
+      const MotionReport report = integrate(packing, 0, 40, action.data(), {dt, 0.2, no_limit, measured, &affine});
+      const MotionReport expected = integrate(plain, 0, 40, same.data(), {dt, 0.2, no_limit, measured});
       // velocities are fluctuations: damping and everything else goes by them alone
       EXPECT_EQ(packing.velocity, plain.velocity);
       EXPECT_EQ(packing.spin, plain.spin);
@@ -299,7 +300,7 @@ TEST_P(Leapfrog, HomogeneousStrainMovesGrainsOfTheRangeOnly)
   const Packing before = moving_packing(10);
   Packing packing = before;
   Action action = resting_action(packing);
-  integrate(packing, 3, 7, action.data(), 1e-8, 0.2, no_limit, false, &affine);
+  integrate(packing, 3, 7, action.data(), {1e-8, 0.2, no_limit, false, &affine});
   for (std::size_t i = 0; i < 10; ++i)
     EXPECT_EQ(packing.centre(i) != before.centre(i), i >= 3 && i < 7) << i;
 }
@@ -316,7 +317,7 @@ TEST_P(Leapfrog, GrainsAtRestFollowTheStrainExactly)
     {
       Action action = resting_action(packing);
       const AffineStep affine(growth);
-      integrate(packing, 0, 20, action.data(), 1e-8, 0.2, no_limit, false, &affine);
+      integrate(packing, 0, 20, action.data(), {1e-8, 0.2, no_limit, false, &affine});
       deformation = once * deformation;
     }
   for (std::size_t i = 0; i < 20; ++i)

@@ -124,7 +124,7 @@ TEST(Cloud, HasTheSolidFractionAndTheScaledGrading)
   const Packing &packing = cloud.packing;
   EXPECT_NEAR_BECAUSE(packing.solid_volume() / (0.33 * cloud.box.volume()), 1, 1e-12,
                       "round-off of a sum of 10,000 volumes");
-  EXPECT_NEAR_BECAUSE(packing.d50() / cloud.upscaling, grading_report(spec).d50, 0.01 * 0.14e-3,
+  EXPECT_NEAR_BECAUSE(packing.d50() / cloud.upscaling, d_at(grading_curve(spec), 50), 0.01 * 0.14e-3,
                       "a percentile of 10,000 grains falls between two of them");
   EXPECT_TRUE(all_inside(packing, cloud.box));
   EXPECT_EQ(packing.density, 2650);

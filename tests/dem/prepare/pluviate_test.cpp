@@ -89,8 +89,8 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
   Pluviation how;
   how.fall = 1;
   how.soften = false;
-  const double speed = std::sqrt(2 * g * (height - radius)), wanted = 1e-3 * 2 * radius;
-  law.young = deposition_modulus(2650, speed, 2 * radius, wanted);
+  const double speed = std::sqrt(2 * g * (height - radius)), target = 1e-3 * 2 * radius;
+  law.young = deposition_modulus(2650, speed, 2 * radius, target);
   how.damping = 0;
   struct Once : Follower // the grain would bounce on: stop at its first return
   {
@@ -104,7 +104,7 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
   EXPECT_NEAR_BECAUSE(once.speed / speed, 1, 1e-3, "the last step before contact: a step is 1e-3 of the fall at most");
   EXPECT_NEAR_BECAUSE(once.fallen / std::sqrt(2 * (height - radius) / g), 1, 1e-3,
                       "the last step before contact: a step is 1e-3 of the fall at most");
-  EXPECT_NEAR_BECAUSE(once.maximum / wanted, 1, 0.06,
+  EXPECT_NEAR_BECAUSE(once.maximum / target, 1, 0.06,
                       "the peak falls between two steps of w dt < 0.7: up to 1 - cos(0.35)");
 }
 

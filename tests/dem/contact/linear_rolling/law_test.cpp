@@ -240,18 +240,25 @@ TEST(ContactLaw, SlidingAndRollingAreReachedFromBelow)
   const LinearRolling law = yade_law();
   const double fn = 2.0, length = law.rolling_length(r1, r2);
   EXPECT_DOUBLE_EQ(length, 0.5 * r2);
-  EXPECT_TRUE(is_sliding(law.friction * fn, fn, law));
-  EXPECT_TRUE(is_sliding((1 - 0.9e-9) * law.friction * fn, fn, law));
-  EXPECT_FALSE(is_sliding((1 - 1.1e-9) * law.friction * fn, fn, law));
-  EXPECT_TRUE(is_rolling(length * fn, fn, length, law));
-  EXPECT_TRUE(is_rolling((1 - 0.9e-9) * length * fn, fn, length, law));
-  EXPECT_FALSE(is_rolling((1 - 1.1e-9) * length * fn, fn, length, law));
+  // of a contact with these tangential force and bending moment
+  const auto yield = [&](const LinearRolling &l, double fs, double mb) {
+    ContactHistory history;
+    history.shear_force = Vec3(fs, 0, 0);
+    history.bending_moment = Vec3(0, mb, 0);
+    return l.yield({r1, r2, 1e-6, fn, history});
+  };
+  EXPECT_TRUE(yield(law, law.friction * fn, 0).sliding);
+  EXPECT_TRUE(yield(law, (1 - 0.9e-9) * law.friction * fn, 0).sliding);
+  EXPECT_FALSE(yield(law, (1 - 1.1e-9) * law.friction * fn, 0).sliding);
+  EXPECT_TRUE(yield(law, 0, length * fn).rolling);
+  EXPECT_TRUE(yield(law, 0, (1 - 0.9e-9) * length * fn).rolling);
+  EXPECT_FALSE(yield(law, 0, (1 - 1.1e-9) * length * fn).rolling);
 
   LinearRolling without = law;
   without.rolling = false;
-  EXPECT_FALSE(is_rolling(length * fn, fn, length, without));
+  EXPECT_FALSE(yield(without, 0, length * fn).rolling);
   without.friction = 0;
-  EXPECT_FALSE(is_sliding(0, fn, without));
+  EXPECT_FALSE(yield(without, 0, 0).sliding);
 }
 
 TEST(ContactLaw, YieldedStateLiesOnTheSurface)
@@ -266,8 +273,8 @@ TEST(ContactLaw, YieldedStateLiesOnTheSurface)
                       "round-off of a vector that is scaled to its limit");
   EXPECT_NEAR_BECAUSE(history.bending_moment.norm(), 0.5 * r2 * f.normal_force, 1e-15 * r2 * f.normal_force,
                       "round-off of a vector that is scaled to its limit");
-  EXPECT_TRUE(is_sliding(history.shear_force.norm(), f.normal_force, law));
-  EXPECT_TRUE(is_rolling(history.bending_moment.norm(), f.normal_force, 0.5 * r2, law));
+  const YieldState yield = law.yield({p.r1, p.r2, f.overlap, f.normal_force, history});
+  EXPECT_TRUE(yield.sliding && yield.rolling);
 }
 
 TEST(ContactLaw, StiffnessesFollowFromTheFeatures)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/drive/stages/balanced.hpp"
+#include "dem/drive/stages/consolidation.hpp"
 
 #include "base/error.hpp"
-#include "base/scene/ranges.hpp"
 #include "dem/drive/servo.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +11,13 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t check_interval = 200, min_steps = 1000, hopeless_steps = 20'000'000;
+}
+
+void Friction::begin(const StageContext &c) const
+{
+  Law law = c.assembly.law();
+  law->friction = friction;
+  c.assembly.set_law(law);
 }
 
 Verdict BalancedStage::reached(const StageContext &c, const Observation &) const
@@ -24,18 +30,9 @@ Verdict BalancedStage::reached(const StageContext &c, const Observation &) const
   checks = balanced ? checks + 1 : 0;
   if (steps > hopeless_steps)
     throw RunFailure(
-        fmt::format("step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, wanted {:.3g})",
+        fmt::format("step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, requested {:.3g})",
                     c.assembly.step(), kind(), steps, c.assembly.unbalanced_force_ratio(), balance));
   return {.finished = checks >= 2};
-}
-
-Key BalancedStage::balance_key()
-{
-  return {.path = "balance",
-          .value = "1e-4",
-          .range = ranges::fraction,
-          .text = "Unbalanced-force ratio at which the stage ends.",
-          .field = InStage<&BalancedStage::balance>{}};
 }
 
 bool ServoStage::on_target(const StageContext &c) const
@@ -51,7 +48,7 @@ double ServoStage::rate_cap(const StageContext &c, const Observation &seen) cons
 
 RigidBox ServoStage::next_box(const StageContext &c, const Observation &seen) const
 {
-  return about_centre(c.state, servo_edges(c.assembly, target(c), axes(), rate_cap(c, seen), c.state.servo));
+  return c.box_of(servo_edges(c.assembly, target(c), axes(), rate_cap(c, seen), c.state.servo));
 }
 
 Mat3 ServoStage::next_gradient(const StageContext &c, const Observation &seen) const
@@ -59,22 +56,7 @@ Mat3 ServoStage::next_gradient(const StageContext &c, const Observation &seen) c
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(true);
   for (int axis = 0; axis < 3; ++axis)
     controlled(axis, axis) = axes()[axis];
-  const Mat3 wanted = (-target(c)).asDiagonal();
-  return stress_servo(c.assembly, wanted, controlled, rate_cap(c, seen), c.state.place.steps, c.state.servo);
-}
-
-Key ServoStage::pressure_key()
-{
-  return {.path = "pressure",
-          .kind = Kind::quantity,
-          .dimension = Dimension::pressure,
-          .unit = "kPa",
-          .presence = Presence::optional,
-          .value = "200 kPa",
-          .range = ranges::positive,
-          .text =
-              "Isotropic pressure of the servo; in k0-compress the vertical effective stress; left out: that of the "
-              "specimen.",
-          .field = InStage<&ServoStage::pressure>{}};
+  return stress_servo(c.assembly, (-target(c)).asDiagonal(), controlled, rate_cap(c, seen), c.state.place.steps,
+                      c.state.servo);
 }
 } // namespace isostat

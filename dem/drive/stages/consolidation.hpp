@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The stages that do not shear. All are tested in tests/verification/programme_test.cpp, K0Compress in
+// tests/verification/cell_programme_test.cpp.
 #pragma once
 #include "dem/drive/stages/behaviour.hpp"
 
@@ -6,6 +8,19 @@
 
 namespace isostat
 {
+/// Sets the friction between grains and takes no step.
+class Friction : public StageBehaviour
+{
+public:
+  double friction = 0; ///< tan(phi)
+
+  bool operator==(const Friction &) const = default;
+  const char *kind() const override { return "friction"; }
+  bool takes_steps() const override { return false; }
+  void begin(const StageContext &c) const override;
+  Verdict judge(const StageContext &, const Observation &) const override { return {.finished = true}; }
+};
+
 /// A stage that ends when two checks in a row, 200 steps apart, find the forces in balance and the stresses on target.
 class BalancedStage : public SteppedStage
 {
@@ -17,12 +32,17 @@ public:
 protected:
   Verdict reached(const StageContext &c, const Observation &) const final;
   virtual bool on_target(const StageContext &) const { return true; }
-  static Key balance_key();
+};
+
+/// Boundaries at rest until the forces are in balance.
+class Hold : public BalancedStage
+{
+public:
+  const char *kind() const override { return "hold"; }
 };
 
 /// A balanced stage that brings the specimen to a pressure by the stress servo (dem/drive/servo.hpp). In a cell shear
 /// stresses are brought to zero as well.
-/// tested: tests/verification/programme_test.cpp
 class ServoStage : public BalancedStage
 {
 public:
@@ -38,10 +58,35 @@ public:
 protected:
   bool on_target(const StageContext &c) const final;
   virtual double stress_tolerance() const { return 0.002; } ///< relative, on each stress at the end
-  static Key pressure_key();
 
 private:
   Vec3 target(const StageContext &c) const { return Vec3::Constant(pressure > 0 ? pressure : c.servo.pressure); }
   double rate_cap(const StageContext &c, const Observation &seen) const;
+};
+
+/// Isotropic compression to `pressure`, from a loose cloud if need be.
+class Compress : public ServoStage
+{
+public:
+  const char *kind() const override { return "compress"; }
+
+protected:
+  double stress_tolerance() const override { return 0.01; }
+};
+
+/// Keeps the isotropic pressure until the forces are in balance.
+class Rebalance : public ServoStage
+{
+public:
+  const char *kind() const override { return "rebalance"; }
+};
+
+/// Brings the vertical (y) stress to `pressure` without lateral strain; in a periodic cell only.
+class K0Compress : public ServoStage
+{
+public:
+  const char *kind() const override { return "k0-compress"; }
+  bool needs_cell() const override { return true; }
+  std::array<bool, 3> axes() const override { return {false, true, false}; }
 };
 } // namespace isostat
