@@ -214,16 +214,16 @@ void prepare_column(const Snapshot &start, const Options &options)
 
 int main(int argc, char **argv)
 {
-  CommandLine line("Cost of a material of representative volume elements beside the elements alone", argc, argv);
+  CLI::App line("Cost of a material of representative volume elements beside the elements alone");
   Options options;
-  line.option("--elements", options.elements, "elements of the batch").within(1, 1000);
-  line.option("--grains", options.grains, "grains of each").within(100, 20000);
-  line.option("--rounds", options.rounds, "rounds that count").within(1, 1000);
-  line.option("--increments", options.increments, "increments of a round").within(1, 100000);
-  line.option("--threads", options.threads, "threads of the batch").within(1, 1000);
-  line.option("--young", options.young, "contact modulus, Pa").positive();
+  line.add_option("--elements", options.elements, "elements of the batch")->check(CLI::Range(1, 1000));
+  line.add_option("--grains", options.grains, "grains of each")->check(CLI::Range(100, 20000));
+  line.add_option("--rounds", options.rounds, "rounds that count")->check(CLI::Range(1, 1000));
+  line.add_option("--increments", options.increments, "increments of a round")->check(CLI::Range(1, 100000));
+  line.add_option("--threads", options.threads, "threads of the batch")->check(CLI::Range(1, 1000));
+  line.add_option("--young", options.young, "contact modulus, Pa")->check(CLI::PositiveNumber);
   MPI_Init(&argc, &argv);
-  const int result = line.run([&] {
+  const int result = run_command(line, argc, argv, [&] {
     const Snapshot start = specimen(options);
     compare(start, options);
     measure_batch(start, options);

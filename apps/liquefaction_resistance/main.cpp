@@ -180,33 +180,33 @@ void find_resistance(Options options)
     if (result.status == RunStatus::failed)
       throw RunFailure("some runs failed (see above); the others are kept, the same command tries again");
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction", argc, argv);
-  Options options;
-  line.option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
-      .shipped_in("scenes")
-      .required();
-  line.option("--ratios", options.ratios,
-              "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
-              "triaxial tests")
-      .required();
-  line.option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
-      .within(1, 1000);
-  line.option("--cycles", options.plan.cycles, "a run ends after so many (default 100)").within(1, 100000);
-  line.option("--reversals-after", options.plan.reversals_after,
-              "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
-      .within(0, 1000);
-  line.option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)").within(1, 1024);
-  line.option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
-  line.option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
-  line.flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.flag("--no-figures", options.no_figures, "do not draw the figure");
-  options.command_line = line.text();
-  return line.run([&] { find_resistance(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction");
+  Options options;
+  line.add_option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
+      ->transform(shipped_scene)
+      ->required();
+  line.add_option("--ratios", options.ratios,
+                  "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
+                  "triaxial tests")
+      ->required();
+  line.add_option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
+      ->check(CLI::Range(1, 1000));
+  line.add_option("--cycles", options.plan.cycles, "a run ends after so many (default 100)")
+      ->check(CLI::Range(1, 100000));
+  line.add_option("--reversals-after", options.plan.reversals_after,
+                  "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
+      ->check(CLI::Range(0, 1000));
+  line.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
+      ->check(CLI::Range(1, 1024));
+  line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
+  line.add_option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
+  line.add_flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.add_flag("--no-figures", options.no_figures, "do not draw the figure");
+  options.command_line = command_text(argc, argv);
+  return run_command(line, argc, argv, [&] { find_resistance(options); });
+}

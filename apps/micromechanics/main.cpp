@@ -186,18 +186,16 @@ void analyse(const Options &options)
   if (!only_table && !options.no_figures)
     fmt::print("{}\n", draw_figures(output, "micromechanics"));
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions",
-                   argc, argv);
-  Options options;
-  line.option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)").required();
-  line.option("-o,--output", options.output,
-              "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
-  line.flag("--no-figures", options.no_figures, "do not draw figures");
-  return line.run([&] { analyse(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions");
+  Options options;
+  line.add_option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)")->required();
+  line.add_option(
+      "-o,--output", options.output,
+      "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
+  line.add_flag("--no-figures", options.no_figures, "do not draw figures");
+  return run_command(line, argc, argv, [&] { analyse(options); });
+}

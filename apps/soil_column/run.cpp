@@ -44,11 +44,7 @@ std::unique_ptr<ColumnCheckpoint> checkpoint_of(const ColumnRequest &request)
   if (request.use != FolderUse::resume)
     return nullptr;
   auto checkpoint = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
-  if (checkpoint->scene != to_toml(request.scene))
-    throw InputError(
-        fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
-                    "of --validate). Resume with the scene and --set values of the first run.",
-                    request.folder.string(), (request.folder / "scene.toml").string()));
+  check_same_scene(request.folder, checkpoint->scene, to_toml(request.scene));
   return checkpoint;
 }
 

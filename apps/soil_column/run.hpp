@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/deposit/program.hpp"
+#include "apps/common/scene_program.hpp"
 #include "apps/soil_column/files.hpp"
 #include "apps/soil_column/summary.hpp"
 #include "base/error.hpp"

@@ -179,7 +179,7 @@ void find_limits(const Options &options)
   fs::path folder = options.output.empty() ? scene.output.folder : options.output;
   if (!folder.has_filename()) // a slash at the end
     folder = folder.parent_path();
-  const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
+  const FolderUse use = folder_use(options.overwrite);
   check_result_folder(folder, use);
   catch_signals();
   PreparationOutput observer(options.quiet);
@@ -203,21 +203,18 @@ void find_limits(const Options &options)
   write_replacing(folder / "summary.txt", text);
   fmt::print("{}", text);
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)",
-                   argc, argv);
-  Options options;
-  line.option("scene", options.scene, "scene file (TOML) without stages").required().shipped_in("scenes");
-  line.option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  line.option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
-  line.option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
-  line.flag("--overwrite", options.overwrite, "replace results that are there");
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  options.command_line = line.text();
-  return line.run([&] { find_limits(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)");
+  Options options;
+  line.add_option("scene", options.scene, "scene file (TOML) without stages")->required()->transform(shipped_scene);
+  line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
+  line.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
+  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  options.command_line = command_text(argc, argv);
+  return run_command(line, argc, argv, [&] { find_limits(options); });
+}
