@@ -2,7 +2,7 @@
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
 // binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
 // packings in coupling/scene/packings.cpp: other programs have them too.
-#include "apps/deposit/schema.hpp"
+#include "apps/deposit/scene.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"

@@ -36,8 +36,6 @@ public:
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
   ColumnHistory<dim> &history() { return history_; }
-  /// A line for a failure: where the last good checkpoint is.
-  std::string last_checkpoint() const;
 
 private:
   std::filesystem::path folder_;
