@@ -194,15 +194,15 @@ void prepare_column(const Snapshot &start, const Options &options)
   for (std::size_t k = 0; k < options.elements; ++k)
     {
       const double vertical = 1e4 * 0.5 * (static_cast<double>(k) + 0.5);
-      const Mat3 wanted = Vec3(-0.5 * vertical, -vertical, -0.5 * vertical).asDiagonal();
+      const Mat3 target = Vec3(-0.5 * vertical, -vertical, -0.5 * vertical).asDiagonal();
       Mat3 reached;
       const double seconds = seconds_of([&] {
-        const auto packed = bring_to_stress(start, wanted, {}, {});
+        const auto packed = bring_to_stress(start, target, {}, {});
         reached = Rve(specimen_of(packed), {}).stress();
       });
       all += seconds;
       slowest = std::max(slowest, seconds);
-      miss = std::max(miss, ((reached - wanted) / (wanted.trace() / 3)).cwiseAbs().maxCoeff());
+      miss = std::max(miss, ((reached - target) / (target.trace() / 3)).cwiseAbs().maxCoeff());
     }
   fmt::print(
       "in situ: {} levels, sigma'_v = 2.5 to {:.4g} kPa: {:.2f} s each, {:.2f} s the slowest, missed by {:.2g} of "

@@ -45,6 +45,10 @@ enum class LayerMaterial
   grains ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
 };
 
+/// Their words in scenes and summaries, and those of Drainage.
+inline constexpr const char *material_names[] = {"elastic", "iwan", "grains"};
+inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
+
 /// A layer with its material.
 struct ColumnLayer : Layer
 {

@@ -49,7 +49,10 @@ struct Dense
   double seconds = 0;
 };
 
-double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+double friction_degrees(const Scene &scene)
+{
+  return scene.contact->friction > 0 ? std::atan(scene.contact->friction) * 180 / std::numbers::pi : 0;
+}
 
 Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
@@ -100,7 +103,7 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"d50", "m", state.grains.d50()},
           {"pressure", "Pa", scene.specimen.pressure},
           {"young", "Pa", scene.contact->young},
-          {"friction", "deg", (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0},
+          {"friction", "deg", friction_degrees(scene)},
           {"coordination_dense", "-", micromechanics(dense.state).coordination},
           {"fall", "-", how.fall},
           {"fall_speed", "m/s", loose.fall_speed},
@@ -144,8 +147,7 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
       fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n", dense.state.grains.n_grains(),
                   scene.specimen.pressure / 1e3, scene.contact->young, dense.seconds);
   text += fmt::format("e_max: {:.2f} deg, fastest impact about {:.2f} m/s, deposit {:.2f} mm high; {:.0f} s\n",
-                      (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0.0, loose.fall_speed,
-                      1e3 * loose.height, loose_seconds);
+                      friction_degrees(scene), loose.fall_speed, 1e3 * loose.height, loose_seconds);
   text += fmt::format("       contact modulus {:.3g} Pa while falling: overlap/d50 at most {:.1e}, at rest {:.1e}\n",
                       loose.young, loose.max_overlap, loose.resting_overlap);
   return text;
@@ -176,9 +178,7 @@ void find_limits(const Options &options)
   Pluviation how = options.pluviation;
   how.damping = scene.motion.damping;
   check_pluviation(how);
-  fs::path folder = options.output.empty() ? scene.output.folder : options.output;
-  if (!folder.has_filename()) // a slash at the end
-    folder = folder.parent_path();
+  const fs::path folder = output_folder(options.output, scene.output.folder);
   const FolderUse use = folder_use(options.overwrite);
   check_result_folder(folder, use);
   catch_signals();
@@ -199,9 +199,7 @@ void find_limits(const Options &options)
                    how.fall, how.damping, loose.young),
        {{"void_ratio", loose.void_ratio}, {"void_ratio_inside", loose.void_ratio_inside}, {"height_m", loose.height}});
   write_limits(folder, limits(scene, dense, loose, how));
-  const std::string text = table(scene, dense, loose, watch.seconds());
-  write_replacing(folder / "summary.txt", text);
-  fmt::print("{}", text);
+  leave_summary(folder, table(scene, dense, loose, watch.seconds()), "", "void_ratio_limits", false);
 }
 } // namespace
 
