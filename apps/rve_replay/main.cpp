@@ -89,6 +89,14 @@ RveSettings changed(RveSettings settings, const Options &options)
   return settings;
 }
 
+std::vector<RecordColumn> grain_columns()
+{
+  std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
+  for (const auto &[name, unit] : Micromechanics::columns())
+    columns.push_back({name, unit});
+  return columns;
+}
+
 /// Sends a packing the way of its record, alone: no mesh, no solver. Rows of history.csv and .h5 in `folder`: strain
 /// and stress of the column and of the packing alone every increment; in grain_history micromechanics every
 /// options.every increments.
@@ -105,10 +113,7 @@ ReplayResult replay(const StrainRecord &record, const ElementSettings &settings,
                             {"p_column", "Pa"},
                             {"p", "Pa"},
                             {"steps", "-"}});
-  std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
-  for (const auto &[name, unit] : Micromechanics::columns())
-    columns.push_back({name, unit});
-  Recorder grains(folder / "grain_history", columns);
+  Recorder grains(folder / "grain_history", grain_columns());
   Progress progress(options.quiet, 5);
   ReplayResult result;
   const double start = pressure(to_stress(element.rve().stress())),
