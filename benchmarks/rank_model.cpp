@@ -208,16 +208,17 @@ void report(const Records &records, const Options &options)
 
 int main(int argc, char **argv)
 {
-  CommandLine line("What many ranks would give, from the measured time steps of the packings of one column", argc,
-                   argv);
+  CLI::App line("What many ranks would give, from the measured time steps of the packings of one column");
   Options options;
-  line.option("records", options.records, "folder paths of a soil_column run, of all its levels").required();
-  line.option("--step-seconds", options.step_seconds, "time step of a packing, s").positive();
-  line.option("--element-seconds", options.element_seconds, "finite element in a step, s").positive();
-  line.option("--latency", options.latency, "of a message, s").not_negative();
-  line.option("--bandwidth", options.bandwidth, "of a rank, bytes/s").positive();
-  line.option("--packing-bytes", options.packing_bytes, "of a packing that moves").positive();
-  line.option("--threads", options.threads, "of a rank; they share its packings").within(1, 1024);
-  line.option("--lag", options.lag, "columns are late by a random time up to this, s").not_negative();
-  return line.run([&] { report(read_records(options.records), options); });
+  line.add_option("records", options.records, "folder paths of a soil_column run, of all its levels")->required();
+  line.add_option("--step-seconds", options.step_seconds, "time step of a packing, s")->check(CLI::PositiveNumber);
+  line.add_option("--element-seconds", options.element_seconds, "finite element in a step, s")
+      ->check(CLI::PositiveNumber);
+  line.add_option("--latency", options.latency, "of a message, s")->check(CLI::NonNegativeNumber);
+  line.add_option("--bandwidth", options.bandwidth, "of a rank, bytes/s")->check(CLI::PositiveNumber);
+  line.add_option("--packing-bytes", options.packing_bytes, "of a packing that moves")->check(CLI::PositiveNumber);
+  line.add_option("--threads", options.threads, "of a rank; they share its packings")->check(CLI::Range(1, 1024));
+  line.add_option("--lag", options.lag, "columns are late by a random time up to this, s")
+      ->check(CLI::NonNegativeNumber);
+  return run_command(line, argc, argv, [&] { report(read_records(options.records), options); });
 }

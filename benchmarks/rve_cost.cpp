@@ -123,13 +123,13 @@ void measure_element(std::uint64_t grains, int rounds)
 
 int main(int argc, char **argv)
 {
-  CommandLine line("Cost of a representative volume element beside the box of the element tests", argc, argv);
+  CLI::App line("Cost of a representative volume element beside the box of the element tests");
   std::uint64_t grains = 1000;
   int rounds = 7, steps = 2000;
-  line.option("--grains", grains, "grains of either packing").within(100, 20000);
-  line.option("--rounds", rounds, "rounds of cell and box in turns").within(1, 1000);
-  line.option("--steps", steps, "steps of a round").within(10, 1000000);
-  return line.run([&] {
+  line.add_option("--grains", grains, "grains of either packing")->check(CLI::Range(100, 20000));
+  line.add_option("--rounds", rounds, "rounds of cell and box in turns")->check(CLI::Range(1, 1000));
+  line.add_option("--steps", steps, "steps of a round")->check(CLI::Range(10, 1000000));
+  return run_command(line, argc, argv, [&] {
     compare_steps(grains, rounds, steps);
     measure_element(grains, rounds);
   });

@@ -194,15 +194,15 @@ void prepare_column(const Snapshot &start, const Options &options)
   for (std::size_t k = 0; k < options.elements; ++k)
     {
       const double vertical = 1e4 * 0.5 * (static_cast<double>(k) + 0.5);
-      const Mat3 wanted = Vec3(-0.5 * vertical, -vertical, -0.5 * vertical).asDiagonal();
+      const Mat3 target = Vec3(-0.5 * vertical, -vertical, -0.5 * vertical).asDiagonal();
       Mat3 reached;
       const double seconds = seconds_of([&] {
-        const auto packed = bring_to_stress(start, wanted, {}, {});
+        const auto packed = bring_to_stress(start, target, {}, {});
         reached = Rve(specimen_of(packed), {}).stress();
       });
       all += seconds;
       slowest = std::max(slowest, seconds);
-      miss = std::max(miss, ((reached - wanted) / (wanted.trace() / 3)).cwiseAbs().maxCoeff());
+      miss = std::max(miss, ((reached - target) / (target.trace() / 3)).cwiseAbs().maxCoeff());
     }
   fmt::print(
       "in situ: {} levels, sigma'_v = 2.5 to {:.4g} kPa: {:.2f} s each, {:.2f} s the slowest, missed by {:.2g} of "
@@ -214,16 +214,16 @@ void prepare_column(const Snapshot &start, const Options &options)
 
 int main(int argc, char **argv)
 {
-  CommandLine line("Cost of a material of representative volume elements beside the elements alone", argc, argv);
+  CLI::App line("Cost of a material of representative volume elements beside the elements alone");
   Options options;
-  line.option("--elements", options.elements, "elements of the batch").within(1, 1000);
-  line.option("--grains", options.grains, "grains of each").within(100, 20000);
-  line.option("--rounds", options.rounds, "rounds that count").within(1, 1000);
-  line.option("--increments", options.increments, "increments of a round").within(1, 100000);
-  line.option("--threads", options.threads, "threads of the batch").within(1, 1000);
-  line.option("--young", options.young, "contact modulus, Pa").positive();
+  line.add_option("--elements", options.elements, "elements of the batch")->check(CLI::Range(1, 1000));
+  line.add_option("--grains", options.grains, "grains of each")->check(CLI::Range(100, 20000));
+  line.add_option("--rounds", options.rounds, "rounds that count")->check(CLI::Range(1, 1000));
+  line.add_option("--increments", options.increments, "increments of a round")->check(CLI::Range(1, 100000));
+  line.add_option("--threads", options.threads, "threads of the batch")->check(CLI::Range(1, 1000));
+  line.add_option("--young", options.young, "contact modulus, Pa")->check(CLI::PositiveNumber);
   MPI_Init(&argc, &argv);
-  const int result = line.run([&] {
+  const int result = run_command(line, argc, argv, [&] {
     const Snapshot start = specimen(options);
     compare(start, options);
     measure_batch(start, options);

@@ -169,17 +169,15 @@ void print_twisting(std::uint64_t grains, double degrees, std::uint64_t realisat
 
 int main(int argc, char **argv)
 {
-  CommandLine line(
-      "Tables of docs/results/rve.md: rotation of principal stresses, sensitivity to the twisting stiffness", argc,
-      argv);
+  CLI::App line("Tables of docs/results/rve.md: rotation of principal stresses, sensitivity to the twisting stiffness");
   std::uint64_t grains = 1000, realisations = 3;
   double degrees = 7;
   std::string table;
-  line.option("table", table, "rotation or twisting").required().one_of({"rotation", "twisting"});
-  line.option("--grains", grains, "grains of a packing").within(200, 20000);
-  line.option("--degrees", degrees, "preparation friction").within(0.1, 60.0);
-  line.option("--realisations", realisations, "packings of the twisting table").within(1, 100);
-  return line.run([&] {
+  line.add_option("table", table, "rotation or twisting")->required()->check(CLI::IsMember({"rotation", "twisting"}));
+  line.add_option("--grains", grains, "grains of a packing")->check(CLI::Range(200, 20000));
+  line.add_option("--degrees", degrees, "preparation friction")->check(CLI::Range(0.1, 60.0));
+  line.add_option("--realisations", realisations, "packings of the twisting table")->check(CLI::Range(1, 100));
+  return run_command(line, argc, argv, [&] {
     const auto begin = std::chrono::steady_clock::now();
     if (table == "twisting")
       print_twisting(grains, degrees, realisations);

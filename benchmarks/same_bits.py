@@ -165,14 +165,14 @@ def run(command, log, stop_after=None):
     return process.wait()
 
 
-def run_all(binaries, work, wanted, keep):
-    """Digests of the runs whose names are wanted; keep(digests) after each, so that an interrupted list goes on."""
+def run_all(binaries, work, chosen, keep):
+    """Digests of the runs whose names are chosen; keep(digests) after each, so that an interrupted list goes on."""
     (work / "box.toml").write_text(OTHER_STAGES.replace("DOMAIN", "rigid-box"))
     (work / "cell.toml").write_text(OTHER_STAGES.replace("DOMAIN", "periodic-cell"))
     (work / "block.toml").write_text(BLOCK.format(columns=COLUMNS))
     digests = {}
     for name, (program, *arguments) in RUNS.items():
-        if name not in wanted:
+        if name not in chosen:
             continue
         folder = work / "".join(c if c.isalnum() else "_" for c in name)
         folder.mkdir()
@@ -209,16 +209,16 @@ def main():
     options = parser.parse_args()
     file = options.store or options.against
     before = json.loads(file.read_text()) if file.exists() else {}
-    wanted = {name for name in RUNS if options.only is None or options.only in name}
+    chosen = {name for name in RUNS if options.only is None or options.only in name}
     if options.store:
-        wanted -= before.keys()  # stored already
+        chosen -= before.keys()  # stored already
 
     def keep(digests):
         if options.store:
             file.write_text(json.dumps(before | digests, indent=1))
 
     with tempfile.TemporaryDirectory() as folder:
-        digests = run_all(options.binaries.resolve(), pathlib.Path(folder), wanted, keep)
+        digests = run_all(options.binaries.resolve(), pathlib.Path(folder), chosen, keep)
     if options.store:
         return 0
     different = [f"{run}: {file}" for run, files in before.items() if run in digests

@@ -132,20 +132,21 @@ void measure(const Options &options)
 
 int main(int argc, char **argv)
 {
-  CommandLine line("Time per step of constant-volume shear", argc, argv);
+  CLI::App line("Time per step of constant-volume shear");
   Options options;
-  line.option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres").required();
-  line.option("--export", options.exported, "write the packing as text and stop");
-  line.option("--copies", options.copies, "run so many copies of the packing, side by side, without contact history")
-      .positive();
-  line.option("--rate", options.rate, "axial strain rate, 1/s");
-  line.option("--time-step", options.time_step, "s");
-  line.option("--friction", options.friction_degrees, "degrees");
-  line.option("--damping", options.damping, "local damping");
-  line.option("--steps", options.steps, "timed steps per repeat");
-  line.option("--warm-up", options.warm_up, "steps before");
-  line.option("--threads", options.threads, "threads that share a step");
-  line.option("--repeats", options.repeats, "timed blocks");
-  line.option("--times", options.times, "write the figures of each timed block to this file, as JSON");
-  return line.run([&] { measure(options); });
+  line.add_option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres")->required();
+  line.add_option("--export", options.exported, "write the packing as text and stop");
+  line.add_option("--copies", options.copies,
+                  "run so many copies of the packing, side by side, without contact history")
+      ->check(CLI::PositiveNumber);
+  line.add_option("--rate", options.rate, "axial strain rate, 1/s");
+  line.add_option("--time-step", options.time_step, "s");
+  line.add_option("--friction", options.friction_degrees, "degrees");
+  line.add_option("--damping", options.damping, "local damping");
+  line.add_option("--steps", options.steps, "timed steps per repeat");
+  line.add_option("--warm-up", options.warm_up, "steps before");
+  line.add_option("--threads", options.threads, "threads that share a step");
+  line.add_option("--repeats", options.repeats, "timed blocks");
+  line.add_option("--times", options.times, "write the figures of each timed block to this file, as JSON");
+  return run_command(line, argc, argv, [&] { measure(options); });
 }

@@ -136,8 +136,8 @@ def check_spectrum(p):
         peaks.append(np.abs(a).max() / GRAVITY)
     edges = 0.1 * 2 ** np.arange(0, np.log2(0.4 / p.interval / 0.1), 1 / 6)
     bands = [(f >= low) & (f < high) for low, high in zip(edges, edges[1:])]
-    wanted = np.abs(target(p, f)) ** 2
-    ratio = np.array([np.sqrt(square[band].sum() / wanted[band].sum()) for band in bands if band.any()])
+    requested = np.abs(target(p, f)) ** 2
+    ratio = np.array([np.sqrt(square[band].sum() / requested[band].sum()) for band in bands if band.any()])
     median, (usual, sigma) = np.median(peaks), usual_peak(p)
     print(f"{p.realisations} seeds: rms Fourier amplitude over target, {edges[0]:.2g} to {edges[-1]:.3g} Hz: "
           f"{ratio.min():.3f} to {ratio.max():.3f}, mean {ratio.mean():.4f}")

@@ -38,7 +38,7 @@ void add_array(pugi::xml_node parent, const char *type, const std::string &name,
   array.text() = text.c_str();
 }
 
-/// Corners of an element, each an element's own: place and displacement as text, in the order that VTK wants.
+/// Corners of an element, each an element's own: place and displacement as text, in the order of VTK.
 void add_corners(const Discretisation<2> &space, const Vector &u, std::string &places, std::string &displacements)
 {
   constexpr unsigned order[] = {0, 1, 3, 2};

@@ -32,23 +32,24 @@ void run_scene(const SceneOptions &options)
   const std::string times =
       fmt::format("  time                {}: packings {}, their tangents {}\n", duration_text(summary.wall_seconds),
                   duration_text(summary.material_seconds), duration_text(summary.tangent_seconds));
-  leave_summary(request.folder, to_json(summary, request.scene), to_text(summary, request.scene), times, "biaxial",
-                options.no_figures);
+  write_json(request.folder / "summary.json", to_json(summary, request.scene));
+  leave_summary(request.folder, to_text(summary, request.scene), times, "biaxial", !options.no_figures);
   if (!summary.complete)
     throw RunFailure(summary.failure);
 }
 
-constexpr GroundProgram biaxial{
+constexpr SceneProgram biaxial{
     .name = "biaxial",
     .description = "A block of soil in plane strain, confined and compressed: does a shear band form?",
     .first_scene = "apps/scenes/biaxial/iwan.toml",
-    .texts = {"scene file (TOML); see --print-defaults", "test.steps=100",
-              "threads that share the packings, 0: all the process may use; results do not depend on it"},
+    .scene_text = "scene file (TOML); see --print-defaults",
+    .set_example = "test.steps=100",
+    .threads_text = "threads that share the packings, 0: all the process may use; results do not depend on it",
     .defaults = default_biaxial_scene,
-    .manual = nullptr,
     .resolved = [](const std::string &scene,
                    const std::vector<std::string> &overrides) { return to_toml(read_biaxial_scene(scene, overrides)); },
-    .run = run_scene};
+    .run = run_scene,
+    .guard = guarded_on_ranks};
 } // namespace
 
-int main(int argc, char **argv) { return run_program(biaxial, argc, argv); }
+int main(int argc, char **argv) { return biaxial.main(argc, argv); }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/biaxial/material.hpp"
 
-#include "apps/deposit/materials.hpp"
-#include "fem/material/composite.hpp"
+#include "apps/deposit/soil_material.hpp"
 
 #include <algorithm>
 #include <random>

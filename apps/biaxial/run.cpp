@@ -9,15 +9,14 @@
 #include "base/record/progress.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
 namespace
 {
-
 StaticsSettings settings_of(const BiaxialScene &scene)
 {
   StaticsSettings settings;
@@ -45,22 +44,118 @@ public:
     summary_.points = space_.n_points();
   }
 
-  BiaxialSummary go();
+  BiaxialSummary go()
+  {
+    open();
+    progress_.say(fmt::format("{} points, {} steps", space_.n_points(), scene_.test.steps));
+    record();
+    files_->map(0, statics_);
+    try
+      {
+        while (summary_.steps < scene_.test.steps)
+          {
+            if (stop_requested())
+              throw Interrupted(fmt::format("interrupted after step {}", summary_.steps));
+            step();
+          }
+        summary_.complete = true;
+      }
+    catch (const RunFailure &failure)
+      {
+        summary_.failure = failure.what();
+        back_to_committed();
+        files_->map(summary_.axial_strain, statics_);
+      }
+    summary_.wall_seconds = since_start_.seconds();
+    if (material_.grains)
+      {
+        const RveMaterialCost &cost = material_.grains->cost();
+        summary_.material_seconds = cost.batch_seconds;
+        summary_.tangent_seconds = cost.wave_seconds;
+        summary_.tangents = cost.stiffnesses;
+        summary_.rve_steps = static_cast<double>(cost.steps);
+      }
+    return summary_;
+  }
 
 private:
-  void open();
-  void record();
-  void step();
-  void back_to_committed();
-  void say(const std::string &line) const
+  void open()
   {
-    if (!request_.quiet)
-      std::fprintf(stderr, "%s\n", line.c_str());
+    open_result_folder(request_.folder, request_.use);
+    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                     {{"threads", std::to_string(request_.threads)}});
+    history_ = std::make_unique<Recorder>(request_.folder, columns);
+    files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
+  }
+
+  void record()
+  {
+    std::vector<Gradient> gradients;
+    gradients_of(space_, statics_.displacement(), gradients);
+    std::vector<double> shear;
+    double volume = 0, vertical = 0, lateral = 0, mean = 0;
+    for (std::size_t q = 0; q < space_.n_points(); ++q)
+      {
+        const PointState point = point_state(gradients[q], statics_.stresses()[q]);
+        const double part = space_.weight[q] / (scene_.mesh.width * scene_.mesh.height);
+        volume += part * point.volumetric;
+        vertical -= part * gradients[q][8];
+        lateral -= part * gradients[q][0];
+        mean += part * point.shear;
+        shear.push_back(point.shear);
+      }
+    std::sort(shear.begin(), shear.end());
+    const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
+    const StaticsEffort &effort = statics_.effort();
+    const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
+    history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
+                                         1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
+                                         1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
+    history_->flush();
+    summary_.axial_strain = vertical;
+    summary_.volumetric_strain = volume;
+    summary_.last_stress = stress;
+    summary_.localisation = median > 0 ? quantile / median : 1;
+    if (summary_.steps == 0 || stress > summary_.peak_stress)
+      {
+        summary_.peak_stress = stress;
+        summary_.peak_strain = vertical;
+      }
+  }
+
+  void step()
+  {
+    statics_.step((summary_.steps + 1.0) / scene_.test.steps - statics_.time());
+    ++summary_.steps;
+    const StaticsEffort &effort = statics_.effort();
+    summary_.iterations += effort.iterations;
+    summary_.trials += effort.trials;
+    summary_.substeps += effort.substeps;
+    summary_.rejected += effort.rejected;
+    record();
+    if (summary_.steps % scene_.output.map_every == 0 || summary_.steps == scene_.test.steps)
+      files_->map(summary_.axial_strain, statics_);
+    progress_.say(fmt::format(
+        "step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
+        "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
+        summary_.steps, scene_.test.steps, duration_text(since_start_.seconds()), summary_.axial_strain,
+        summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials, effort.substeps,
+        effort.rejected, statics_.residual()));
+  }
+
+  /// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.
+  void back_to_committed()
+  {
+    const std::vector<Gradient> still(space_.n_points(), Gradient{});
+    std::vector<Stress> stresses(space_.n_points());
+    material_.material->trial(still, stresses);
+    material_.material->rollback();
   }
 
   const BiaxialRequest &request_;
   const BiaxialScene &scene_;
   const Stopwatch since_start_;
+  const Progress progress_{request_.quiet};
   BlockMesh space_;
   BlockMaterial material_;
   Statics statics_;
@@ -68,113 +163,52 @@ private:
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;
 };
-
-void BiaxialRun::open()
-{
-  open_result_folder(request_.folder, request_.use);
-  write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                   {{"threads", std::to_string(request_.threads)}});
-  history_ = std::make_unique<Recorder>(request_.folder, columns);
-  files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
-}
-
-void BiaxialRun::record()
-{
-  std::vector<Gradient> gradients;
-  gradients_of(space_, statics_.displacement(), gradients);
-  std::vector<double> shear;
-  double volume = 0, vertical = 0, lateral = 0, mean = 0;
-  for (std::size_t q = 0; q < space_.n_points(); ++q)
-    {
-      const PointState point = point_state(gradients[q], statics_.stresses()[q]);
-      const double part = space_.weight[q] / (scene_.mesh.width * scene_.mesh.height);
-      volume += part * point.volumetric;
-      vertical -= part * gradients[q][8];
-      lateral -= part * gradients[q][0];
-      mean += part * point.shear;
-      shear.push_back(point.shear);
-    }
-  std::sort(shear.begin(), shear.end());
-  const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
-  const StaticsEffort &effort = statics_.effort();
-  const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
-  history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
-                                       1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
-                                       1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
-  history_->flush();
-  summary_.axial_strain = vertical;
-  summary_.volumetric_strain = volume;
-  summary_.last_stress = stress;
-  summary_.localisation = median > 0 ? quantile / median : 1;
-  if (summary_.steps == 0 || stress > summary_.peak_stress)
-    {
-      summary_.peak_stress = stress;
-      summary_.peak_strain = vertical;
-    }
-}
-
-void BiaxialRun::step()
-{
-  statics_.step((summary_.steps + 1.0) / scene_.test.steps - statics_.time());
-  ++summary_.steps;
-  const StaticsEffort &effort = statics_.effort();
-  summary_.iterations += effort.iterations;
-  summary_.trials += effort.trials;
-  summary_.substeps += effort.substeps;
-  summary_.rejected += effort.rejected;
-  record();
-  if (summary_.steps % scene_.output.map_every == 0 || summary_.steps == scene_.test.steps)
-    files_->map(summary_.axial_strain, statics_);
-  say(fmt::format("step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
-                  "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
-                  summary_.steps, scene_.test.steps, duration_text(since_start_.seconds()), summary_.axial_strain,
-                  summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials,
-                  effort.substeps, effort.rejected, statics_.residual()));
-}
-
-/// Packings show what the last trial left, even one that was given up: they go back by a trial of no strain.
-void BiaxialRun::back_to_committed()
-{
-  const std::vector<Gradient> still(space_.n_points(), Gradient{});
-  std::vector<Stress> stresses(space_.n_points());
-  material_.material->trial(still, stresses);
-  material_.material->rollback();
-}
-
-BiaxialSummary BiaxialRun::go()
-{
-  open();
-  say(fmt::format("{} points, {} steps", space_.n_points(), scene_.test.steps));
-  record();
-  files_->map(0, statics_);
-  try
-    {
-      while (summary_.steps < scene_.test.steps)
-        {
-          if (stop_requested())
-            throw Interrupted(fmt::format("interrupted after step {}", summary_.steps));
-          step();
-        }
-      summary_.complete = true;
-    }
-  catch (const RunFailure &failure)
-    {
-      summary_.failure = failure.what();
-      back_to_committed();
-      files_->map(summary_.axial_strain, statics_);
-    }
-  summary_.wall_seconds = since_start_.seconds();
-  if (material_.grains)
-    {
-      const RveMaterialCost &cost = material_.grains->cost();
-      summary_.material_seconds = cost.batch_seconds;
-      summary_.tangent_seconds = cost.wave_seconds;
-      summary_.tangents = cost.stiffnesses;
-      summary_.rve_steps = static_cast<double>(cost.steps);
-    }
-  return summary_;
-}
 } // namespace
 
 BiaxialSummary run_biaxial(const BiaxialRequest &request) { return BiaxialRun(request).go(); }
+
+std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
+{
+  std::string text = scene.title + "\n";
+  text += fmt::format("  block               {} x {} m, {} x {} elements of degree {}, {} points, {}\n",
+                      scene.mesh.width, scene.mesh.height, scene.mesh.cells_across, scene.mesh.cells_up,
+                      scene.mesh.degree, s.points, material_names[static_cast<int>(scene.soil.material)]);
+  text += fmt::format("  axial strain        {:.4g} % in {} steps{}\n", 100 * s.axial_strain, s.steps,
+                      s.complete ? "" : ", then it stopped");
+  text += fmt::format("  axial stress        {:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %\n",
+                      s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
+  text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
+  text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
+  text += fmt::format("  Newton              {} iterations, {} trials, {} sub-steps, {} rejected\n", s.iterations,
+                      s.trials, s.substeps, s.rejected);
+  if (!s.complete)
+    text += fmt::format("  stopped             {}\n", s.failure);
+  return text;
+}
+
+Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
+{
+  return {{"title", scene.title},
+          {"complete", s.complete},
+          {"failure", s.failure},
+          {"steps", s.steps},
+          {"points", s.points},
+          {"width_m", scene.mesh.width},
+          {"height_m", scene.mesh.height},
+          {"cells_across", scene.mesh.cells_across},
+          {"cells_up", scene.mesh.cells_up},
+          {"confinement_Pa", scene.test.confinement},
+          {"axial_strain", s.axial_strain},
+          {"peak_stress_Pa", s.peak_stress},
+          {"peak_strain", s.peak_strain},
+          {"last_stress_Pa", s.last_stress},
+          {"volumetric_strain", s.volumetric_strain},
+          {"localisation", s.localisation},
+          {"iterations", s.iterations},
+          {"trials", s.trials},
+          {"substeps", s.substeps},
+          {"rejected", s.rejected},
+          {"tangents", s.tangents},
+          {"rve_steps", std::llround(s.rve_steps)}};
+}
 } // namespace isostat

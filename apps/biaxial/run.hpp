@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/biaxial/scene.hpp"
-#include "apps/deposit/program.hpp"
+#include "apps/common/scene_program.hpp"
+#include "base/files/json.hpp"
 
 namespace isostat
 {

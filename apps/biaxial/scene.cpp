@@ -13,8 +13,6 @@ namespace isostat
 {
 namespace
 {
-constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
-
 using namespace ranges;
 
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
@@ -50,7 +48,7 @@ constexpr Key block_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.mesh.points; }},
 
   {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
-   .choices = material_choices,
+   .choices = material_names,
    .text = "Linear elastic, parallel slip elements (Iwan), or a packing of grains at every Gauss point.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/common/history.hpp"
+// Columns and rows of history.csv.
+#include "apps/common/run_output.hpp"
 
 #include "dem/drive/rate_control.hpp"
 #include "dem/measure/unbalanced.hpp"

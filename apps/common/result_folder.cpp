@@ -27,6 +27,12 @@ std::string quoted(const fs::path &path)
 }
 } // namespace
 
+fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
+{
+  const fs::path &folder = requested.empty() ? of_scene : requested;
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
 void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
@@ -108,5 +114,14 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   if (std::system(command.c_str()) != 0)
     return fmt::format("figures were not drawn; see {}", log.string());
   return fmt::format("figures in {}", (folder / "figures").string());
+}
+
+void leave_summary(const fs::path &folder, const std::string &text, const std::string &times, const char *program,
+                   bool figures)
+{
+  write_replacing(folder / "summary.txt", text);
+  fmt::print("{}{}", text, times);
+  if (figures)
+    fmt::print("  {}\n", draw_figures(folder, program));
 }
 } // namespace isostat

@@ -17,6 +17,11 @@ enum class FolderUse
   resume     ///< goes on from the newest checkpoint
 };
 
+inline FolderUse folder_use(bool overwrite) { return overwrite ? FolderUse::overwrite : FolderUse::fresh; }
+
+/// What --output says, without a slash at the end, or the scene's own folder.
+std::filesystem::path output_folder(const std::filesystem::path &requested, const std::filesystem::path &of_scene);
+
 /// Looks whether a run may use the folder, and makes it if it is missing. Removes nothing: call it first, so that a
 /// mistake shows before hours of preparation.
 /// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
@@ -40,4 +45,8 @@ void write_provenance(const std::filesystem::path &folder, const Scene &scene, c
 /// Draws the figures of a results folder with the Python package `figures`.   @param program  that left the folder
 /// @return a line for the summary; never fails a run
 std::string draw_figures(const std::filesystem::path &folder, const std::string &program);
+
+/// Leaves summary.txt, prints it and `times`, and draws the figures of this program unless `figures` is false.
+void leave_summary(const std::filesystem::path &folder, const std::string &text, const std::string &times,
+                   const char *program, bool figures);
 } // namespace isostat

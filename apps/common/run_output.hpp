@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/kill_resume_test.py
+// tested: tests/apps/kill_resume_test.py, tests/regression/regression_test.py
 #pragma once
-#include "apps/common/history.hpp"
 #include "base/files/pvd.hpp"
 #include "base/record/progress.hpp"
+#include "base/record/recorder.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/vtp.hpp"
+#include "dem/measure/summary.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <filesystem>
 
@@ -23,6 +25,14 @@ public:
 private:
   Progress progress_;
 };
+
+/// Columns of history.csv: where the run stands, the micromechanics, of a periodic cell its stress tensor and shear
+/// strain, and the energy balance where it is measured.
+std::vector<RecordColumn> history_columns(const Scene &scene);
+
+/// One row of them.
+std::vector<double> history_row(const Scene &scene, const Assembly &assembly, const DriveState &state,
+                                const Observation &seen, const Micromechanics &micromechanics);
 
 /// Everything a run leaves behind: history, snapshots, ParaView files, events, checkpoints. Never changes the run.
 class RunOutput : public RunObserver

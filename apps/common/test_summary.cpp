@@ -176,8 +176,8 @@ std::string shear_text(const TestSummary &s)
 /// Members of summary.json that only simple shear has.
 Json shear_json(const ShearExtremes &shear)
 {
-  return {{"gamma_max_reached", shear.gamma},
-          {"tau_max_reached", shear.tau},
+  return {{"gamma_max", shear.gamma},
+          {"tau_max", shear.tau},
           {"sigma_v0", shear.sigma_v0},
           {"stress_ratio_max", shear.max_ratio},
           {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};

@@ -20,7 +20,7 @@ struct ShearExtremes
   double requested_ratio = 0; ///< CSR of the scene; 0 if no stage is cyclic [-]
 };
 
-/// What a person wants to know of a finished test, from its history.csv and the driver's state.
+/// What is reported of a finished test, from its history.csv and the driver's state.
 struct TestSummary
 {
   std::string title;

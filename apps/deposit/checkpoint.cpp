@@ -14,28 +14,25 @@ namespace
 const std::string format_name = "isostat-column-checkpoint";
 constexpr std::uint64_t schema_version = 1;
 
-void put(hdf5::Group group, const std::map<std::string, double> &numbers)
+/// Numbers and vectors of a checkpoint or of the solver's state in it.
+template <class Part>
+void put(hdf5::Group root, const std::string &prefix, const Part &part)
 {
-  for (const auto &[name, value] : numbers)
-    group.set_attribute(name, value);
+  hdf5::Group vectors = root.create_group(prefix + "vectors"), numbers = root.create_group(prefix + "numbers");
+  for (const auto &[name, values] : part.vectors)
+    vectors.write(name, std::span<const double>(values), "-");
+  for (const auto &[name, value] : part.numbers)
+    numbers.set_attribute(name, value);
 }
 
-void put(hdf5::Group group, const std::map<std::string, std::vector<double>> &vectors)
+template <class Part>
+void get(const hdf5::Group &root, const std::string &prefix, Part &part)
 {
-  for (const auto &[name, values] : vectors)
-    group.write(name, std::span<const double>(values), "-");
-}
-
-void get(const hdf5::Group &group, std::map<std::string, double> &numbers)
-{
-  for (const std::string &name : group.attribute_names())
-    numbers[name] = group.attribute<double>(name);
-}
-
-void get(const hdf5::Group &group, std::map<std::string, std::vector<double>> &vectors)
-{
-  for (const std::string &name : group.names())
-    vectors[name] = group.read<double>(name);
+  const hdf5::Group vectors = root.group(prefix + "vectors"), numbers = root.group(prefix + "numbers");
+  for (const std::string &name : vectors.names())
+    part.vectors[name] = vectors.read<double>(name);
+  for (const std::string &name : numbers.attribute_names())
+    part.numbers[name] = numbers.attribute<double>(name);
 }
 
 ColumnCheckpoint read_file(const std::filesystem::path &path)
@@ -47,10 +44,8 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
   checkpoint.state.material = hdf5::read_bytes(root, "material");
-  get(root.group("state_vectors"), checkpoint.state.vectors);
-  get(root.group("state_numbers"), checkpoint.state.numbers);
-  get(root.group("vectors"), checkpoint.vectors);
-  get(root.group("numbers"), checkpoint.numbers);
+  get(root, "state_", checkpoint.state);
+  get(root, "", checkpoint);
   return checkpoint;
 }
 } // namespace
@@ -62,10 +57,8 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
     root.set_attribute("scene", checkpoint.scene);
     root.set_attribute("step", checkpoint.state.step);
     hdf5::write_bytes(root, "material", checkpoint.state.material);
-    put(root.create_group("state_vectors"), checkpoint.state.vectors);
-    put(root.create_group("state_numbers"), checkpoint.state.numbers);
-    put(root.create_group("vectors"), checkpoint.vectors);
-    put(root.create_group("numbers"), checkpoint.numbers);
+    put(root, "state_", checkpoint.state);
+    put(root, "", checkpoint);
   });
 }
 

@@ -27,6 +27,12 @@ struct ColumnCheckpoint
   }
 };
 
+/// A number of a checkpoint that counts; 0 without one.
+inline std::size_t counter(const ColumnCheckpoint *checkpoint, const char *name)
+{
+  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
+}
+
 /// As folder/last.h5 with folder/previous.h5 (base/record/checkpoint_folder.hpp).
 /// @throws RunFailure  disk full, not writable: the older ones survive
 void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint);

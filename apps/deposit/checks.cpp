@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a column's scene.
-#include "apps/deposit/schema.hpp"
+#include "apps/deposit/scene.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"

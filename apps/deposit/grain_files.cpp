@@ -2,9 +2,10 @@
 #include "apps/deposit/grain_files.hpp"
 
 #include "apps/deposit/ranks.hpp"
-#include "base/error.hpp"
+#include "coupling/element/strain_record.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/vtp.hpp"
+#include "dem/measure/summary.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -13,66 +14,90 @@
 
 namespace isostat
 {
-namespace
-{
 namespace fs = std::filesystem;
 
-/// The columns of a profile among those of Micromechanics.
+namespace
+{
+/// The columns of a profile among those of Micromechanics, the redundancy index first.
 constexpr const char *profile_columns[] = {"IR", "Z", "F_yx", "f_S", "f_R", "f_SR"};
 
 std::size_t column_number(const std::string &name)
 {
   const auto &columns = Micromechanics::columns();
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    if (columns[k].first == name)
-      return k;
-  throw RunFailure("micromechanics have no column " + name);
+  return static_cast<std::size_t>(
+      std::find_if(columns.begin(), columns.end(), [&](const auto &column) { return column.first == name; }) -
+      columns.begin());
 }
 
-std::size_t counter(const ColumnCheckpoint *checkpoint, const std::string &name)
+std::vector<std::size_t> counted_to(std::size_t n)
 {
-  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
+  std::vector<std::size_t> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
 }
 } // namespace
 
 GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil,
                        const std::vector<double> &depths, const ColumnCheckpoint *resumed)
-    : folder_(std::move(folder)), grains_(*soil.grains), from_above_(soil.grains_places.size()),
-      n_snapshots_(counter(resumed, "grain_snapshots"))
+    : folder_(std::move(folder)), grains_(*soil.grains),
+      pictured_(nearest_grains(soil, depths, scene.grain_output.snapshot_depths)),
+      followed_(nearest_grains(soil, depths, scene.grain_output.path_depths)),
+      n_snapshots_(counter(resumed, "grain_snapshots")), n_path_rows_(counter(resumed, "grain_paths"))
 {
   if (resumed)
     min_ = {resumed->numbers.at("min_IR"), resumed->numbers.at("min_IR_depth"), resumed->numbers.at("min_IR_time")};
   for (std::size_t place : soil.grains_places)
     depths_.push_back(depths[place]);
-  std::iota(from_above_.begin(), from_above_.end(), 0);
-  std::stable_sort(from_above_.begin(), from_above_.end(),
+  history_.columns = counted_to(Micromechanics::columns().size());
+  history_.points = nearest_grains(soil, depths, scene.output.depths);
+  for (const char *name : profile_columns)
+    profiles_.columns.push_back(column_number(name));
+  profiles_.points = counted_to(depths_.size());
+  std::stable_sort(profiles_.points.begin(), profiles_.points.end(),
                    [&](std::size_t a, std::size_t b) { return depths_[a] < depths_[b]; });
-  chosen_ = nearest_grains(soil, depths, scene.output.depths);
-  pictured_ = nearest_grains(soil, depths, scene.grain_output.snapshot_depths);
+}
+
+fs::path GrainFiles::path_folder(std::size_t k) const { return folder_ / "paths" / fmt::format("d{}", k); }
+
+void GrainFiles::open(Table &table, const char *folder, std::size_t resume_rows) const
+{
+  std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
+  for (std::size_t k = 0; k < table.points.size(); ++k)
+    {
+      columns.push_back({fmt::format("{}{}_depth", table.prefix, k), "m"});
+      for (std::size_t column : table.columns)
+        {
+          const auto &[name, unit] = Micromechanics::columns()[column];
+          columns.push_back({fmt::format("{}{}_{}", table.prefix, k, name), unit});
+        }
+    }
+  table.rows = std::make_unique<Recorder>(folder_ / folder, columns, resume_rows);
 }
 
 void GrainFiles::open(const ColumnCheckpoint *resumed)
 {
-  std::vector<RecordColumn> history = {{"step", "-"}, {"time", "s"}}, profiles = history;
-  for (std::size_t k = 0; k < chosen_.size(); ++k)
-    {
-      history.push_back({fmt::format("d{}_depth", k), "m"});
-      for (const auto &[name, unit] : Micromechanics::columns())
-        history.push_back({fmt::format("d{}_{}", k, name), unit});
-    }
-  for (std::size_t k = 0; k < from_above_.size(); ++k)
-    {
-      profiles.push_back({fmt::format("p{}_depth", k), "m"});
-      for (const char *name : profile_columns)
-        profiles.push_back({fmt::format("p{}_{}", k, name), "-"});
-    }
-  history_ = std::make_unique<Recorder>(folder_ / "grain_history", history, counter(resumed, "grain_rows"));
-  profiles_ = std::make_unique<Recorder>(folder_ / "grain_profiles", profiles, counter(resumed, "grain_profiles"));
-  if (pictured_.empty())
-    return;
-  fs::create_directories(folder_ / "grains");
-  for (std::size_t k = 0; k < pictured_.size(); ++k)
-    pictures_.push_back(std::make_unique<PvdCollection>(folder_ / "grains" / fmt::format("d{}.pvd", k), n_snapshots_));
+  on_first_rank([&] {
+    open(history_, "grain_history", counter(resumed, "grain_rows"));
+    open(profiles_, "grain_profiles", counter(resumed, "grain_profiles"));
+    if (!pictured_.empty())
+      fs::create_directories(folder_ / "grains");
+    for (std::size_t k = 0; k < pictured_.size(); ++k)
+      pictures_.push_back(
+          std::make_unique<PvdCollection>(folder_ / "grains" / fmt::format("d{}.pvd", k), n_snapshots_));
+    for (std::size_t k = 0; k < followed_.size(); ++k)
+      paths_.push_back(std::make_unique<Recorder>(path_folder(k), strain_record_columns(), n_path_rows_));
+  });
+  together([&] {
+    for (std::size_t k = 0; !resumed && k < followed_.size(); ++k)
+      if (const Rve *element = grains_.element(followed_[k]))
+        {
+          StrainRecord start;
+          start.depth = depths_[followed_[k]];
+          start.packing = element->pack();
+          start.settings = grains_.element_settings();
+          write_strain_record_start(path_folder(k), start);
+        }
+  });
 }
 
 /// Micromechanics of the first packing of some points, one after the other, on every rank.
@@ -92,42 +117,37 @@ std::vector<double> GrainFiles::measured(const std::vector<std::size_t> &points)
   return values; // all but the owner added zeros: exact
 }
 
-void GrainFiles::record(std::uint64_t step, double time)
+/// @return the row: step, time, and for each point its depth and the columns
+std::vector<double> GrainFiles::append(Table &table, std::uint64_t step, double time) const
 {
-  if (chosen_.empty())
-    return;
   const std::size_t width = Micromechanics::columns().size();
-  const std::vector<double> values = measured(chosen_);
+  const std::vector<double> values = measured(table.points);
   std::vector<double> row = {static_cast<double>(step), time};
-  for (std::size_t k = 0; k < chosen_.size(); ++k)
+  for (std::size_t k = 0; k < table.points.size(); ++k)
     {
-      row.push_back(depths_[chosen_[k]]);
-      row.insert(row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * width),
-                 values.begin() + static_cast<std::ptrdiff_t>((k + 1) * width));
+      row.push_back(depths_[table.points[k]]);
+      for (std::size_t column : table.columns)
+        row.push_back(values[k * width + column]);
     }
   together([&] {
-    if (history_)
-      history_->append(row);
+    if (table.rows)
+      table.rows->append(row);
   });
+  return row;
+}
+
+void GrainFiles::record(std::uint64_t step, double time)
+{
+  if (!history_.points.empty())
+    append(history_, step, time);
 }
 
 void GrainFiles::profile(std::uint64_t step, double time)
 {
-  const std::size_t width = Micromechanics::columns().size(), redundancy = column_number("IR");
-  const std::vector<double> values = measured(from_above_);
-  std::vector<double> row = {static_cast<double>(step), time};
-  for (std::size_t k = 0; k < from_above_.size(); ++k)
-    {
-      row.push_back(depths_[from_above_[k]]);
-      for (const char *name : profile_columns)
-        row.push_back(values[k * width + column_number(name)]);
-      if (const double ir = values[k * width + redundancy]; ir < min_.redundancy)
-        min_ = {ir, depths_[from_above_[k]], time};
-    }
-  together([&] {
-    if (profiles_)
-      profiles_->append(row);
-  });
+  const std::vector<double> row = append(profiles_, step, time);
+  for (std::size_t at = 2; at < row.size(); at += 1 + profiles_.columns.size())
+    if (row[at + 1] < min_.redundancy)
+      min_ = {row[at + 1], row[at], time};
 }
 
 void GrainFiles::snapshots(double time)
@@ -154,19 +174,33 @@ void GrainFiles::write_packings(double time)
     pictures_[k]->append(time, fmt::format("d{}_{:05d}.vtp", k, n_snapshots_));
 }
 
+void GrainFiles::follow(std::uint64_t step, double time)
+{
+  if (followed_.empty())
+    return;
+  ++n_path_rows_;
+  together([&] {
+    for (std::size_t k = 0; k < paths_.size(); ++k)
+      paths_[k]->append(strain_record_row(step, time, grains_.increment(followed_[k]), grains_.stress(followed_[k]),
+                                          grains_.steps_of(followed_[k])));
+  });
+}
+
 void GrainFiles::flush()
 {
-  if (history_)
-    history_->flush();
-  if (profiles_)
-    profiles_->flush();
+  for (const Table *table : {&history_, &profiles_})
+    if (table->rows)
+      table->rows->flush();
+  for (const auto &rows : paths_)
+    rows->flush();
 }
 
 std::map<std::string, double> GrainFiles::counters() const
 {
-  return {{"grain_rows", history_ ? static_cast<double>(history_->n_rows()) : 0},
-          {"grain_profiles", profiles_ ? static_cast<double>(profiles_->n_rows()) : 0},
+  return {{"grain_rows", static_cast<double>(history_.n_rows())},
+          {"grain_profiles", static_cast<double>(profiles_.n_rows())},
           {"grain_snapshots", static_cast<double>(n_snapshots_)},
+          {"grain_paths", static_cast<double>(n_path_rows_)},
           {"min_IR", min_.redundancy},
           {"min_IR_depth", min_.depth},
           {"min_IR_time", min_.time}};

@@ -4,7 +4,6 @@
 #include "apps/deposit/soil_material.hpp"
 #include "base/files/pvd.hpp"
 #include "base/record/recorder.hpp"
-#include "dem/measure/summary.hpp"
 
 #include <filesystem>
 
@@ -14,8 +13,10 @@ namespace isostat
 /// first packing of the points nearest to output.depths (columns as in the element tests' history, prefix d0_, d1_ ...;
 /// `depths` of summary.json says where); grain_profiles/history.csv and .h5, redundancy index, coordination number and
 /// vertical fabric of every point with grains from the surface down (prefix p0_, p1_ ..., its depth in the first row's
-/// `depth` columns); whole packings at grains.snapshot_depths in grains/. Everything is of the instant of the row, the
-/// start of a step. tested: tests/apps/grain_column_test.py
+/// `depth` columns); whole packings at grains.snapshot_depths in grains/; what the packings nearest to
+/// grains.path_depths go through, every step of it, in paths/d0, paths/d1 ... as StrainRecord has them. Of several
+/// realisations of a point it is the first. Rows, profiles and snapshots are of the start of a step.
+/// tested: tests/apps/grain_column_test.py
 class GrainFiles
 {
 public:
@@ -23,13 +24,15 @@ public:
   GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
              const std::vector<double> &depths, const ColumnCheckpoint *resumed);
 
-  /// On the rank that writes, but for snapshots.   @param resumed  null: start anew
+  /// Starts or cuts the files.   Collective.   @param resumed  null: start anew   @throws RunFailure  on all ranks
   void open(const ColumnCheckpoint *resumed);
   /// Rows.   Collective; before the step that starts at `time`.   @throws RunFailure  on all ranks
   void record(std::uint64_t step, double time);
   void profile(std::uint64_t step, double time);
   /// Whole packings, each written by the rank that has it.   Collective.   @throws RunFailure  on all ranks
   void snapshots(double time);
+  /// Paths, after a step that ended at `time`.   Collective.   @throws RunFailure  on all ranks
+  void follow(std::uint64_t step, double time);
   void flush();
   /// What a checkpoint has to keep.
   std::map<std::string, double> counters() const;
@@ -41,18 +44,31 @@ public:
   const Least &minimum() const { return min_; }
 
 private:
-  void write_packings(double time);
+  /// Micromechanics of some points, side by side.
+  struct Table
+  {
+    const char *prefix;
+    std::vector<std::size_t> columns = {}; ///< among those of Micromechanics
+    std::vector<std::size_t> points = {};  ///< of grains_
+    std::unique_ptr<Recorder> rows = {};   ///< on the rank that writes
+
+    std::size_t n_rows() const { return rows ? rows->n_rows() : 0; }
+  };
+  void open(Table &table, const char *folder, std::size_t resume_rows) const;
+  std::vector<double> append(Table &table, std::uint64_t step, double time) const;
   std::vector<double> measured(const std::vector<std::size_t> &points) const;
+  void write_packings(double time);
+  std::filesystem::path path_folder(std::size_t k) const;
 
   std::filesystem::path folder_;
   const RveMaterial &grains_;
-  std::vector<double> depths_;          ///< of the points of grains_, m
-  std::vector<std::size_t> from_above_; ///< points of grains_ from the surface down
-  std::vector<std::size_t> chosen_;     ///< nearest to output.depths
-  std::vector<std::size_t> pictured_;   ///< nearest to grains.snapshot_depths
-  std::uint64_t n_snapshots_;           ///< the same on every rank
-  std::unique_ptr<Recorder> history_, profiles_;
+  std::vector<double> depths_;            ///< of the points of grains_, m
+  Table history_{"d"}, profiles_{"p"};    ///< nearest to output.depths; all points from the surface down
+  std::vector<std::size_t> pictured_;     ///< nearest to grains.snapshot_depths
+  std::vector<std::size_t> followed_;     ///< nearest to grains.path_depths
+  std::size_t n_snapshots_, n_path_rows_; ///< the same on every rank
   std::vector<std::unique_ptr<PvdCollection>> pictures_;
+  std::vector<std::unique_ptr<Recorder>> paths_;
   Least min_;
 };
 } // namespace isostat

@@ -11,25 +11,18 @@
 
 namespace isostat
 {
-PointValues point_values(const Gradient &gradient, const Stress &stress, double pressure, double vertical_stress)
+PointValues point_values(const ColumnInstant &instant, std::size_t q, std::span<const double> vertical_stress)
 {
-  PointValues v;
-  v.gamma_xz = gradient[2] + gradient[6];
-  v.gamma_yz = gradient[5] + gradient[7];
-  v.eps_zz = -gradient[8];
-  v.tau_xz = stress[4];
-  v.tau_yz = stress[3];
-  v.sigma_v = -stress[2];
-  v.p = mean_effective(stress);
-  v.u = pressure;
-  v.ru = pressure / vertical_stress;
-  return v;
+  const Gradient &h = instant.gradients[q];
+  const Stress &s = instant.stresses[q];
+  const double u = instant.pressure[q];
+  return {h[2] + h[6], h[5] + h[7], -h[8], s[4], s[3], -s[2], mean_effective(s), u, u / vertical_stress[q]};
 }
 
 namespace
 {
 constexpr unsigned n_vectors = 2; ///< displacement, velocity
-constexpr unsigned n_fields = 3 * n_vectors + 9;
+constexpr unsigned n_fields = 3 * n_vectors + point_columns.size();
 
 /// deal.II's writer, fed with elements that lie in space whatever the dimension of the mesh.
 template <int dim>
@@ -74,16 +67,14 @@ std::vector<unsigned> patch_order(const dealii::DoFHandler<dim> &nodes, unsigned
 }
 
 /// Means over the points of a cell.
-template <int dim>
-std::array<double, 9> cell_means(const Discretisation<dim> &space, const ColumnInstant &instant, std::size_t cell,
-                                 std::span<const double> vertical_stress)
+PointValues cell_means(const CellTables &space, const ColumnInstant &instant, std::size_t cell,
+                       std::span<const double> vertical_stress)
 {
-  std::array<double, 9> mean = {};
+  PointValues mean = {};
   const std::size_t n = space.points_per_cell();
   for (std::size_t q = cell * n; q < (cell + 1) * n; ++q)
     {
-      const auto row =
-          point_values(instant.gradients[q], instant.stresses[q], instant.pressure[q], vertical_stress[q]).row();
+      const PointValues row = point_values(instant, q, vertical_stress);
       for (std::size_t k = 0; k < row.size(); ++k)
         mean[k] += row[k] / static_cast<double>(n);
     }
@@ -111,7 +102,7 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
           patch.vertices[v] = dealii::Point<3>(x, y, z);
         }
       patch.data.reinit(n_fields, static_cast<unsigned>(order.size()));
-      const std::array<double, 9> means = cell_means(space, instant, cell, vertical_stress);
+      const PointValues means = cell_means(space, instant, cell, vertical_stress);
       for (std::size_t a = 0; a < order.size(); ++a)
         {
           for (unsigned c = 0; c < 3; ++c)

@@ -11,6 +11,22 @@
 
 namespace isostat
 {
+/// What a point shows in tables: compression positive but for the shear pairs, which keep the sign they have in the
+/// soil (gamma_xz drives tau_xz).
+inline constexpr std::array<std::pair<const char *, const char *>, 9> point_columns = {{{"gamma_xz", "-"},
+                                                                                        {"gamma_yz", "-"},
+                                                                                        {"eps_zz", "-"},
+                                                                                        {"tau_xz", "Pa"},
+                                                                                        {"tau_yz", "Pa"},
+                                                                                        {"sigma_v", "Pa"},
+                                                                                        {"p", "Pa"},
+                                                                                        {"u", "Pa"},
+                                                                                        {"ru", "-"}}};
+using PointValues = std::array<double, point_columns.size()>;
+
+/// The values of point q.   @param vertical_stress  sigma'_v0 of every point, Pa
+PointValues point_values(const ColumnInstant &instant, std::size_t q, std::span<const double> vertical_stress);
+
 /// A column for ParaView: displacement and velocity at the nodes, means over each element of excess pore pressure,
 /// r_u, shear strain and effective stress (compression positive; Pa, [-]). Lies along z in any dimension. No date in
 /// it: the same state is the same bytes.
@@ -30,7 +46,7 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 class ProfileFile
 {
 public:
-  static constexpr std::size_t n_quantities = 9;
+  static constexpr std::size_t n_quantities = point_columns.size();
   /// @param resume_rows  rows of an existing file that are kept; InputError if it has fewer, or other depths
   ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
               std::size_t resume_rows = 0);
@@ -54,27 +70,6 @@ private:
   std::vector<double> times_;
   std::array<std::vector<double>, n_quantities> waiting_;
 };
-
-/// What a point shows in tables: compression positive but for the shear pairs, which keep the sign they have in the
-/// soil (gamma_xz drives tau_xz).
-struct PointValues
-{
-  double gamma_xz = 0, gamma_yz = 0, eps_zz = 0;                    ///< [-]
-  double tau_xz = 0, tau_yz = 0, sigma_v = 0, p = 0, u = 0, ru = 0; ///< Pa; ru [-]
-  std::array<double, 9> row() const { return {gamma_xz, gamma_yz, eps_zz, tau_xz, tau_yz, sigma_v, p, u, ru}; }
-};
-inline constexpr std::array<std::pair<const char *, const char *>, 9> point_columns = {{{"gamma_xz", "-"},
-                                                                                        {"gamma_yz", "-"},
-                                                                                        {"eps_zz", "-"},
-                                                                                        {"tau_xz", "Pa"},
-                                                                                        {"tau_yz", "Pa"},
-                                                                                        {"sigma_v", "Pa"},
-                                                                                        {"p", "Pa"},
-                                                                                        {"u", "Pa"},
-                                                                                        {"ru", "-"}}};
-
-/// @param vertical_stress  sigma'_v0 of the point, Pa
-PointValues point_values(const Gradient &gradient, const Stress &stress, double pressure, double vertical_stress);
 
 /// p' of an effective stress, compression positive, Pa.
 inline double mean_effective(const Stress &stress) { return -(stress[0] + stress[1] + stress[2]) / 3; }

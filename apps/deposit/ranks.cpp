@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/ranks.hpp"
 
+#include "apps/common/command_line.hpp"
+#include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "fem/libraries.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +16,16 @@ namespace isostat
 namespace
 {
 int loud_stderr = 2; ///< a copy of it from before silence_others()
+
+void silence_others()
+{
+  if (ranks().first())
+    return;
+  loud_stderr = dup(2);
+  if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
+    throw RunFailure("/dev/null cannot be opened");
 }
+} // namespace
 
 Ranks ranks()
 {
@@ -23,13 +35,14 @@ Ranks ranks()
   return r;
 }
 
-void silence_others()
+int guarded_on_ranks(const std::function<void()> &program)
 {
-  if (ranks().first())
-    return;
-  loud_stderr = dup(2);
-  if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
-    throw RunFailure("/dev/null cannot be opened");
+  const Libraries libraries;
+  catch_signals(); // after PETSc, which has handlers of its own
+  return guarded([&] {
+    silence_others();
+    program();
+  });
 }
 
 void on_first_rank(const std::function<void()> &task)

@@ -15,8 +15,9 @@ struct Ranks
 
 Ranks ranks();
 
-/// From here on only the first rank is heard on stdout and stderr.
-void silence_others();
+/// Runs a program on all ranks as guarded() does (apps/common/command_line.hpp). PETSc reads no option from the command
+/// line, signals are ours, and only the first rank is heard on stdout and stderr.   @return its exit code
+int guarded_on_ranks(const std::function<void()> &program);
 
 /// `task` on the first rank; the others wait. What it throws is thrown on all ranks.   Collective.
 void on_first_rank(const std::function<void()> &task);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/scene.hpp"
 
-#include "apps/deposit/schema.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
 
@@ -28,6 +27,24 @@ void find_motion_files(const SceneDocument &document, const std::string &path, C
     if (scene.motions[i].kind == MotionKind::record)
       scene.motions[i].file = found_file(document, fmt::format("motion.{}.file", i), path, scene.motions[i].file);
 }
+
+Motion motion_of(const ColumnMotion &motion)
+{
+  switch (motion.kind)
+    {
+    case MotionKind::record:
+      {
+        const Motion record = corrected(read_motion(motion.file, motion.unit), motion.baseline);
+        return motion.peak ? scaled_to_peak(record, *motion.peak) : scaled(record, motion.factor);
+      }
+    case MotionKind::harmonic:
+      return harmonic_motion(motion.amplitude, motion.frequency, motion.duration, motion.ramp,
+                             motion.sample_interval());
+    case MotionKind::ricker:
+      return ricker_motion(motion.amplitude, motion.frequency, motion.peak_time(), motion.sample_interval());
+    }
+  return {};
+}
 } // namespace
 
 double ColumnLayer::small_strain_modulus() const
@@ -43,13 +60,15 @@ IwanParameters ColumnLayer::sand() const
   return sand;
 }
 
-double ColumnLoad::traction(double time) const
+std::array<double, 3> ColumnLoad::traction(double time) const
 {
+  std::array<double, 3> traction = {};
   if (kind == LoadKind::none || time < 0)
-    return 0;
+    return traction;
   const double rise = time < ramp ? (1 - std::cos(std::numbers::pi * time / ramp)) / 2 : 1;
   const double shape = kind == LoadKind::harmonic ? std::sin(2 * std::numbers::pi * frequency * time) : 1;
-  return (direction == Axis::z ? -1 : 1) * amplitude * rise * shape;
+  traction[static_cast<std::size_t>(direction)] = (direction == Axis::z ? -1 : 1) * amplitude * rise * shape;
+  return traction;
 }
 
 std::vector<double> ColumnAnalysis::times() const
@@ -85,6 +104,16 @@ SoilProfile soil_profile(const ColumnScene &scene)
   return profile;
 }
 
+std::array<Motion, 3> column_motions(const ColumnScene &scene)
+{
+  std::array<Motion, 3> motions;
+  for (const ColumnMotion &motion : scene.motions)
+    {
+      const Motion once = motion_of(motion);
+      motions[static_cast<std::size_t>(motion.axis)] = motion.again ? repeated(once, *motion.again) : once;
+    }
+  return motions;
+}
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides)
 {

@@ -16,6 +16,9 @@
 
 namespace isostat
 {
+class SceneDocument;
+struct SceneSchema;
+
 struct ColumnMesh
 {
   unsigned dimension = 1;    ///< 1 the column; 2 (x, z) and 3 with tied sides
@@ -41,6 +44,10 @@ enum class LayerMaterial
   iwan,
   grains ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
 };
+
+/// Their words in scenes and summaries, and those of Drainage.
+inline constexpr const char *material_names[] = {"elastic", "iwan", "grains"};
+inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
 
 /// A layer with its material.
 struct ColumnLayer : Layer
@@ -110,8 +117,8 @@ struct ColumnLoad
   double frequency = 0; ///< harmonic: amplitude sin(2 pi f t)
   double ramp = 0;      ///< smooth rise from 0 to the whole, s
 
-  /// Traction along `direction` at a time as the solver wants it: tension positive, Pa. The surcharge is not in it.
-  double traction(double time) const;
+  /// Traction at a time as the solvers take it: tension positive, Pa. The surcharge is not in it.
+  std::array<double, 3> traction(double time) const;
 
   bool operator==(const ColumnLoad &) const = default;
 };
@@ -205,6 +212,12 @@ ColumnScene parse_column_scene(const std::string &text, const std::string &name,
 /// The scene as a complete TOML file: parse_column_scene(to_toml(s)) equals s to the bit for every s that was read. Not
 /// kept, because it has no effect: keys foreign to the kind of their table.
 std::string to_toml(const ColumnScene &scene);
+
+/// The keys of a soil column: fields are those of a ColumnScene, of a ColumnLayer below [[layer]] and of a ColumnMotion
+/// below [[motion]].
+const SceneSchema &column_schema();
+/// Rules that bind several keys.   @throws InputError   tested: tests/apps/deposit/scene_error_test.cpp
+void check_column(const SceneDocument &document, ColumnScene &scene);
 
 std::string default_column_scene(); ///< commented, with all defaults, units and ranges (--print-defaults)
 std::string column_scene_manual();  ///< docs/column_scene_reference.md (a test compares them)

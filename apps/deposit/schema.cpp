@@ -2,7 +2,7 @@
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
 // binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
 // packings in coupling/scene/packings.cpp: other programs have them too.
-#include "apps/deposit/schema.hpp"
+#include "apps/deposit/scene.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"
@@ -12,8 +12,6 @@ namespace isostat
 {
 namespace
 {
-constexpr const char *drainage_choices[] = {"dry", "undrained", "coupled"};
-constexpr const char *material_choices[] = {"elastic", "iwan", "grains"};
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *axis_choices[] = {"x", "y", "z"};
 constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
@@ -85,7 +83,7 @@ constexpr Key ground_keys[] = {
            "number of ranks.",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.distributed; }},
 
-  {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_choices,
+  {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_names,
    .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure coupled "
            "(u-p).",
    .field = [](ColumnScene &s) -> Field { return &s.water.drainage; }},
@@ -128,7 +126,7 @@ constexpr Key ground_keys[] = {
    .text = "Horizontal over vertical effective stress in situ.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.k0; }},
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
-   .choices = material_choices,
+   .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
            "the mean effective stress, or a packing of grains at every Gauss point, see [grains].",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},

@@ -2,7 +2,7 @@
 #include "apps/deposit/soil_material.hpp"
 
 #include "base/error.hpp"
-#include "fem/material/composite.hpp"
+#include "fem/material/elastic.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,85 +12,109 @@ namespace isostat
 {
 namespace
 {
-/// Points of a layer.
-template <int dim>
-std::vector<std::size_t> points_of(const Discretisation<dim> &space, std::size_t layer)
+/// A layer at some points with their stress.
+std::unique_ptr<Material> formula_layer(const ColumnScene &scene, std::size_t layer,
+                                        const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ)
 {
-  std::vector<std::size_t> points;
-  for (std::size_t q = 0; q < space.n_points(); ++q)
-    if (space.cell_layer[q / space.points_per_cell()] == layer)
-      points.push_back(q);
-  return points;
+  try
+    {
+      auto material = formula_material(scene.layers[layer], points.size());
+      std::vector<Stress> stresses;
+      for (std::size_t q : points)
+        stresses.push_back(in_situ[q]);
+      material->set_initial_stress(stresses);
+      return material;
+    }
+  catch (const InputError &error)
+    {
+      throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct the "
+                                   "layer's k0 or its material.",
+                                   layer, scene.layers[layer].name, error.what()));
+    }
 }
 } // namespace
 
+std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
+{
+  if (layer.material == LayerMaterial::iwan)
+    return std::make_unique<Iwan>(layer.sand(), n_points);
+  return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
+}
+
+std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh)
+{
+  const SoilProfile soil = soil_profile(scene);
+  std::vector<Stress> stresses(mesh.n_points());
+  for (std::size_t q = 0; q < stresses.size(); ++q)
+    {
+      const double vertical = soil.vertical_effective_stress(mesh.position[q][2], scene.load.surcharge);
+      const double k0 = soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
+      stresses[q] = {-k0 * vertical, -k0 * vertical, -vertical, 0, 0, 0};
+    }
+  return stresses;
+}
+
+SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads)
+{
+  const std::vector<Stress> in_situ = in_situ_stress(scene, mesh);
+  std::vector<std::vector<std::size_t>> points(scene.layers.size());
+  for (std::size_t q = 0; q < mesh.n_points(); ++q)
+    points[mesh.cell_layer[q / mesh.points_per_cell()]].push_back(q);
+  SoilMaterial soil;
+  std::vector<CompositeMaterial::Part> parts;
+  std::vector<SpecimenRequest> requests;
+  std::vector<Stress> stresses;                               ///< of the points with grains
+  for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
+    if (scene.layers[layer].material != LayerMaterial::grains)
+      {
+        if (!points[layer].empty())
+          parts.push_back({formula_layer(scene, layer, points[layer], in_situ), points[layer]});
+      }
+    else
+      for (std::size_t q : points[layer])
+        {
+          soil.grains_places.push_back(q);
+          requests.push_back(scene.layers[layer].grains);
+          stresses.push_back(in_situ[q]);
+        }
+  if (scene.has_grains())
+    {
+      auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
+                                                  scene.mesh.distributed ? MPI_COMM_SELF : MPI_COMM_WORLD);
+      grains->set_initial_stress(stresses);
+      soil.grains = grains.get();
+      parts.push_back({std::move(grains), soil.grains_places});
+    }
+  soil.material = std::make_unique<TimedMaterial>(std::move(parts));
+  return soil;
+}
+
 std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
-                                        const std::vector<double> &wanted)
+                                        const std::vector<double> &requested)
 {
   std::vector<std::size_t> points;
-  for (double depth : wanted)
+  for (double depth : requested)
     {
-      const auto away = [&](std::size_t point) { return std::abs(depths[soil.grains_places[point]] - depth); };
-      std::size_t best = 0;
-      for (std::size_t point = 1; point < soil.grains_places.size(); ++point)
-        if (away(point) < away(best))
-          best = point;
-      points.push_back(best);
+      const auto away = [&](std::size_t place) { return std::abs(depths[place] - depth); };
+      const auto &places = soil.grains_places;
+      const auto best = std::min_element(places.begin(), places.end(),
+                                         [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
+      points.push_back(static_cast<std::size_t>(best - places.begin()));
     }
   return points;
 }
 
-template <int dim>
-SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads)
-{
-  SoilMaterial soil;
-  if (!scene.has_grains())
-    {
-      soil.material = column_material(scene, space);
-      return soil;
-    }
-  std::vector<CompositeMaterial::Part> parts;
-  std::vector<SpecimenRequest> requests;
-  for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
-    {
-      const ColumnLayer &spec = scene.layers[layer];
-      const std::vector<std::size_t> points = points_of(space, layer);
-      if (spec.material == LayerMaterial::grains)
-        {
-          soil.grains_places.insert(soil.grains_places.end(), points.begin(), points.end());
-          requests.insert(requests.end(), points.size(), spec.grains);
-        }
-      else if (!points.empty())
-        parts.push_back({formula_material(spec, points.size()), points});
-    }
-  auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
-                                              space.shared_out() ? MPI_COMM_SELF : MPI_COMM_WORLD);
-  soil.grains = grains.get();
-  parts.push_back({std::move(grains), soil.grains_places});
-  soil.material = std::make_unique<CompositeMaterial>(std::move(parts));
-  soil.material->set_initial_stress(in_situ_stress(scene, space));
-  return soil;
-}
-
-template <int dim>
-std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space)
+std::array<double, 2> grain_velocities(const ColumnScene &scene, const SoilMaterial &soil, const CellTables &mesh)
 {
   std::vector<WaveModuli> moduli(soil.grains->n_points());
   soil.grains->wave_moduli(moduli);
   std::array<double, 2> range = {1e300, 0};
   for (std::size_t k = 0; k < moduli.size(); ++k)
     {
-      const std::size_t layer = space.cell_layer[soil.grains_places[k] / space.points_per_cell()];
-      const double velocity = std::sqrt(moduli[k].s / space.mesh().soil.layers[layer].density);
+      const std::size_t layer = mesh.cell_layer[soil.grains_places[k] / mesh.points_per_cell()];
+      const double velocity = std::sqrt(moduli[k].s / scene.layers[layer].density);
       range = {std::min(range[0], velocity), std::max(range[1], velocity)};
     }
   return range;
 }
-
-template std::array<double, 2> grain_velocities<1>(const SoilMaterial &, const Discretisation<1> &);
-template std::array<double, 2> grain_velocities<2>(const SoilMaterial &, const Discretisation<2> &);
-template std::array<double, 2> grain_velocities<3>(const SoilMaterial &, const Discretisation<3> &);
-template SoilMaterial soil_material<1>(const ColumnScene &, const Discretisation<1> &, int);
-template SoilMaterial soil_material<2>(const ColumnScene &, const Discretisation<2> &, int);
-template SoilMaterial soil_material<3>(const ColumnScene &, const Discretisation<3> &, int);
 } // namespace isostat

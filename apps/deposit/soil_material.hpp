@@ -1,31 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/apps/soil_column_test.py, tests/apps/grain_column_test.py
 #pragma once
-#include "apps/deposit/materials.hpp"
+#include "apps/deposit/scene.hpp"
+#include "base/stopwatch.hpp"
 #include "coupling/batch/rve_material.hpp"
+#include "fem/material/composite.hpp"
+#include "fem/space/tables.hpp"
 
 namespace isostat
 {
-/// The soil of a scene at the points of a mesh.   tested: tests/apps/grain_column_test.py
+/// A material that knows how long it was at work.
+class TimedMaterial : public CompositeMaterial
+{
+public:
+  using CompositeMaterial::CompositeMaterial;
+
+  double seconds = 0; ///< since the start, or since it was set to 0
+
+  void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override
+  {
+    const TimedScope timed(seconds);
+    CompositeMaterial::trial(increments, stresses);
+  }
+  void commit() override
+  {
+    const TimedScope timed(seconds);
+    CompositeMaterial::commit();
+  }
+};
+
+/// The soil of a scene at the points of a mesh.
 struct SoilMaterial
 {
-  std::unique_ptr<Material> material;
+  std::unique_ptr<TimedMaterial> material;
   const RveMaterial *grains = nullptr;    ///< the part of it that is made of packings; null if there is none
   std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`
 };
 
-/// Materials of all layers, brought to their stress in situ. All points with grains are one material, whose packings
-/// are placed on the ranks together, whatever lies between the layers.   Collective.
-/// @throws InputError  no such specimens, a stress that a layer cannot bear   @throws RunFailure  stress not reached
-template <int dim>
-SoilMaterial soil_material(const ColumnScene &scene, const Discretisation<dim> &space, int threads);
+/// Materials of all layers for the points of this rank, a part for each layer from the base up, brought to their stress
+/// in situ. All points with grains are one material, whose packings are placed on the ranks together, whatever lies
+/// between the layers.   Collective.
+/// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear
+/// @throws RunFailure  stress not reached
+SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads);
+
+/// The material of one layer from a formula, without stress.   @pre layer.material is not grains
+std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
+
+/// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
+/// K0 times as much.
+std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh);
 
 /// The points of `soil.grains` nearest to some depths.
-/// @param depths, wanted  of the points of the mesh, below the surface, m
+/// @param depths, requested  of the points of the mesh, below the surface, m
 std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
-                                        const std::vector<double> &wanted);
+                                        const std::vector<double> &requested);
 
 /// Smallest and largest shear wave velocity of the points with grains, m/s.   Collective.
-template <int dim>
-std::array<double, 2> grain_velocities(const SoilMaterial &soil, const Discretisation<dim> &space);
+std::array<double, 2> grain_velocities(const ColumnScene &scene, const SoilMaterial &soil, const CellTables &mesh);
 } // namespace isostat

@@ -11,14 +11,11 @@
 //   element_test apps/scenes/quick_cyclic_liquefies.toml
 //   element_test apps/scenes/cyclic_dr64.toml --set motion.quasi_static_tolerance=0.02 --output results/coarse
 //   element_test apps/scenes/cyclic_dr64.toml --resume
-#include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/result_folder.hpp"
 #include "apps/common/run_output.hpp"
-#include "apps/common/scene_options.hpp"
+#include "apps/common/scene_program.hpp"
 #include "apps/common/test_summary.hpp"
 #include "base/error.hpp"
-#include "base/files/replace_file.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <fmt/format.h>
@@ -38,15 +35,11 @@ struct Run
   std::unique_ptr<Checkpoint> resumed;
 };
 
-Run resume(const Scene &scene, const fs::path &folder, const StepSettings &how)
+Run resume(const RunRequest<Scene> &request, const StepSettings &how)
 {
   Run run;
-  run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
-  if (run.resumed->scene != to_toml(scene))
-    throw InputError(
-        fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
-                    "of --validate). Resume with the scene and --set values of the first run.",
-                    folder.string(), (folder / "scene.toml").string()));
+  run.resumed = std::make_unique<Checkpoint>(read_checkpoint(request.folder / "checkpoint"));
+  check_same_scene(request.folder, run.resumed->scene, to_toml(request.scene));
   run.assembly = std::make_unique<Assembly>(run.resumed->state, how);
   restore(*run.resumed, *run.assembly);
   run.state = run.resumed->drive;
@@ -54,13 +47,13 @@ Run resume(const Scene &scene, const fs::path &folder, const StepSettings &how)
   return run;
 }
 
-Run start(const Scene &scene, const fs::path &folder, const StepSettings &how, bool quiet)
+Run start(const RunRequest<Scene> &request, const StepSettings &how)
 {
-  PreparationOutput preparation(quiet);
-  const fs::path cache = folder.parent_path() / scene.specimen.cache;
-  const Specimen specimen = obtain_specimen(scene, cache, preparation, how.threads);
+  PreparationOutput preparation(request.quiet);
+  const fs::path cache = request.folder.parent_path() / request.scene.specimen.cache;
+  const Specimen specimen = obtain_specimen(request.scene, cache, preparation, how.threads);
   Snapshot initial = specimen.state;
-  initial.law = scene.contact;
+  initial.law = request.scene.contact;
   Run run;
   run.assembly = std::make_unique<Assembly>(initial, how);
   run.specimen = specimen.numbers;
@@ -69,23 +62,15 @@ Run start(const Scene &scene, const fs::path &folder, const StepSettings &how, b
 
 void run_test(const SceneOptions &options)
 {
-  const Scene scene = read_scene(options.scene, options.set);
-  if (options.validate)
-    {
-      fmt::print("{}", to_toml(scene));
-      return;
-    }
-  const fs::path folder = options.folder(scene.output.folder);
-  const FolderUse use = options.resume      ? FolderUse::resume
-                        : options.overwrite ? FolderUse::overwrite
-                                            : FolderUse::fresh;
+  const RunRequest<Scene> request(read_scene(options.scene, options.set), options);
+  const auto &[scene, folder, command_line, use, quiet, threads] = request;
   check_result_folder(folder, use);
-  const StepSettings how{.measure_energy = scene.output.energy, .threads = options.threads};
-  Run run = options.resume ? resume(scene, folder, how) : start(scene, folder, how, options.quiet);
+  const StepSettings how{.measure_energy = scene.output.energy, .threads = threads};
+  Run run = use == FolderUse::resume ? resume(request, how) : start(request, how);
   open_result_folder(folder, use); // only now that everything else went well may older results go
-  if (!options.resume)
-    write_provenance(folder, scene, options.command_line);
-  RunOutput output(folder, scene, run.specimen, options.quiet, run.resumed.get());
+  if (use != FolderUse::resume)
+    write_provenance(folder, scene, command_line);
+  RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   const Stopwatch watch;
   RunOutcome outcome = RunOutcome::finished;
   try
@@ -95,9 +80,7 @@ void run_test(const SceneOptions &options)
   catch (const RunFailure &failure)
     {
       output.finish();
-      const bool kept = fs::exists(folder / "checkpoint" / "last.h5");
-      throw RunFailure(fmt::format("{}\n  last good checkpoint: {}", failure.what(),
-                                   kept ? (folder / "checkpoint" / "last.h5").string() : "none was written yet"));
+      throw RunFailure(fmt::format("{}\n  {}", failure.what(), last_checkpoint(folder)));
     }
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
@@ -107,42 +90,30 @@ void run_test(const SceneOptions &options)
   TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
   write_json(folder / "summary.json", summary);
-  const std::string text = to_text(summary, scene);
-  write_replacing(folder / "summary.txt", text);
-  fmt::print("{}", text);
-  if (!options.no_figures)
-    fmt::print("  {}\n", draw_figures(folder, "element_test"));
+  leave_summary(folder, to_text(summary, scene), "", "element_test", !options.no_figures);
 }
 
-int run_command(int argc, char **argv)
-{
-  CommandLine line(
-      "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic", argc,
-      argv);
-  SceneOptions options;
-  options.threads = 0;
-  add_scene_options(
-      line, options,
-      {"scene file (TOML); see docs/scene_reference.md", "motion.damping=0.3",
-       "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
-       "results do not depend on it. Give 1 to runs that go side by side",
-       "docs/scene_reference.md"});
-  options.command_line = line.text();
-  return line.run([&] {
-    if (options.print_defaults)
-      fmt::print("{}", default_scene());
-    else if (options.print_manual)
-      fmt::print("{}", scene_manual());
-    else if (options.scene.empty())
-      throw InputError("no scene given. Try element_test apps/scenes/quick_cyclic_liquefies.toml, or --help.");
-    else
-      run_test(options);
-  });
-}
+constexpr SceneProgram element_test{
+    .name = "element_test",
+    .description =
+        "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic",
+    .first_scene = "apps/scenes/quick_cyclic_liquefies.toml",
+    .scene_text = "scene file (TOML); see docs/scene_reference.md",
+    .set_example = "motion.damping=0.3",
+    .threads_text =
+        "threads of this run, 0: as many as the machine has and the packing can feed (one per 2,500 grains); "
+        "results do not depend on it. Give 1 to runs that go side by side",
+    .manual_page = "docs/scene_reference.md",
+    .threads = 0,
+    .defaults = default_scene,
+    .manual = scene_manual,
+    .resolved = [](const std::string &scene,
+                   const std::vector<std::string> &overrides) { return to_toml(read_scene(scene, overrides)); },
+    .run = run_test};
 } // namespace
 
 int main(int argc, char **argv)
 {
   catch_signals();
-  return run_command(argc, argv);
+  return element_test.main(argc, argv);
 }

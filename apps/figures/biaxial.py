@@ -38,8 +38,8 @@ class Block:
 
     def chosen(self):
         """Maps to show: the last one, and others at equal distances in axial strain."""
-        wanted = np.linspace(0, self.strain[-1], PANELS + 1)[1:]
-        return sorted({int(np.argmin(np.abs(self.strain - s))) for s in wanted} - {0})
+        targets = np.linspace(0, self.strain[-1], PANELS + 1)[1:]
+        return sorted({int(np.argmin(np.abs(self.strain - s))) for s in targets} - {0})
 
     def cells(self, values):
         """Means over the elements."""

@@ -18,10 +18,10 @@ def exact_solution(column):
 
 def chosen_rows(time, exact):
     """Rows nearest to round time factors, or spread evenly over the logarithm of time."""
-    wanted = np.geomspace(time[time > 0][0], time[-1], 8) if exact is None else \
+    targets = np.geomspace(time[time > 0][0], time[-1], 8) if exact is None else \
         np.array(TIME_FACTORS) * exact.height**2 / exact.c
-    wanted = wanted[wanted <= 1.05 * time[-1]]
-    return np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+    targets = targets[targets <= 1.05 * time[-1]]
+    return np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
 
 
 def isochrones(column):

@@ -30,8 +30,8 @@ def grains_profiles(column):
               rf"Fabric $F_{{[v-h]}}$, where $Z \geq {LEAST_Z}$", 0.0)]
     figure, panels = plt.subplots(1, 3, figsize=(9.0, 4.3), sharey=True, layout="constrained")
     norm = time_norm(column)
-    wanted = [time[0], *times_of_motion(column, SHARES), time[-1]]
-    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+    targets = [time[0], *times_of_motion(column, SHARES), time[-1]]
+    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
     time_bar(figure, panels, norm, time[-1])
     for axes, (values, label, level), letter in zip(panels, specs, "abc"):
         for row in chosen:

@@ -95,8 +95,8 @@ def highest_frequency(column, dt):
     """To the fourth mode of the column by its travel time, at most 25 Hz and what the rows can show. The velocity of a
     layer of grains is not in the scene."""
     known = column.layers and all(layer["velocity"] for layer in column.layers)
-    wanted = 2 / sum(layer["height"] / layer["velocity"] for layer in column.layers) if known else 20
-    return min(max(5.0, wanted), 25.0, 0.4 / dt)
+    target = 2 / sum(layer["height"] / layer["velocity"] for layer in column.layers) if known else 20
+    return min(max(5.0, target), 25.0, 0.4 / dt)
 
 
 def report_difference(f, ratio, exact, strong, axis, column):

@@ -94,8 +94,8 @@ def profiles(column):
                                   layout="constrained")
     panels = panels[0]
     norm = time_norm(column)
-    wanted = [*times_of_motion(column, SHARES), time[-1]]
-    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in wanted])
+    targets = [*times_of_motion(column, SHARES), time[-1]]
+    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
     time_bar(figure, panels, norm, time[-1])
     for axes, (values, label, level), letter in zip(panels, specs, "abc"):
         for row in chosen:

@@ -73,8 +73,6 @@ std::string difference(const std::string &one, const std::string &other)
       return std::string(b[k]);
   return "lines at the end";
 }
-
-bool is_text(const fs::path &path, const std::string &text) { return fs::exists(path) && read_text(path) == text; }
 } // namespace
 
 std::vector<double> parse_ratios(const std::string &text)
@@ -128,7 +126,7 @@ Campaign::Campaign(Scene scene, const CampaignPlan &plan, fs::path folder)
 
 Campaign::Run Campaign::make_run(std::string name, double ratio, std::uint64_t seed) const
 {
-  Run run{std::move(name), ratio, seed, shared_, {}};
+  Run run{std::move(name), shared_, {}};
   run.result.ratio = ratio;
   run.result.seed = seed;
   run.scene.title = fmt::format("{}; CSR {:g}, seed {}", shared_.title, ratio, seed);
@@ -168,26 +166,19 @@ void Campaign::open()
     fs::create_directories(folder_ / part);
   for (Run &run : runs)
     {
-      write_scene(run);
-      if (!is_finished(run))
-        continue;
-      run.result = read_run(run_folder(run.name), run.scene, stage_);
-      run.result.ratio = run.ratio;
-      run.result.seed = run.seed;
+      write_replacing(scene_file(run), to_toml(run.scene));
+      if (is_finished(run))
+        run.result = read_run(run_folder(run), run.scene, stage_, run.result);
     }
   for (const Run &preparation : preparations())
-    write_scene(preparation);
-}
-
-void Campaign::write_scene(const Run &run) const
-{
-  write_replacing(folder_ / "scenes" / (run.name + ".toml"), to_toml(run.scene));
+    write_replacing(scene_file(preparation), to_toml(preparation.scene));
 }
 
 bool Campaign::is_finished(const Run &run) const
 {
-  const fs::path folder = run_folder(run.name);
-  return fs::exists(folder / "summary.json") && is_text(folder / "scene.toml", to_toml(run.scene));
+  const fs::path folder = run_folder(run);
+  return fs::exists(folder / "summary.json") && fs::exists(folder / "scene.toml") &&
+         read_text(folder / "scene.toml") == to_toml(run.scene);
 }
 
 std::vector<Campaign::Run> Campaign::preparations() const
@@ -200,8 +191,8 @@ std::vector<Campaign::Run> Campaign::preparations() const
       Run run = make_run(fmt::format("specimen_seed{}", seed), plan_.ratios[0], seed);
       run.scene.title = fmt::format("{}; specimen, seed {}", shared_.title, seed);
       run.scene.stages.clear();
-      const auto left =
-          std::count_if(runs.begin(), runs.end(), [&](const Run &r) { return r.seed == seed && !is_finished(r); });
+      const auto left = std::count_if(runs.begin(), runs.end(),
+                                      [&](const Run &r) { return r.result.seed == seed && !is_finished(r); });
       if (left > 0 && !is_finished(run))
         needed.push_back(run);
     }

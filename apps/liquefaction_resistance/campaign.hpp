@@ -26,15 +26,20 @@ public:
   struct Run
   {
     std::string name;
-    double ratio;
-    std::uint64_t seed;
-    Scene scene;
-    RunResult result;
+    Scene scene;      ///< without stages: only prepares a specimen
+    RunResult result; ///< ratio and seed from the start
+
+    void fail(const std::string &why)
+    {
+      result.status = RunStatus::failed;
+      result.note = why;
+    }
   };
 
   /// @throws InputError  no cyclic stage, or not just one; ratios it cannot have; realisations of a specimen file
   Campaign(Scene scene, const CampaignPlan &plan, std::filesystem::path folder);
 
+  const CampaignPlan &plan() const { return plan_; }
   /// What all runs share, as a scene.
   const Scene &shared() const { return shared_; }
   const std::filesystem::path &folder() const { return folder_; }
@@ -46,7 +51,8 @@ public:
   /// Writes the scenes of the runs, and reads what earlier calls have finished.
   void open();
   bool is_finished(const Run &run) const;
-  std::filesystem::path run_folder(const std::string &name) const { return folder_ / "runs" / name; }
+  std::filesystem::path run_folder(const Run &run) const { return folder_ / "runs" / run.name; }
+  std::filesystem::path scene_file(const Run &run) const { return folder_ / "scenes" / (run.name + ".toml"); }
 
   /// Scenes that only prepare specimens which several unfinished runs need; written by open().
   std::vector<Run> preparations() const;
@@ -56,12 +62,14 @@ public:
 
 private:
   Run make_run(std::string name, double ratio, std::uint64_t seed) const;
-  void write_scene(const Run &run) const;
-
   Scene shared_;
   CampaignPlan plan_;
   std::filesystem::path folder_;
   std::size_t stage_ = 0;
   double p0_ = 0; ///< p0' that the scene asks for, Pa: CSR of a triaxial test is q_amp / (2 p0')
 };
+
+/// Writes resistance.csv (one row per run), resistance.json (the fit; read by apps/figures/liquefaction_resistance.py)
+/// and summary.txt into the folder of the campaign.   @return the summary
+std::string write_report(const Campaign &campaign);
 } // namespace isostat

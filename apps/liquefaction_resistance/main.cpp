@@ -13,15 +13,15 @@
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/liquefaction_resistance/campaign.hpp"
 #include "apps/liquefaction_resistance/child_runs.hpp"
-#include "apps/liquefaction_resistance/folder_lock.hpp"
-#include "apps/liquefaction_resistance/progress.hpp"
-#include "apps/liquefaction_resistance/report.hpp"
 #include "base/error.hpp"
-#include "base/files/replace_file.hpp"
+#include "base/record/progress.hpp"
 
 #include <algorithm>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace
@@ -38,10 +38,15 @@ struct Options
   bool overwrite = false, quiet = false, no_figures = false;
 };
 
-fs::path output_folder(const Options &options, const Scene &scene)
+/// Keeps a second program out of a folder while this one works in it. Goes with the process, however it ends.
+/// @throws InputError  another program has it
+void lock(const fs::path &folder)
 {
-  fs::path folder = options.output.empty() ? scene.output.folder + "_resistance" : options.output;
-  return folder.has_filename() ? folder : folder.parent_path();
+  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
+    throw InputError(fmt::format("{}: another liquefaction_resistance is at work in it. Wait for it, or give another "
+                                 "--output.",
+                                 folder.string()));
 }
 
 fs::path element_test()
@@ -56,11 +61,10 @@ fs::path element_test()
 
 ChildRun child_of(const Campaign &campaign, const Campaign::Run &run, const fs::path &program)
 {
-  const fs::path folder = campaign.run_folder(run.name);
-  std::vector<std::string> command = {program.string(), (campaign.folder() / "scenes" / (run.name + ".toml")).string(),
-                                      "--output",       folder.string(),
-                                      "--threads",      "1",
-                                      "--no-figures"};
+  const fs::path folder = campaign.run_folder(run);
+  std::vector<std::string> command = {
+      program.string(), campaign.scene_file(run).string(), "--output", folder.string(), "--threads", "1",
+      "--no-figures"};
   if (fs::exists(folder / "checkpoint" / "last.h5"))
     command.push_back("--resume");
   else
@@ -68,90 +72,125 @@ ChildRun child_of(const Campaign &campaign, const Campaign::Run &run, const fs::
   return {command, campaign.folder() / "logs" / (run.name + ".log")};
 }
 
-RunResult failure(const std::string &why)
-{
-  RunResult result;
-  result.status = RunStatus::failed;
-  result.note = why;
-  return result;
-}
-
 /// What came of a child that ended by itself.
-RunResult result_of(const Campaign &campaign, const Campaign::Run &run, int code, const fs::path &log)
+void take_result(const Campaign &campaign, Campaign::Run &run, int code, const fs::path &log)
 {
-  RunResult result;
   try
     {
       if (code == 0 && !run.scene.stages.empty())
-        result = read_run(campaign.run_folder(run.name), run.scene, campaign.stage());
+        run.result = read_run(campaign.run_folder(run), run.scene, campaign.stage(), run.result);
     }
   catch (const std::exception &error) // its files are damaged
     {
-      result = failure(error.what());
+      run.fail(error.what());
     }
   if (code != 0 && code != 130)
-    result = failure(fmt::format("exit code {}: {}", code, last_line(log)));
-  result.ratio = run.ratio;
-  result.seed = run.seed;
-  return result;
+    run.fail(fmt::format("exit code {}: {}", code, last_line(log)));
 }
 
-/// Runs what is not finished. What fails is noted and does not stop the rest.   @return false if stopped
-bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo, int jobs, CampaignProgress &progress)
+std::string outcome(const RunResult &r)
+{
+  if (r.status == RunStatus::liquefied)
+    return fmt::format("liquefied after {:g} cycles", *r.to_liquefaction);
+  if (r.status == RunStatus::censored)
+    return fmt::format("not liquefied in {:g} cycles", r.cycles);
+  if (r.status == RunStatus::strain)
+    return fmt::format("not liquefied, strain limit after {:g} cycles", r.cycles);
+  return r.status == RunStatus::failed ? "FAILED, " + r.note : "interrupted";
+}
+
+/// Mean wall time of the finished runs, of one ratio if there are any; nothing before the first has ended.
+std::optional<double> mean_seconds(const std::vector<RunResult> &results, std::optional<double> ratio)
+{
+  double sum = 0, n = 0;
+  for (const RunResult &r : results)
+    if (r.wall_seconds && (!ratio || r.ratio == *ratio))
+      {
+        sum += *r.wall_seconds;
+        n += 1;
+      }
+  return n > 0 ? std::optional(sum / n) : ratio ? mean_seconds(results, std::nullopt) : std::nullopt;
+}
+
+/// "27 %  4 of 15 runs, ETA 6 min"
+std::string state(const std::vector<RunResult> &results, int jobs)
+{
+  std::optional<double> left = 0;
+  std::size_t n_left = 0;
+  for (const RunResult &r : results)
+    if (r.status == RunStatus::missing)
+      {
+        ++n_left;
+        const std::optional<double> seconds = mean_seconds(results, r.ratio);
+        left = seconds ? std::optional(*left + *seconds) : std::nullopt;
+      }
+  const std::size_t all = results.size(), n = all - n_left;
+  return fmt::format("{:3.0f} %  {} of {} runs", 100.0 * static_cast<double>(n) / static_cast<double>(all), n, all) +
+         (left && n_left > 0 ? ", ETA " + duration_text(*left / jobs) : "");
+}
+
+/// Runs what is not finished; a line on stderr for each run that ends, and every half minute what is at work. What
+/// fails is noted and does not stop the rest.   @return false if stopped
+bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo, const Options &options)
 {
   const fs::path program = element_test();
   std::vector<ChildRun> children;
   for (const Campaign::Run *run : todo)
     children.push_back(child_of(campaign, *run, program));
-  const ChildEvents events = {[&](std::size_t k, int code, double seconds) {
-                                todo[k]->result = result_of(campaign, *todo[k], code, children[k].log);
-                                progress.finished(*todo[k], code, seconds);
-                              },
-                              [&](const std::vector<std::size_t> &running) {
-                                std::vector<std::string> lines;
-                                if (progress.is_due())
-                                  for (std::size_t k : running)
-                                    lines.push_back(todo[k]->name + ": " + last_line(children[k].log));
-                                progress.tick(lines);
-                              }};
-  return run_children(children, jobs, events);
+  Stopwatch since_line;
+  const auto say = [&](const std::string &line) {
+    if (!options.quiet)
+      fmt::print(stderr, "{}{}\n", state(campaign.results(), options.jobs), line);
+    since_line.restart();
+  };
+  const ChildEvents events = {
+      [&](std::size_t k, int code, double seconds) {
+        Campaign::Run &run = *todo[k];
+        take_result(campaign, run, code, children[k].log);
+        const bool prepared = run.scene.stages.empty() && code == 0;
+        say(fmt::format("  {}: {}, {:.0f} s", run.name, prepared ? "ready" : outcome(run.result), seconds));
+      },
+      [&](const std::vector<std::size_t> &running) {
+        if (since_line.seconds() < 30)
+          return;
+        std::string lines;
+        for (std::size_t k : running)
+          lines += "\n       " + todo[k]->name + ": " + last_line(children[k].log);
+        say(lines);
+      }};
+  return run_children(children, options.jobs, events);
 }
 
 /// Specimens first, so that runs side by side do not prepare the same one.
-bool run_campaign(Campaign &campaign, int jobs, bool quiet)
+bool run_campaign(Campaign &campaign, const Options &options)
 {
-  CampaignProgress progress(campaign, jobs, quiet);
   std::vector<Campaign::Run> specimens = campaign.preparations();
   std::vector<Campaign::Run *> first, then;
   for (Campaign::Run &specimen : specimens)
     first.push_back(&specimen);
-  if (!run_all(campaign, first, jobs, progress))
+  if (!run_all(campaign, first, options))
     return false;
   for (Campaign::Run &run : campaign.runs)
     {
       const auto failed = std::find_if(specimens.begin(), specimens.end(), [&](const Campaign::Run &specimen) {
-        return specimen.seed == run.seed && specimen.result.status == RunStatus::failed;
+        return specimen.result.seed == run.result.seed && specimen.result.status == RunStatus::failed;
       });
       if (failed != specimens.end())
-        {
-          run.result = failure(failed->result.note);
-          run.result.ratio = run.ratio;
-          run.result.seed = run.seed;
-        }
+        run.fail(failed->result.note);
       else if (run.result.status == RunStatus::missing)
         then.push_back(&run);
     }
-  return run_all(campaign, then, jobs, progress);
+  return run_all(campaign, then, options);
 }
 
-void open_folder(const Campaign &campaign, const Options &options, FolderLock &lock)
+void open_folder(const Campaign &campaign, const Options &options)
 {
   if (!options.overwrite)
     campaign.check_folder();
   else
     check_result_folder(campaign.folder(), FolderUse::overwrite);
   make_writable_folder(campaign.folder());
-  lock.take(campaign.folder());
+  lock(campaign.folder());
   if (options.overwrite)
     for (const auto &entry : fs::directory_iterator(campaign.folder()))
       if (entry.path().filename() != "lock")
@@ -162,15 +201,14 @@ void find_resistance(Options options)
 {
   options.plan.ratios = parse_ratios(options.ratios);
   const Scene scene = read_scene(options.scene, options.set);
-  Campaign campaign(scene, options.plan, output_folder(options, scene));
+  Campaign campaign(scene, options.plan, output_folder(options.output, scene.output.folder + "_resistance"));
   element_test();
-  FolderLock lock;
-  open_folder(campaign, options, lock);
+  open_folder(campaign, options);
   write_provenance(campaign.folder(), campaign.shared(), options.command_line);
   campaign.open();
   catch_signals();
-  const bool complete = run_campaign(campaign, options.jobs, options.quiet);
-  const std::string text = write_report(campaign, options.plan);
+  const bool complete = run_campaign(campaign, options);
+  const std::string text = write_report(campaign);
   fmt::print("{}", text);
   if (!options.no_figures && fit_power_law(campaign.results()))
     fmt::print("  {}\n", draw_figures(campaign.folder(), "liquefaction_resistance"));
@@ -180,33 +218,33 @@ void find_resistance(Options options)
     if (result.status == RunStatus::failed)
       throw RunFailure("some runs failed (see above); the others are kept, the same command tries again");
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction", argc, argv);
-  Options options;
-  line.option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
-      .shipped_in("scenes")
-      .required();
-  line.option("--ratios", options.ratios,
-              "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
-              "triaxial tests")
-      .required();
-  line.option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
-      .within(1, 1000);
-  line.option("--cycles", options.plan.cycles, "a run ends after so many (default 100)").within(1, 100000);
-  line.option("--reversals-after", options.plan.reversals_after,
-              "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
-      .within(0, 1000);
-  line.option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)").within(1, 1024);
-  line.option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
-  line.option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
-  line.flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.flag("--no-figures", options.no_figures, "do not draw the figure");
-  options.command_line = line.text();
-  return line.run([&] { find_resistance(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Liquefaction resistance: cyclic stress ratio against cycles to initial liquefaction");
+  Options options;
+  line.add_option("scene", options.scene, "scene file (TOML) with one cyclic stage, the last and only one that shears")
+      ->transform(shipped_scene)
+      ->required();
+  line.add_option("--ratios", options.ratios,
+                  "cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in "
+                  "triaxial tests")
+      ->required();
+  line.add_option("-n,--realisations", options.plan.realisations, "specimens per ratio: seeds 1 to this (default 3)")
+      ->check(CLI::Range(1, 1000));
+  line.add_option("--cycles", options.plan.cycles, "a run ends after so many (default 100)")
+      ->check(CLI::Range(1, 100000));
+  line.add_option("--reversals-after", options.plan.reversals_after,
+                  "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
+      ->check(CLI::Range(0, 1000));
+  line.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
+      ->check(CLI::Range(1, 1024));
+  line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
+  line.add_option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
+  line.add_flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.add_flag("--no-figures", options.no_figures, "do not draw the figure");
+  options.command_line = command_text(argc, argv);
+  return run_command(line, argc, argv, [&] { find_resistance(options); });
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/liquefaction_resistance/report.hpp"
+#include "apps/liquefaction_resistance/campaign.hpp"
 
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
@@ -17,20 +17,11 @@ constexpr double reference_cycles = 15; // a magnitude 7.5 earthquake
 
 std::string cycles_text(const RunResult &r)
 {
-  switch (r.status)
-    {
-    case RunStatus::liquefied:
-      return fmt::format("{:g}", *r.to_liquefaction);
-    case RunStatus::censored:
-      return fmt::format(">{:g}", r.cycles);
-    case RunStatus::strain:
-      return "strain";
-    case RunStatus::failed:
-      return "failed";
-    case RunStatus::missing:
-      break;
-    }
-  return "-";
+  if (r.status == RunStatus::liquefied)
+    return fmt::format("{:g}", *r.to_liquefaction);
+  if (r.status == RunStatus::censored)
+    return fmt::format(">{:g}", r.cycles);
+  return r.status == RunStatus::missing ? "-" : to_string(r.status);
 }
 
 /// Geometric mean over the runs of a ratio; empty unless each of them has a value.
@@ -81,7 +72,7 @@ std::string fit_text(const std::optional<PowerLaw> &law)
       law->at(reference_cycles), inside ? "" : " (extrapolated)");
 }
 
-std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
+std::string to_text(const Campaign &campaign, const std::optional<PowerLaw> &law)
 {
   const Scene &scene = campaign.shared();
   const std::vector<RunResult> results = campaign.results();
@@ -90,8 +81,8 @@ std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const st
                                  "  "
                                  "           half the reversals; means over seeds are geometric, - if a run has none\n",
                                  scene.title, campaign.cyclic().stress_ratio_text(), campaign.cyclic().mode().name,
-                                 campaign.cyclic().liquefaction_ratio, plan.cycles);
-  text += table(results, plan.ratios) + "\n" + fit_text(law);
+                                 campaign.cyclic().liquefaction_ratio, campaign.plan().cycles);
+  text += table(results, campaign.plan().ratios) + "\n" + fit_text(law);
   double seconds = 0;
   std::vector<double> e;
   for (const RunResult &r : results)
@@ -109,7 +100,7 @@ std::string to_text(const Campaign &campaign, const CampaignPlan &plan, const st
   return text + "\n";
 }
 
-Json to_json(const Campaign &campaign, const CampaignPlan &plan, const std::optional<PowerLaw> &law)
+Json to_json(const Campaign &campaign, const std::optional<PowerLaw> &law)
 {
   Json fit;
   if (law)
@@ -123,18 +114,18 @@ Json to_json(const Campaign &campaign, const CampaignPlan &plan, const std::opti
   return {{"title", campaign.shared().title},
           {"test", campaign.cyclic().mode().name},
           {"liquefaction_ratio", campaign.cyclic().liquefaction_ratio},
-          {"cycles", plan.cycles},
+          {"cycles", campaign.plan().cycles},
           {"fit", fit}};
 }
 } // namespace
 
-std::string write_report(const Campaign &campaign, const CampaignPlan &plan)
+std::string write_report(const Campaign &campaign)
 {
   const std::vector<RunResult> results = campaign.results();
   const std::optional<PowerLaw> law = fit_power_law(results);
   write_replacing(campaign.folder() / "resistance.csv", to_csv(results));
-  write_json(campaign.folder() / "resistance.json", to_json(campaign, plan, law));
-  std::string text = to_text(campaign, plan, law);
+  write_json(campaign.folder() / "resistance.json", to_json(campaign, law));
+  std::string text = to_text(campaign, law);
   write_replacing(campaign.folder() / "summary.txt", text);
   return text;
 }

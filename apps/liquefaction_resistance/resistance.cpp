@@ -73,9 +73,8 @@ std::string cell(const std::optional<double> &value, const char *format)
 }
 } // namespace
 
-RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage)
+RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage, RunResult result)
 {
-  RunResult result;
   const auto &cyclic = *as<CyclicConstantVolume>(scene.stages[stage]);
   const CsvTable history(folder / "history.csv",
                          {"stage (-)", "reversals (-)", "liquefied (-)", cyclic.mode().strain_column});
@@ -141,20 +140,8 @@ std::optional<PowerLaw> fit_power_law(const std::vector<RunResult> &results)
 
 std::string to_string(RunStatus status)
 {
-  switch (status)
-    {
-    case RunStatus::liquefied:
-      return "liquefied";
-    case RunStatus::censored:
-      return "censored";
-    case RunStatus::strain:
-      return "strain";
-    case RunStatus::failed:
-      return "failed";
-    case RunStatus::missing:
-      return "missing";
-    }
-  return "?";
+  constexpr const char *names[] = {"liquefied", "censored", "strain", "failed", "missing"};
+  return names[static_cast<int>(status)];
 }
 
 std::string to_csv(const std::vector<RunResult> &results)

@@ -36,8 +36,8 @@ struct RunResult
 inline constexpr double double_amplitude = 0.03, single_amplitude = 0.0375, enough_strain = 0.04;
 
 /// Reads a finished run: its history.csv and summary.json.
-/// @param stage  index of its only shear stage, a cyclic one
-RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage);
+/// @param stage  index of its only shear stage, a cyclic one   @param result  its ratio and seed
+RunResult read_run(const std::filesystem::path &folder, const Scene &scene, std::size_t stage, RunResult result);
 
 /// CSR = a N^-b through the liquefied runs: least squares of log N, which scatters at a given CSR.
 struct PowerLaw

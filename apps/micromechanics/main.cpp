@@ -14,15 +14,19 @@
 #include "apps/common/command_line.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/micromechanics/analysis.hpp"
-#include "apps/micromechanics/snapshot_series.hpp"
 #include "base/error.hpp"
+#include "base/files/hdf5.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
+#include "dem/io/snapshot_file.hpp"
+#include "dem/io/specimen_file.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 
 namespace
 {
@@ -31,12 +35,57 @@ namespace fs = std::filesystem;
 
 constexpr double liquefaction_ratio = 0.01; // p'/p0, p0 of the first snapshot
 
+constexpr const char *remedy = "Give a results folder of element_test, a snapshot_*.h5, or a specimen";
+
 struct Options
 {
   std::string results, output;
   bool no_figures = false;
 };
 
+/// The files to analyse: all snapshots/snapshot_*.h5 of a results folder, in the order of their numbers, or the one
+/// file given (a snapshot or a specimen).
+/// @throws InputError  nothing there, or a folder without snapshots
+std::vector<fs::path> snapshot_files(const fs::path &results)
+{
+  std::error_code failure;
+  if (!fs::exists(results, failure))
+    throw InputError(fmt::format("{}: is not there. {}.", results.string(), remedy));
+  if (!fs::is_directory(results))
+    return {results};
+  const fs::path folder = results / "snapshots";
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder, failure))
+    for (const fs::directory_entry &entry : fs::directory_iterator(folder))
+      if (std::regex_match(entry.path().filename().string(), std::regex("snapshot_.*\\.h5")))
+        files.push_back(entry.path());
+  if (files.empty())
+    throw InputError(fmt::format("{}: no snapshots; expected {}. Run the test with output.snapshots = \"reversals\" or "
+                                 "\"strain\". {}.",
+                                 results.string(), (folder / "snapshot_*.h5").string(), remedy));
+  std::sort(files.begin(), files.end(), [](const fs::path &a, const fs::path &b) {
+    const std::string x = a.filename().string(), y = b.filename().string(); // 9999 before 10000
+    return std::pair(x.size(), x) < std::pair(y.size(), y);
+  });
+  return files;
+}
+
+/// Reads a stored snapshot, or the state of a specimen; the root attribute `format` tells them apart.
+/// @throws InputError  missing, truncated or not HDF5; HDF5 of another program
+Snapshot read_stored_snapshot(const fs::path &path)
+{
+  const hdf5::File file = hdf5::File::open(path);
+  const hdf5::Group root = file.root();
+  const std::string format = root.has_attribute("format") ? root.attribute<std::string>("format") : "";
+  if (format == "isostat-specimen")
+    return read_specimen(path).state;
+  if (format != "isostat-snapshot")
+    throw InputError(fmt::format(
+        "{}: {}, expected format = \"isostat-snapshot\" or \"isostat-specimen\". {}.", path.string(),
+        format.empty() ? std::string("HDF5, but without the attribute format") : fmt::format("format = \"{}\"", format),
+        remedy));
+  return read_snapshot(root.group("snapshot"));
+}
 /// All tables of a series, grown snapshot by snapshot.
 class Tables
 {
@@ -186,18 +235,16 @@ void analyse(const Options &options)
   if (!only_table && !options.no_figures)
     fmt::print("{}\n", draw_figures(output, "micromechanics"));
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions",
-                   argc, argv);
-  Options options;
-  line.option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)").required();
-  line.option("-o,--output", options.output,
-              "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
-  line.flag("--no-figures", options.no_figures, "do not draw figures");
-  return line.run([&] { analyse(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Micromechanics of stored packings: redundancy, fabric, anisotropies, stresses, force distributions");
+  Options options;
+  line.add_option("results", options.results, "results folder of a run, a snapshot, or a specimen (.h5)")->required();
+  line.add_option(
+      "-o,--output", options.output,
+      "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
+  line.add_flag("--no-figures", options.no_figures, "do not draw figures");
+  return run_command(line, argc, argv, [&] { analyse(options); });
+}

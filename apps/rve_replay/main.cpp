@@ -12,11 +12,14 @@
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
-#include "apps/rve_replay/replay.hpp"
 #include "base/error.hpp"
-#include "base/files/replace_file.hpp"
+#include "base/files/json.hpp"
 #include "base/record/progress.hpp"
+#include "coupling/element/axes.hpp"
+#include "coupling/element/strain_record.hpp"
+#include "dem/measure/summary.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -25,13 +28,174 @@ namespace
 using namespace isostat;
 namespace fs = std::filesystem;
 
+constexpr int xz = 4; ///< of a Stress; of a Gradient it is 2
+
 struct Options
 {
   std::string record, output, command_line;
-  ReplayChanges changes;
+  std::optional<double> tolerance, rate_floor, rate_ceiling, damping; ///< run otherwise than in the record
+  std::optional<std::uint64_t> min_steps;                             ///< likewise
   std::size_t every = 10;
   bool overwrite = false, quiet = false, no_figures = false;
+
+  bool change_nothing() const { return !(tolerance || rate_floor || rate_ceiling || damping || min_steps); }
 };
+
+/// How the stress of the packing alone compares with what the finite elements were given.
+struct ReplayResult
+{
+  std::size_t increments = 0, equal = 0;      ///< all of them; those after which all six stresses are equal to the bit
+  std::uint64_t steps = 0;                    ///< time steps of the packing
+  double shear_error = 0, pressure_error = 0; ///< rms of the difference of tau_xz and p' over that of the record [-]
+  double largest_error = 0;                   ///< |stress difference| / p0' [-] ...
+  std::size_t largest_at = 0;                 ///< ... after this increment
+  double largest_strain = 0, min_pressure = 0, min_redundancy = 1e300; ///< |gamma_xz|; Pa; I_R
+};
+
+double pressure(const Stress &s) { return -(s[0] + s[1] + s[2]) / 3; }
+
+double largest_difference(const Stress &a, const Stress &b)
+{
+  double largest = 0;
+  for (int c = 0; c < 6; ++c)
+    largest = std::max(largest, std::abs(a[c] - b[c]));
+  return largest;
+}
+
+/// Sums of squares of a difference, and of what it is compared with.
+struct Squares
+{
+  double difference = 0, value = 0;
+  void add(double alone, double column, double from)
+  {
+    difference += std::pow(alone - column, 2);
+    value += std::pow(column - from, 2);
+  }
+  double relative() const { return difference == 0 ? 0 : std::sqrt(difference / value); }
+};
+
+/// @throws InputError  a floor above the ceiling
+RveSettings changed(RveSettings settings, const Options &options)
+{
+  MotionSpec &motion = settings.motion;
+  motion.quasi_static_tolerance = options.tolerance.value_or(motion.quasi_static_tolerance);
+  motion.rate_floor = options.rate_floor.value_or(motion.rate_floor);
+  motion.rate_ceiling = options.rate_ceiling.value_or(motion.rate_ceiling);
+  motion.damping = options.damping.value_or(motion.damping);
+  settings.min_steps = options.min_steps.value_or(settings.min_steps);
+  if (motion.rate_floor > motion.rate_ceiling)
+    throw InputError(fmt::format("--rate-floor {:g} 1/s is above the ceiling, {:g} 1/s. Correct one of them.",
+                                 motion.rate_floor, motion.rate_ceiling));
+  return settings;
+}
+
+std::vector<RecordColumn> grain_columns()
+{
+  std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
+  for (const auto &[name, unit] : Micromechanics::columns())
+    columns.push_back({name, unit});
+  return columns;
+}
+
+/// Sends a packing the way of its record, alone: no mesh, no solver. Rows of history.csv and .h5 in `folder`: strain
+/// and stress of the column and of the packing alone every increment; in grain_history micromechanics every
+/// options.every increments.
+/// @throws RunFailure  an increment is rejected   @throws Interrupted  after a signal
+ReplayResult replay(const StrainRecord &record, const ElementSettings &settings, const fs::path &folder,
+                    const Options &options)
+{
+  RveElement element(Rve::unpack(record.packing, settings.rve), settings);
+  Recorder history(folder, {{"step", "-"},
+                            {"time", "s"},
+                            {"gamma", "-"},
+                            {"tau_column", "Pa"},
+                            {"tau", "Pa"},
+                            {"p_column", "Pa"},
+                            {"p", "Pa"},
+                            {"steps", "-"}});
+  Recorder grains(folder / "grain_history", grain_columns());
+  Progress progress(options.quiet, 5);
+  ReplayResult result;
+  const double start = pressure(to_stress(element.rve().stress())),
+               total = static_cast<double>(record.increments.size());
+  Squares shear, mean;
+  double gamma = 0;
+  result.min_pressure = start;
+  for (const Gradient &increment : record.increments)
+    {
+      const std::size_t k = result.increments++;
+      const auto done = static_cast<double>(k + 1);
+      const ElementTrial trial = element.trial(to_matrix(increment));
+      if (!trial.accepted)
+        throw RunFailure(fmt::format("increment {} of the record (t = {:.6g} s) is rejected: {}", k + 1, record.time[k],
+                                     trial.reason));
+      element.commit();
+      const Stress alone = to_stress(trial.stress), &column = record.stresses[k];
+      gamma += increment[2];
+      result.equal += alone == column;
+      result.steps += trial.steps;
+      result.largest_strain = std::max(result.largest_strain, std::abs(gamma));
+      result.min_pressure = std::min(result.min_pressure, pressure(alone));
+      shear.add(alone[xz], column[xz], 0);
+      mean.add(pressure(alone), pressure(column), start);
+      if (const double error = largest_difference(alone, column) / start; error > result.largest_error)
+        result.largest_error = error, result.largest_at = k + 1;
+      history.append(std::vector<double>{done, record.time[k], gamma, column[xz], alone[xz], pressure(column),
+                                         pressure(alone), static_cast<double>(trial.steps)});
+      if ((k + 1) % options.every == 0)
+        {
+          const Micromechanics m = micromechanics(element.rve().snapshot());
+          result.min_redundancy = std::min(result.min_redundancy, m.network.redundancy_index());
+          std::vector<double> row = m.row();
+          row.insert(row.begin(), {done, record.time[k]});
+          grains.append(row);
+        }
+      if (progress.due(k + 1, done / total))
+        progress.say(progress.line(""));
+      if (stop_requested())
+        throw Interrupted(fmt::format("interrupted at increment {}", k + 1));
+    }
+  history.flush();
+  grains.flush();
+  result.shear_error = shear.relative();
+  result.pressure_error = mean.relative();
+  return result;
+}
+
+std::string to_text(const ReplayResult &r, const StrainRecord &record, const Options &options)
+{
+  std::string text =
+      fmt::format("packing at {:.4g} m, {} increments, {} time steps\n"
+                  "  largest shear strain     {:.4g} %\n  smallest p'                 {:.4g} kPa\n  smallest I_R       "
+                  "         {:.4g}\n",
+                  record.depth, r.increments, r.steps, 100 * r.largest_strain, r.min_pressure / 1e3, r.min_redundancy);
+  if (r.equal == r.increments)
+    return text + fmt::format("  stress                   that of the column to the bit after all {} increments\n",
+                              r.increments);
+  text += fmt::format("  stress                   that of the column to the bit after {} of {} increments\n"
+                      "  rms difference           {:.3g} % of tau, {:.3g} % of the change of p'\n"
+                      "  largest difference       {:.3g} % of p0', after increment {}\n",
+                      r.equal, r.increments, 100 * r.shear_error, 100 * r.pressure_error, 100 * r.largest_error,
+                      r.largest_at);
+  if (options.change_nothing())
+    text +=
+        "  Nothing was changed: these files are of another program version, or of a machine with other arithmetic.\n";
+  return text;
+}
+
+Json to_json(const ReplayResult &r, const StrainRecord &record)
+{
+  return {{"depth", record.depth},
+          {"increments", r.increments},
+          {"equal", r.equal},
+          {"steps", r.steps},
+          {"shear_error", r.shear_error},
+          {"pressure_error", r.pressure_error},
+          {"largest_error", r.largest_error},
+          {"largest_strain", r.largest_strain},
+          {"min_pressure", r.min_pressure},
+          {"min_redundancy", r.min_redundancy}};
+}
 
 std::string scene_text(const Options &options, const RveSettings &settings)
 {
@@ -44,48 +208,43 @@ std::string scene_text(const Options &options, const RveSettings &settings)
 void run(const Options &options)
 {
   const StrainRecord record = read_strain_record(options.record);
-  const RveSettings settings = options.changes.applied_to(record.settings.rve);
-  const fs::path folder = options.output.empty() ? fs::path(options.record) / "replay" : fs::path(options.output);
-  const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
+  ElementSettings settings = record.settings;
+  settings.rve = changed(settings.rve, options);
+  const fs::path folder = output_folder(options.output, fs::path(options.record) / "replay");
+  const FolderUse use = folder_use(options.overwrite);
   check_result_folder(folder, use);
   open_result_folder(folder, use);
-  write_provenance(folder, scene_text(options, settings), options.command_line, {});
-  Progress progress(options.quiet, 5);
-  const auto total = static_cast<double>(record.increments.size());
-  const ReplayResult result = replay(record, options.changes, folder, options.every, [&](std::size_t done) {
-    if (progress.due(done, static_cast<double>(done) / total))
-      progress.say(progress.line(""));
-    if (stop_requested())
-      throw Interrupted(fmt::format("interrupted at increment {}", done));
-  });
-  const std::string text = to_text(result, record, options.changes);
+  write_provenance(folder, scene_text(options, settings.rve), options.command_line, {});
+  const Stopwatch watch;
+  const ReplayResult result = replay(record, settings, folder, options);
   write_json(folder / "summary.json", to_json(result, record));
-  write_replacing(folder / "summary.txt", text);
-  fmt::print("{}  wall time                {:.2f} s\n", text, result.seconds);
-  if (!options.no_figures)
-    fmt::print("  {}\n", draw_figures(folder, "rve_replay"));
+  leave_summary(folder, to_text(result, record, options),
+                fmt::format("  wall time                {:.2f} s\n", watch.seconds()), "rve_replay",
+                !options.no_figures);
 }
 } // namespace
 
 int main(int argc, char **argv)
 {
-  CommandLine line("The packing of one depth of a column, sent the same way again, alone", argc, argv);
+  CLI::App line("The packing of one depth of a column, sent the same way again, alone");
   Options options;
-  line.option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run").required();
-  line.option("-o,--output", options.output, "results folder (default: RECORD/replay)");
-  line.option("--tolerance", options.changes.tolerance, "another quasi-static tolerance").within(1e-9, 1.0);
-  line.option("--rate-floor", options.changes.rate_floor, "another smallest strain rate, 1/s").positive();
-  line.option("--rate-ceiling", options.changes.rate_ceiling, "another largest strain rate, 1/s").positive();
-  line.option("--min-steps", options.changes.min_steps, "time steps of an increment, at least").within(1, 1000000);
-  line.option("--damping", options.changes.damping, "other local damping").within(0.0, 0.99);
-  line.option("--every", options.every, "increments between two rows of micromechanics")
-      .within(1, 1000000000)
-      .shows_default();
-  line.flag("--overwrite", options.overwrite, "replace results that are there");
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.flag("--no-figures", options.no_figures, "do not draw figures at the end");
-  options.command_line = line.text();
-  return line.run([&] {
+  line.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
+  line.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
+  line.add_option("--tolerance", options.tolerance, "another quasi-static tolerance")->check(CLI::Range(1e-9, 1.0));
+  line.add_option("--rate-floor", options.rate_floor, "another smallest strain rate, 1/s")->check(CLI::PositiveNumber);
+  line.add_option("--rate-ceiling", options.rate_ceiling, "another largest strain rate, 1/s")
+      ->check(CLI::PositiveNumber);
+  line.add_option("--min-steps", options.min_steps, "time steps of an increment, at least")
+      ->check(CLI::Range(1, 1000000));
+  line.add_option("--damping", options.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
+  line.add_option("--every", options.every, "increments between two rows of micromechanics")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str();
+  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  options.command_line = command_text(argc, argv);
+  return run_command(line, argc, argv, [&] {
     catch_signals();
     run(options);
   });

@@ -9,11 +9,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-std::size_t counter(const ColumnCheckpoint *checkpoint, const char *name)
-{
-  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
-}
-
 std::vector<double> chosen(const std::vector<double> &values, const std::vector<std::size_t> &which)
 {
   std::vector<double> some;
@@ -65,10 +60,7 @@ void ColumnFiles<dim>::profile(const ColumnInstant &instant)
   std::vector<double> values(m * ProfileFile::n_quantities);
   for (std::size_t k = 0; k < m; ++k)
     {
-      const std::size_t q = line_->points[k];
-      const auto row =
-          point_values(instant.gradients[q], instant.stresses[q], instant.pressure[q], history_.vertical_stress()[q])
-              .row();
+      const PointValues row = point_values(instant, line_->points[k], history_.vertical_stress());
       for (std::size_t j = 0; j < row.size(); ++j)
         values[j * m + k] = row[j];
     }
@@ -115,13 +107,6 @@ void ColumnFiles<dim>::finish(const ColumnPeaks &peaks)
   flush();
   if (profiles_)
     profiles_->finish(peaks.line_gamma, line_->node_depths, peaks.line_acceleration);
-}
-
-template <int dim>
-std::string ColumnFiles<dim>::last_checkpoint() const
-{
-  const fs::path last = folder_ / "checkpoint" / "last.h5";
-  return "last good checkpoint: " + (fs::exists(last) ? last.string() : "none was written yet");
 }
 
 template class ColumnFiles<1>;

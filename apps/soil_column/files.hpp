@@ -28,7 +28,7 @@ public:
   void paraview(const ColumnInstant &instant);
 
   /// Brings all files up to date, then writes a checkpoint of a state with its peaks.
-  /// @param more  numbers that the run wants back
+  /// @param more  numbers that a resumed run needs
   void save(SolverState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
   void flush();
   /// Adds the largest values to the profiles.   @pre the last call
@@ -36,8 +36,6 @@ public:
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
   ColumnHistory<dim> &history() { return history_; }
-  /// A line for a failure: where the last good checkpoint is.
-  std::string last_checkpoint() const;
 
 private:
   std::filesystem::path folder_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/history.hpp"
 
-#include "apps/deposit/materials.hpp"
+#include "apps/deposit/soil_material.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,11 +98,8 @@ void ColumnHistory<dim>::append_points(const ColumnInstant &instant, std::vector
 {
   for (const PointAtDepth &at : points_)
     {
-      const auto q = static_cast<std::size_t>(at.point);
-      const auto values =
-          at.point < 0
-              ? std::array<double, 9>{}
-              : point_values(instant.gradients[q], instant.stresses[q], instant.pressure[q], vertical_stress_[q]).row();
+      const PointValues values =
+          at.point < 0 ? PointValues{} : point_values(instant, static_cast<std::size_t>(at.point), vertical_stress_);
       row.insert(row.end(), values.begin(), values.end());
     }
 }

@@ -11,9 +11,9 @@
 //   soil_column apps/scenes/column/uniform_layer.toml
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
-#include "apps/deposit/program.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,23 +54,26 @@ void run_scene(const SceneOptions &options)
   if (!ranks().first())
     return;
   write_json(request.folder / "times.json", to_json(result.times));
-  leave_summary(request.folder, to_json(result.summary, request.scene), to_text(result.summary, request.scene),
-                to_text(result.times), "soil_column", options.no_figures);
+  write_json(request.folder / "summary.json", to_json(result.summary, request.scene));
+  leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",
+                !options.no_figures);
 }
 
-constexpr GroundProgram soil_column{
+constexpr SceneProgram soil_column{
     .name = "soil_column",
     .description = "A column of saturated soil in layers: shaken, loaded, consolidating",
     .first_scene = "apps/scenes/column/uniform_layer.toml",
-    .texts = {"scene file (TOML); see docs/column_scene_reference.md", "analysis.safety=0.5",
-              "threads of each rank that share its packings of grains, 0: all the process may use; results do not "
-              "depend on it",
-              "docs/column_scene_reference.md"},
+    .scene_text = "scene file (TOML); see docs/column_scene_reference.md",
+    .set_example = "analysis.safety=0.5",
+    .threads_text = "threads of each rank that share its packings of grains, 0: all the process may use; results do "
+                    "not depend on it",
+    .manual_page = "docs/column_scene_reference.md",
     .defaults = default_column_scene,
     .manual = column_scene_manual,
     .resolved = [](const std::string &scene,
                    const std::vector<std::string> &overrides) { return to_toml(read_column_scene(scene, overrides)); },
-    .run = run_scene};
+    .run = run_scene,
+    .guard = guarded_on_ranks};
 } // namespace
 
-int main(int argc, char **argv) { return run_program(soil_column, argc, argv); }
+int main(int argc, char **argv) { return soil_column.main(argc, argv); }

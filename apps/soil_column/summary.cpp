@@ -20,11 +20,6 @@ double relative_residual(const ColumnState &last)
   return last.max_energy > 0 ? std::abs(last.residual) / last.max_energy : 0;
 }
 
-const char *name_of(LayerMaterial material)
-{
-  return material == LayerMaterial::grains ? "grains" : material == LayerMaterial::iwan ? "iwan" : "elastic";
-}
-
 /// From the surface down.
 Json layers_json(const ColumnScene &scene)
 {
@@ -36,28 +31,24 @@ Json layers_json(const ColumnScene &scene)
           {{"name", layer.name},
            {"top", top},
            {"bottom", top + layer.thickness},
-           {"material", name_of(layer.material)},
+           {"material", material_names[static_cast<int>(layer.material)]},
            {"density", layer.density},
            {"shear_modulus", layer.material == LayerMaterial::grains ? Json() : Json(layer.small_strain_modulus())}});
       top += layer.thickness;
     }
   return layers;
 }
-
-const char *name_of(Drainage drainage)
-{
-  return drainage == Drainage::dry ? "dry" : drainage == Drainage::undrained ? "undrained" : "coupled";
-}
 } // namespace
 
 std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
 {
   const ColumnPeaks &p = s.peaks;
-  std::string text = fmt::format("\n{}\n  soil                     {:.4g} m in {} layer{}, {}\n  mesh                  "
-                                 "   {} elements, {} points, dimension {}\n",
-                                 scene.title.empty() ? "Soil column" : scene.title, scene.height(), scene.layers.size(),
-                                 scene.layers.size() > 1 ? "s" : "", name_of(scene.water.drainage), s.cells, s.points,
-                                 scene.mesh.dimension);
+  std::string text =
+      fmt::format("\n{}\n  soil                     {:.4g} m in {} layer{}, {}\n  mesh                  "
+                  "   {} elements, {} points, dimension {}\n",
+                  scene.title.empty() ? "Soil column" : scene.title, scene.height(), scene.layers.size(),
+                  scene.layers.size() > 1 ? "s" : "", drainage_names[static_cast<int>(scene.water.drainage)], s.cells,
+                  s.points, scene.mesh.dimension);
   if (shaken(scene))
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
                         "{:.4f} m/s2{}\n  peak surface             {:.4f} m/s2\n",
@@ -114,7 +105,7 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
   const bool drains = !shaken(scene);
   Json json{{"title", scene.title},
             {"analysis", shaken(scene) ? "dynamic" : "consolidation"},
-            {"drainage", name_of(scene.water.drainage)},
+            {"drainage", drainage_names[static_cast<int>(scene.water.drainage)]},
             {"base", scene.base.compliant() ? "compliant" : "rigid"},
             {"layers", layers_json(scene)},
             {"dimension", scene.mesh.dimension},

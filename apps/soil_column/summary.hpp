@@ -17,7 +17,7 @@ struct GrainsSummary
   double min_redundancy = 0, min_redundancy_depth = 0, min_redundancy_time = 0; ///< of all profiles [-], m, s
 };
 
-/// What a person wants to know of a finished run. Nothing in it depends on the machine: see RunTimes for that.
+/// What is reported of a finished run. Nothing in it depends on the machine: see RunTimes for that.
 struct ColumnSummary
 {
   std::size_t cells = 0, points = 0; ///< of the whole mesh

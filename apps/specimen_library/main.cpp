@@ -251,35 +251,32 @@ void run(const Options &options)
   else
     make_library(options);
 }
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("A library of periodic specimens: realisations at several pressures and densities in one file", argc,
-                   argv);
-  Options options;
-  line.option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run")
-      .shipped_in("scenes");
-  line.option("-o,--output", options.output, "library (default: results/<scene name>.h5)");
-  line.option("-n,--realisations", options.realisations,
-              "seeds at each pressure and density, from grading.seed of the scene on (default 1)")
-      .within(1, 1000000);
-  line.option("--pressures", options.pressures,
-              "instead of specimen.pressure, e.g. \"20 kPa,50 kPa\"; with k0 the vertical stress");
-  line.option("--relative-densities", options.relative_densities,
-              "instead of the density or preparation friction of the scene, e.g. 0.5,0.64");
-  line.option("--consolidation", options.consolidation, "instead of specimen.consolidation")
-      .one_of({"isotropic", "k0"});
-  line.option("-j,--jobs", options.jobs,
-              "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
-              "Specimens do not depend on it")
-      .within(0, 1024);
-  line.option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
-  line.flag("--list", options.list, "print what is in the library, and stop");
-  const auto overwrite = line.flag("--overwrite", options.overwrite, "replace a library that is there");
-  line.flag("--append", options.append, "add what a library that is there lacks").excludes(overwrite);
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  return line.run([&] { run(options); });
-}
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("A library of periodic specimens: realisations at several pressures and densities in one file");
+  Options options;
+  line.add_option("scene", options.scene, "scene file (TOML) in a periodic cell; its stages are not run")
+      ->transform(shipped_scene);
+  line.add_option("-o,--output", options.output, "library (default: results/<scene name>.h5)");
+  line.add_option("-n,--realisations", options.realisations,
+                  "seeds at each pressure and density, from grading.seed of the scene on (default 1)")
+      ->check(CLI::Range(1, 1000000));
+  line.add_option("--pressures", options.pressures,
+                  "instead of specimen.pressure, e.g. \"20 kPa,50 kPa\"; with k0 the vertical stress");
+  line.add_option("--relative-densities", options.relative_densities,
+                  "instead of the density or preparation friction of the scene, e.g. 0.5,0.64");
+  line.add_option("--consolidation", options.consolidation, "instead of specimen.consolidation")
+      ->check(CLI::IsMember({"isotropic", "k0"}));
+  line.add_option("-j,--jobs", options.jobs,
+                  "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
+                  "Specimens do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
+  line.add_flag("--list", options.list, "print what is in the library, and stop");
+  CLI::Option *overwrite = line.add_flag("--overwrite", options.overwrite, "replace a library that is there");
+  line.add_flag("--append", options.append, "add what a library that is there lacks")->excludes(overwrite);
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  return run_command(line, argc, argv, [&] { run(options); });
+}

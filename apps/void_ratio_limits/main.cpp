@@ -49,7 +49,10 @@ struct Dense
   double seconds = 0;
 };
 
-double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+double friction_degrees(const Scene &scene)
+{
+  return scene.contact->friction > 0 ? std::atan(scene.contact->friction) * 180 / std::numbers::pi : 0;
+}
 
 Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
@@ -100,7 +103,7 @@ std::vector<Value> limits(const Scene &scene, const Dense &dense, const Deposit 
           {"d50", "m", state.grains.d50()},
           {"pressure", "Pa", scene.specimen.pressure},
           {"young", "Pa", scene.contact->young},
-          {"friction", "deg", (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0},
+          {"friction", "deg", friction_degrees(scene)},
           {"coordination_dense", "-", micromechanics(dense.state).network.coordination_number()},
           {"fall", "-", how.fall},
           {"fall_speed", "m/s", loose.fall_speed},
@@ -144,8 +147,7 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
       fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa; {:.0f} s\n", dense.state.grains.n_grains(),
                   scene.specimen.pressure / 1e3, scene.contact->young, dense.seconds);
   text += fmt::format("e_max: {:.2f} deg, fastest impact about {:.2f} m/s, deposit {:.2f} mm high; {:.0f} s\n",
-                      (scene.contact->friction > 0) ? degrees(scene.contact->friction) : 0.0, loose.fall_speed,
-                      1e3 * loose.height, loose_seconds);
+                      friction_degrees(scene), loose.fall_speed, 1e3 * loose.height, loose_seconds);
   text += fmt::format("       contact modulus {:.3g} Pa while falling: overlap/d50 at most {:.1e}, at rest {:.1e}\n",
                       loose.young, loose.max_overlap, loose.resting_overlap);
   return text;
@@ -176,10 +178,8 @@ void find_limits(const Options &options)
   Pluviation how = options.pluviation;
   how.damping = scene.motion.damping;
   check_pluviation(how);
-  fs::path folder = options.output.empty() ? scene.output.folder : options.output;
-  if (!folder.has_filename()) // a slash at the end
-    folder = folder.parent_path();
-  const FolderUse use = options.overwrite ? FolderUse::overwrite : FolderUse::fresh;
+  const fs::path folder = output_folder(options.output, scene.output.folder);
+  const FolderUse use = folder_use(options.overwrite);
   check_result_folder(folder, use);
   catch_signals();
   PreparationOutput observer(options.quiet);
@@ -199,25 +199,20 @@ void find_limits(const Options &options)
                    how.fall, how.damping, loose.young),
        {{"void_ratio", loose.void_ratio}, {"void_ratio_inside", loose.void_ratio_inside}, {"height_m", loose.height}});
   write_limits(folder, limits(scene, dense, loose, how));
-  const std::string text = table(scene, dense, loose, watch.seconds());
-  write_replacing(folder / "summary.txt", text);
-  fmt::print("{}", text);
-}
-
-int run_command(int argc, char **argv)
-{
-  CommandLine line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)",
-                   argc, argv);
-  Options options;
-  line.option("scene", options.scene, "scene file (TOML) without stages").required().shipped_in("scenes");
-  line.option("-o,--output", options.output, "results folder (default: results/<scene name>)");
-  line.option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
-  line.option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
-  line.flag("--overwrite", options.overwrite, "replace results that are there");
-  line.flag("-q,--quiet", options.quiet, "no progress on stderr");
-  options.command_line = line.text();
-  return line.run([&] { find_limits(options); });
+  leave_summary(folder, table(scene, dense, loose, watch.seconds()), "", "void_ratio_limits", false);
 }
 } // namespace
 
-int main(int argc, char **argv) { return run_command(argc, argv); }
+int main(int argc, char **argv)
+{
+  CLI::App line("Limits of the void ratio: frictionless compression (e_min) and deposition under gravity (e_max)");
+  Options options;
+  line.add_option("scene", options.scene, "scene file (TOML) without stages")->required()->transform(shipped_scene);
+  line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
+  line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
+  line.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
+  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  options.command_line = command_text(argc, argv);
+  return run_command(line, argc, argv, [&] { find_limits(options); });
+}

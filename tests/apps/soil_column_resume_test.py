@@ -19,7 +19,7 @@ class Resume(ColumnTest):
     OPTIONS = settings(analysis__duration="50 s", output__profile_interval="0.1 s", output__paraview_interval="2 s",
                        output__checkpoint="1e-9 min")
 
-    def interrupt(self, with_signal, wanted, *more):
+    def interrupt(self, with_signal, expected, *more):
         arguments = [self.scene, *self.OPTIONS, *more]
         begin = os.times().elapsed
         self.assert_done(self.run_column(*arguments, "-o", "whole"))
@@ -29,7 +29,7 @@ class Resume(ColumnTest):
         for resume in ([], ["--resume"], ["--resume"]):
             codes.append(self.run_and_stop(moments.uniform(0.02, 0.25) * seconds, with_signal, started, *arguments,
                                            "-o", "parts", *resume, program="soil_column"))
-        self.assertEqual(codes[0], wanted)
+        self.assertEqual(codes[0], expected)
         return arguments
 
     def finish(self, arguments):

@@ -2,7 +2,7 @@
 // What a column's scene says; what is refused is in tests/apps/deposit/scene_error_test.cpp.
 #include "apps/deposit/scene.hpp"
 
-#include "apps/deposit/schema.hpp"
+#include "base/scene/document.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
 #include "tests/support/near.hpp"
 
@@ -169,14 +169,14 @@ TEST(ColumnScene, CellsFromTheirSize)
 TEST(ColumnScene, TractionAndTimes)
 {
   const ColumnScene step = parse_column_scene(consolidation, "s");
-  EXPECT_EQ(step.load.traction(-1), 0);
-  EXPECT_EQ(step.load.traction(0), -100e3);
-  EXPECT_EQ(parse_column_scene(consolidation, "s", {"load.direction=x"}).load.traction(3), 100e3);
-  EXPECT_NEAR_BECAUSE(parse_column_scene(consolidation, "s", {"load.ramp=2 s"}).load.traction(1), -50e3, 1e-9,
+  EXPECT_EQ(step.load.traction(-1)[2], 0);
+  EXPECT_EQ(step.load.traction(0)[2], -100e3);
+  EXPECT_EQ(parse_column_scene(consolidation, "s", {"load.direction=x"}).load.traction(3)[0], 100e3);
+  EXPECT_NEAR_BECAUSE(parse_column_scene(consolidation, "s", {"load.ramp=2 s"}).load.traction(1)[2], -50e3, 1e-9,
                       "round-off of an interpolation of 1e5 Pa");
-  EXPECT_NEAR_BECAUSE(parse_column_scene(several, "s").load.traction(0.25), -2e3, 1e-9,
+  EXPECT_NEAR_BECAUSE(parse_column_scene(several, "s").load.traction(0.25)[2], -2e3, 1e-9,
                       "round-off of an interpolation of 1e5 Pa");
-  EXPECT_EQ(ColumnLoad().traction(1), 0);
+  EXPECT_EQ(ColumnLoad().traction(1)[2], 0);
 
   const std::vector<double> times = step.analysis.times();
   ASSERT_EQ(times.size(), 50u);

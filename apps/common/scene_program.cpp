@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/scene_program.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
+{
+  line.add_option("scene", o.scene, program.scene_text)->transform(shipped_scene);
+  line.add_option("-o,--output", o.output, "results folder (default: results/<scene name>)");
+  line.add_option("--set", o.set, fmt::format("override a key, e.g. --set {} (repeatable)", program.set_example));
+  line.add_flag("--validate", o.validate, "check the scene, print it with every key, and stop");
+  line.add_flag("--print-defaults", o.print_defaults, "print a commented scene with all keys, units and ranges");
+  CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace results that are there");
+  if (program.manual_page)
+    {
+      line.add_flag("--print-manual", o.print_manual,
+                    fmt::format("print {}: every key of a scene", program.manual_page));
+      line.add_flag("--resume", o.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
+    }
+  line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
+  line.add_flag("--no-figures", o.no_figures, "do not draw figures at the end");
+  line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));
+}
+
+/// What needs no run. @return  true if that was not all
+bool print_something(const SceneProgram &program, const SceneOptions &options)
+{
+  if (options.print_defaults)
+    fmt::print("{}", program.defaults());
+  else if (options.print_manual)
+    fmt::print("{}", program.manual());
+  else if (options.scene.empty())
+    throw InputError(fmt::format("no scene given. Try {} {}, or --help.", program.name, program.first_scene));
+  else if (options.validate)
+    fmt::print("{}", program.resolved(options.scene, options.set));
+  else
+    return true;
+  return false;
+}
+} // namespace
+
+int SceneProgram::main(int argc, char **argv) const
+{
+  CLI::App line(description);
+  SceneOptions options;
+  options.threads = threads;
+  options.command_line = command_text(argc, argv);
+  add_options(line, options, *this);
+  bool ready = false; // not after --help
+  const int code = run_command(line, argc, argv, [&] { ready = print_something(*this, options); });
+  return ready ? guard([&] { run(options); }) : code;
+}
+
+void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene)
+{
+  if (checkpoint != scene)
+    throw InputError(
+        fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
+                    "of --validate). Resume with the scene and --set values of the first run.",
+                    folder.string(), (folder / "scene.toml").string()));
+}
+
+std::string last_checkpoint(const std::filesystem::path &folder)
+{
+  const std::filesystem::path last = folder / "checkpoint" / "last.h5";
+  return "last good checkpoint: " + (std::filesystem::exists(last) ? last.string() : "none was written yet");
+}
+} // namespace isostat

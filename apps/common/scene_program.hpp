@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What programs that run a scene share.   tested: tests/apps/command_line_test.py, tests/apps/soil_column_test.py
+#pragma once
+#include "apps/common/command_line.hpp"
+#include "apps/common/result_folder.hpp"
+
+namespace isostat
+{
+/// What the command line says.
+struct SceneOptions
+{
+  std::string scene, output, command_line;
+  std::vector<std::string> set;
+  bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
+       no_figures = false;
+  int threads = 1;
+};
+
+/// A scene and how the command line asks for it to be run.
+template <class Scene>
+struct RunRequest
+{
+  Scene scene;
+  std::filesystem::path folder;
+  std::string command_line;
+  FolderUse use = FolderUse::fresh;
+  bool quiet = false;
+  int threads = 1; ///< of a rank, that share its packings
+
+  RunRequest(Scene scene_, const SceneOptions &options)
+      : scene(std::move(scene_)), folder(output_folder(options.output, scene.output.folder)),
+        command_line(options.command_line), use(options.resume ? FolderUse::resume : folder_use(options.overwrite)),
+        quiet(options.quiet), threads(options.threads)
+  {}
+};
+
+struct SceneProgram
+{
+  const char *name, *description, *first_scene; ///< the scene to try
+  /// What --help says: the scene, a setting, what threads share; page that --print-manual prints, null: no such option,
+  /// and no --resume.
+  const char *scene_text, *set_example, *threads_text, *manual_page = nullptr;
+  int threads = 1; ///< default
+  std::string (*defaults)();
+  std::string (*manual)() = nullptr;
+  std::string (*resolved)(const std::string &scene, const std::vector<std::string> &overrides);
+  void (*run)(const SceneOptions &options);
+  int (*guard)(const std::function<void()> &program) = guarded; ///< runs it; not called for what only prints
+
+  /// From the command line to the exit code.
+  int main(int argc, char **argv) const;
+};
+
+/// A run is resumed with the scene of its checkpoint only.   @throws InputError  the scenes differ
+void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene);
+
+/// A line for a failure: where the last good checkpoint is.
+std::string last_checkpoint(const std::filesystem::path &folder);
+} // namespace isostat

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/common/interrupt.hpp"
+#include "apps/deposit/ranks.hpp"
+#include "apps/deposit/soil_material.hpp"
+#include "apps/soil_column/files.hpp"
+#include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
+#include "base/record/progress.hpp"
+#include "fem/libraries.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+/// A run of a column from its start, or from a checkpoint, to its end: all that does not depend on what its steps are.
+/// @tparam Solver  Dynamics or Statics
+/// tested: tests/apps/soil_column_test.py, tests/apps/soil_column_resume_test.py
+template <int dim, class Solver>
+class ColumnRun
+{
+public:
+  /// @param settings  of the solver
+  template <class Settings>
+  ColumnRun(const ColumnRequest &request, const std::array<Motion, 3> &motions, const Settings &settings)
+      : request_(request), scene_(request.scene), motions_(motions),
+        space_(mesh_of(scene_), shaken_supports(scene_.base.compliant()),
+               scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
+        soil_(soil_material(scene_, space_, request.threads)), run_(space_, *soil_.material, settings),
+        files_(request.folder, scene_, space_, motions_),
+        follower_(space_, files_.line(), files_.history().vertical_stress())
+  {
+    if (request.use != FolderUse::resume)
+      return;
+    resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
+    check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
+    run_.restore(resumed_->state);
+    follower_.peaks.restore(*resumed_);
+    resumed_->get(files_.history().state);
+  }
+  virtual ~ColumnRun() = default;
+
+  RunResult go()
+  {
+    open_folder();
+    start();
+    while (!is_done())
+      {
+        const std::uint64_t n = run_.n_steps();
+        try
+          {
+            step();
+          }
+        catch (const RunFailure &failure)
+          {
+            fail(failure, n);
+          }
+        observe();
+      }
+    if (!scene_.mesh.distributed)
+      save();
+    files_.finish(follower_.peaks);
+    return result();
+  }
+
+protected:
+  virtual void start() = 0;
+  virtual bool is_done() const = 0;
+  virtual double n_total() const = 0; ///< steps
+  /// One step, and what is written of it.
+  virtual void step() = 0;
+  /// When a step that failed began, s.
+  virtual double time_of(std::uint64_t step) const = 0;
+  /// On every rank.   @param late  the last checkpoint is long ago, on this rank
+  virtual bool checkpoint_is_due(bool late) const = 0;
+  /// Numbers that a resumed run needs besides.
+  virtual std::map<std::string, double> more_numbers() = 0;
+  virtual void add_results(ColumnSummary &summary) = 0;
+
+  /// Files that one rank alone writes, or fails to write: all stop then.
+  void write(const std::function<void()> &task)
+  {
+    if (!space_.shared_out())
+      return together(task);
+    try
+      {
+        task(); // has collective calls
+      }
+    catch (const std::exception &error)
+      {
+        throw RunFailure(error.what());
+      }
+  }
+
+  const ColumnRequest &request_;
+  const ColumnScene &scene_;
+  const std::array<Motion, 3> motions_;
+  Discretisation<dim> space_;
+  SoilMaterial soil_;
+  Solver run_;
+  ColumnFiles<dim> files_;
+  PeakFollower<dim> follower_;
+  std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
+  ColumnInstant instant_;
+  Progress progress_{request_.quiet, 5};
+  RunTimes times_;
+
+private:
+  static MeshSpec mesh_of(const ColumnScene &scene)
+  {
+    MeshSpec mesh{.soil = soil_profile(scene)};
+    mesh.width = {scene.mesh.width, scene.mesh.width};
+    mesh.cells_across = {scene.mesh.cells_across, scene.mesh.cells_across};
+    mesh.degree = scene.mesh.degree;
+    return mesh;
+  }
+
+  /// Old results go now, if they may, and provenance is written; on the first rank.
+  void open_folder()
+  {
+    MPI_Barrier(MPI_COMM_WORLD); // all ranks have read their checkpoint, and are ready to start
+    on_first_rank([&] {
+      if (!resumed_)
+        {
+          open_result_folder(request_.folder, request_.use);
+          write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                           {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
+        }
+      files_.open(resumed_.get());
+    });
+  }
+
+  /// Progress, signals, checkpoints.
+  void observe()
+  {
+    if (progress_.due(run_.n_steps(), static_cast<double>(run_.n_steps()) / n_total()))
+      {
+        const ColumnState &now = files_.history().state;
+        progress_.say(progress_.line(fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}",
+                                                 now.time, now.surface_acceleration, now.max_ru, now.min_p_ratio)));
+      }
+    stop_if_requested();
+    if (!scene_.mesh.distributed &&
+        checkpoint_is_due(since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes))
+      save();
+  }
+
+  /// After a signal: leaves a checkpoint unless the run is distributed.   @throws Interrupted
+  void stop_if_requested()
+  {
+    const bool distributed = scene_.mesh.distributed;
+    const bool together = distributed || scene_.has_grains() || scene_.analysis.kind == AnalysisKind::consolidation;
+    if (!(together ? on_any_rank(stop_requested()) : stop_requested()))
+      return;
+    files_.flush();
+    if (!distributed)
+      save();
+    throw Interrupted(fmt::format("interrupted at step {}; {}", run_.n_steps(),
+                                  distributed ? "a distributed run keeps no checkpoint" : "go on with --resume"));
+  }
+
+  /// Brings all files up to date, then writes a checkpoint.
+  void save()
+  {
+    try
+      {
+        SolverState state = run_.save();
+        write([&] { files_.save(std::move(state), follower_.peaks, more_numbers()); });
+      }
+    catch (const RunFailure &failure)
+      {
+        fail(failure, run_.n_steps());
+      }
+    since_checkpoint_.restart();
+  }
+
+  /// Brings the files up to date and throws RunFailure with step, time and checkpoint; if the other ranks would wait
+  /// for this one it ends them all.
+  [[noreturn]] void fail(const RunFailure &failure, std::uint64_t step)
+  {
+    std::string what = fmt::format("step {} (t = {:.6g} s): {}\n  {}", step, time_of(step), failure.what(),
+                                   last_checkpoint(request_.folder));
+    if (space_.shared_out())
+      abort_all(what.c_str());
+    try
+      {
+        files_.flush();
+      }
+    catch (const std::exception &error) // the disk is full, say
+      {
+        if (what.find(error.what()) == std::string::npos)
+          what += fmt::format("\n  and then: {}", error.what());
+      }
+    throw RunFailure(what);
+  }
+
+  /// Sizes of the mesh, largest values and the last row, over all ranks.   Collective.
+  RunResult result()
+  {
+    ColumnSummary summary;
+    unsigned long counts[2] = {space_.n_cells(), space_.n_points()};
+    if (space_.shared_out())
+      MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_UNSIGNED_LONG, MPI_SUM, space_.communicator());
+    summary.cells = counts[0];
+    summary.points = counts[1];
+    for (const PointAtDepth &point : files_.history().points())
+      summary.point_depths.push_back(point.depth);
+    follower_.gather();
+    summary.peaks = follower_.peaks;
+    summary.last = files_.history().state;
+    summary.steps = static_cast<double>(run_.n_steps());
+    add_results(summary);
+    times_.material = soil_.material->seconds;
+    times_.solver -= times_.material;
+    times_.wall = since_start_.seconds();
+    return {summary, times_};
+  }
+
+  Stopwatch since_start_, since_checkpoint_;
+};
+} // namespace isostat
