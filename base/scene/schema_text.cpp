@@ -191,7 +191,7 @@ std::string choices_text(const Key &key)
 {
   std::vector<std::string> words;
   for (const char *choice : key.choices)
-    words.push_back(quoted(choice));
+    words.emplace_back(quoted(choice));
   return enumerate(words);
 }
 
@@ -201,7 +201,7 @@ std::string SceneSchema::kinds_text(const Section &section, unsigned kinds) cons
   const auto names = kind_key(section)->choices;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (kinds == 0 || ((kinds >> i) & 1u))
-      words.push_back(names[i]);
+      words.emplace_back(names[i]);
   return words.size() == names.size() ? "any" : enumerate(words);
 }
 } // namespace isostat
