@@ -37,6 +37,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
+from speed_error.plan import CONTACT  # noqa: E402
+
 STRAINS = (0.0002, 0.0005, 0.001, 0.002, 0.005)  # axial, of the table
 COLLAPSED = 0.05  # p'/p0' below which a run counts as one that has lost its strength
 SCENE = """title = "Stress against N: {grains} grains, realisation {seed}"
@@ -45,13 +47,7 @@ curve = "karlsruhe-fine-sand"
 grains = {grains}
 cloud_edge = "{edge:.12g} mm"
 seed = {seed}
-[contact]
-young = "10 GPa"
-stiffness_ratio = 0.3
-friction = "18 deg"
-rolling = {{ stiffness = 0.3, limit = 0.5 }}
-twisting = {{ stiffness = 0.3 }}
-[specimen]
+""" + CONTACT + """[specimen]
 pressure = "200 kPa"
 preparation_friction = "10 deg"
 [motion]

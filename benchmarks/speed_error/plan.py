@@ -6,6 +6,13 @@ import re
 BASE_GRAINS, LARGEST = 2000, 10000
 QAMP = 60e3  # Pa
 
+CONTACT = """[contact]
+young = "10 GPa"
+stiffness_ratio = 0.3
+friction = "18 deg"
+rolling = {{ stiffness = 0.3, limit = 0.5 }}
+twisting = {{ stiffness = 0.3 }}
+"""  # of format(), as the scenes are
 SCENE = """\
 title = "{title}"
 
@@ -15,13 +22,7 @@ grains = {grains}
 cloud_edge = "{edge:.15g} mm"     # grains of one size for every number of them
 seed = {seed}
 
-[contact]
-young = "10 GPa"
-stiffness_ratio = 0.3
-friction = "18 deg"
-rolling = {{ stiffness = 0.3, limit = 0.5 }}
-twisting = {{ stiffness = 0.3 }}
-
+""" + CONTACT + """
 [specimen]
 domain = "rigid-box"
 pressure = "200 kPa"
