@@ -107,7 +107,7 @@ bool is_cyclic(const Stage &stage) { return as<CyclicConstantVolume>(stage); }
 bool shears_in(const Stage &stage, const ShearMode &mode)
 {
   const auto *shear = as<ShearStage>(stage);
-  return shear && shear->mode() == mode;
+  return shear && &shear->mode() == &mode;
 }
 bool is_axial(const Stage &stage) { return shears_in(stage, triaxial_mode); }
 bool is_simple_shear(const Stage &stage) { return shears_in(stage, simple_shear_mode); }

@@ -73,8 +73,8 @@ void add_fabric(Row &row, const Snapshot &snapshot)
 
 void add_energies(Row &row, const Snapshot &snapshot)
 {
-  StoredEnergy::for_each(stored_energy(snapshot),
-                         [&](const std::string &name, double energy) { row.add("E_" + name, "J", energy); });
+  const StoredEnergy stored = stored_energy(snapshot);
+  StoredEnergy::for_each(stored, [&](const std::string &name, double energy) { row.add("E_" + name, "J", energy); });
 }
 
 double mean_normal_force(const Snapshot &snapshot)
