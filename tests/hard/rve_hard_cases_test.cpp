@@ -6,7 +6,7 @@
 #include "tests/support/near.hpp"
 #include "tests/support/rve_paths.hpp"
 
-#include <cstring>
+#include <span>
 
 namespace isostat
 {
@@ -78,7 +78,7 @@ void liquefy(Rve &rve, double more)
 bool same(const RveState &a, const RveState &b)
 {
   const auto bits = [](const auto &x, const auto &y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) == 0;
+    return std::ranges::equal(std::as_bytes(std::span(x)), std::as_bytes(std::span(y)));
   };
   const AssemblyState &g = a.grains, &h = b.grains;
   const auto drive = [](const RveDrive &state) {
