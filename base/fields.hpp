@@ -15,7 +15,7 @@ void for_each_named(std::string_view names, F &&f, Field &...fields)
 {
   const auto next_name = [&names] {
     const std::size_t end = std::min(names.find(','), names.size());
-    const std::string name(names.substr(0, end));
+    std::string name(names.substr(0, end));
     names.remove_prefix(std::min(names.find_first_not_of(", ", end), names.size()));
     return name;
   };

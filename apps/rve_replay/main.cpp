@@ -199,10 +199,12 @@ Json to_json(const ReplayResult &r, const StrainRecord &record)
 
 std::string scene_text(const Options &options, const RveSettings &settings)
 {
-  return fmt::format("record = \"{}\"\nquasi_static_tolerance = {}\nrate_floor = \"{} 1/s\"\nrate_ceiling = \"{} "
-                     "1/s\"\nleast_steps = {}\ndamping = {}\n",
-                     options.record, settings.motion.quasi_static_tolerance, settings.motion.rate_floor,
-                     settings.motion.rate_ceiling, settings.min_steps, settings.motion.damping);
+  std::string text = fmt::format("record = \"{}\"\nmin_steps = {}\n", options.record, settings.min_steps);
+  MotionSpec::for_each(settings.motion, [&](const char *name, const std::optional<double> &value) {
+    if (value)
+      text += fmt::format("{} = {}\n", name, *value); // SI units
+  });
+  return text;
 }
 
 void run(const Options &options)

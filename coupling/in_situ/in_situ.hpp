@@ -36,8 +36,9 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &tar
 /// @throws RunFailure  a controlled component is off by more than 1 % of p'
 void check_reached(const Mat3 &stress, const Mat3 &target, InSituPath path);
 
-/// All that the result of bring_to_stress() depends on, as text: hash of the specimen (law, cell, grains, contacts, bitwise), target
-/// stress, settings. Caches of earlier runs are found by it, so its text never changes for the same arguments.
+/// All that the result of bring_to_stress() depends on, as text: a version, the hash of the specimen (law, all fields of
+/// the cell, grains, contacts, bitwise), target stress, settings. Caches of earlier runs are found by it: the same
+/// arguments give the same text until the version is raised.
 /// tested: tests/coupling/in_situ/recipe_test.cpp
 std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &target, const MotionSpec &motion,
                            const InSituSettings &settings);

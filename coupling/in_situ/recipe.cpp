@@ -9,7 +9,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t recipe_version = 1;
+constexpr std::uint64_t recipe_version = 2;
 
 std::uint64_t hash_of(const Snapshot &s)
 {
@@ -24,11 +24,12 @@ std::uint64_t hash_of(const Snapshot &s)
   for (const auto *records : {&s.grains.position, &s.grains.velocity, &s.grains.spin})
     add(std::span(records->data(), n));
   if (s.cell)
-    {
-      for (const Mat3 *m : {&s.cell->edges, &s.cell->deformation, &s.cell->rotation})
-        add({m->data(), 9});
-      add(std::array{s.cell->reference_volume, s.cell->volume_strain});
-    }
+    PeriodicCell::for_each(*s.cell, [&]<class T>(const char *, const T &field) {
+      if constexpr (std::is_same_v<T, Mat3>)
+        add({field.data(), 9});
+      else
+        add(std::array{static_cast<double>(field)});
+    });
   for (const Contact &c : s.contacts)
     {
       add(std::array{double(c.first), double(c.second), c.overlap});

@@ -28,21 +28,10 @@ constexpr Key packings[] = {
   {.path = "realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
    .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.realisations; }},
-  {.path = "quasi_static_tolerance", .value = "0.01", .range = {0, 1, true, true},
-   .text = "Error that inertia of grains may add, as in element tests.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.quasi_static_tolerance; }},
-  {.path = "rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "0.2 1/s",
-   .range = positive, .text = "Smallest strain rate inside a packing.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.rate_floor; }},
-  {.path = "rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s", .value = "2 1/s",
-   .range = positive, .text = "Largest strain rate inside a packing.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.rate_ceiling; }},
   {.path = "min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
    .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in one or "
            "two, before the grains find their places.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.min_steps; }},
-  {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .text = "Local damping of the grains.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.motion.damping; }},
 };
 
 constexpr Key specimens[] = {
@@ -56,7 +45,13 @@ constexpr Key specimens[] = {
 // clang-format on
 } // namespace
 
-SceneFragment<RveMaterialSettings> packing_keys() { return {packings}; }
+SceneFragment<RveMaterialSettings> packing_keys()
+{
+  static const KeyTable table{
+      packings, splice("", controlled_motion_keys(), 0, [](RveMaterialSettings &s) -> MotionSpec & { return s.motion; })};
+  return {table.keys()};
+}
+
 SceneFragment<SpecimenRequest> specimen_keys() { return {specimens}; }
 
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings)

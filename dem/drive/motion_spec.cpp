@@ -10,13 +10,22 @@ namespace isostat
 namespace
 {
 // clang-format off
-constexpr Key keys[] = {
+constexpr Key controlled[] = {
   {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
    .text = "Local (non-viscous) damping coefficient.",
    .field = [](MotionSpec &m) -> Field { return &m.damping; }},
   {.path = "quasi_static_tolerance", .value = "0.01", .range = ranges::fraction, .group = "rate",
    .text = "Error that inertia may add to the stresses; the rate of loading is chosen to keep it.",
    .field = [](MotionSpec &m) -> Field { return &m.quasi_static_tolerance; }},
+  {.path = "rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "0.2 1/s", .range = ranges::positive, .text = "Lowest rate the tolerance may lead to.",
+   .field = [](MotionSpec &m) -> Field { return &m.rate_floor; }},
+  {.path = "rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+   .value = "2 1/s", .range = ranges::positive, .text = "Highest rate the tolerance may lead to.",
+   .field = [](MotionSpec &m) -> Field { return &m.rate_ceiling; }},
+};
+
+constexpr Key chosen[] = {
   {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",
    .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the tolerance.",
@@ -27,12 +36,6 @@ constexpr Key keys[] = {
            "gamma_xy) is I sqrt(p_r / density) / d50 with p_r = max(p', 0.05 p0'), renewed every 50 steps, without "
            "floor or ceiling.",
    .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
-  {.path = "rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "0.2 1/s", .range = ranges::positive, .text = "Lowest rate the tolerance may lead to.",
-   .field = [](MotionSpec &m) -> Field { return &m.rate_floor; }},
-  {.path = "rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "2 1/s", .range = ranges::positive, .text = "Highest rate the tolerance may lead to.",
-   .field = [](MotionSpec &m) -> Field { return &m.rate_ceiling; }},
   {.path = "time_step_safety", .value = "0.8", .range = ranges::to_one,
    .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",
    .field = [](MotionSpec &m) -> Field { return &m.time_step_safety; }},
@@ -44,7 +47,13 @@ constexpr Key keys[] = {
 // clang-format on
 } // namespace
 
-SceneFragment<MotionSpec> motion_keys() { return {keys}; }
+SceneFragment<MotionSpec> controlled_motion_keys() { return {controlled}; }
+
+SceneFragment<MotionSpec> motion_keys()
+{
+  static const KeyTable table{controlled, chosen};
+  return {table.keys()};
+}
 
 std::string recipe_text(const MotionSpec &motion)
 {

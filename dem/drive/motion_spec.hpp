@@ -25,6 +25,8 @@ struct MotionSpec
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
 SceneFragment<MotionSpec> motion_keys();
+/// Those of packings whose strain somebody else gives: damping, and how the rate is chosen from the tolerance.
+SceneFragment<MotionSpec> controlled_motion_keys();
 
 /// All settings as text, to the bit: part of the recipe of whatever they shape.
 std::string recipe_text(const MotionSpec &motion);

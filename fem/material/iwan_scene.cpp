@@ -12,7 +12,7 @@ namespace
 using namespace ranges;
 
 // clang-format off
-constexpr Key keys[] = {
+constexpr Key in_scenes[] = {
   {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive,
    .text = "Mean effective stress p_r at which the stiffness is given.",
@@ -44,8 +44,9 @@ constexpr Key keys[] = {
   {.path = "elements", .kind = Kind::integer, .value = "12", .range = {4, 32},
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
    .field = [](IwanParameters &p) -> Field { return &p.elements; }},
+};
 
-  // not in scenes
+constexpr Key fixed[] = {
   {.path = "shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
    .field = [](IwanParameters &p) -> Field { return &p.shear_modulus; }},
   {.path = "poisson_ratio", .range = {-1, 0.5, true, true}, .field = [](IwanParameters &p) -> Field { return &p.poisson_ratio; }},
@@ -56,11 +57,15 @@ constexpr Key keys[] = {
   {.path = "substep", .range = {1e-6, 1e-3}, .field = [](IwanParameters &p) -> Field { return &p.substep; }},
 };
 // clang-format on
-constexpr std::size_t n_in_scenes = 10;
 } // namespace
 
-SceneFragment<IwanParameters> iwan_keys() { return {std::span(keys).first(n_in_scenes)}; }
-SceneFragment<IwanParameters> all_iwan_keys() { return {keys}; }
+SceneFragment<IwanParameters> iwan_keys() { return {in_scenes}; }
+
+SceneFragment<IwanParameters> all_iwan_keys()
+{
+  static const KeyTable table{in_scenes, fixed};
+  return {table.keys()};
+}
 
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand)
 {

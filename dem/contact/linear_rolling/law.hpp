@@ -48,7 +48,7 @@ struct LinearRolling final : ContactLaw
   double twisting_stiffness = 0.3; ///< alpha_t [-]; no plastic limit
   bool rolling = true, twisting = true;
 
-  LinearRolling() { friction = 0.32491969623; }
+  LinearRolling() { friction = 0.32491969623290632616; } // tan 18 deg
   /// The instantiation that runs: friction 0 needs none of the tangential physics (no torque, hence no spin arises).
   LawFeatures active() const { return {friction > 0, friction > 0 && rolling, friction > 0 && twisting}; }
   /// The same law with none but these parts.

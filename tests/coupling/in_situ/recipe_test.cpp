@@ -15,11 +15,11 @@ std::string recipe(const MotionSpec &motion, const InSituSettings &settings = {}
 }
 } // namespace
 
-// Caches of earlier runs are found by it.
-TEST(InSituRecipe, ItsTextIsForGood)
+// Caches of earlier runs are found by it: a change of the text needs another version.
+TEST(InSituRecipe, ItsTextIsThatOfItsVersion)
 {
   EXPECT_EQ(recipe({}),
-            "in situ 1; specimen c879d08ce842de7b; stress -1000 -2000 -1000 0 0 0; path 0; tolerance 0.001; "
+            "in situ 2; specimen c879d08ce842de7b; stress -1000 -2000 -1000 0 0 0; path 0; tolerance 0.001; "
             "steps 500000; motion 0.20000000000000001 no no 0.01 0.20000000000000001 2 0.80000000000000004 "
             "no");
 }
@@ -41,6 +41,10 @@ TEST(InSituRecipe, AllThatTheResultDependsOnIsInIt)
   Snapshot softer;
   softer.law->young /= 2;
   EXPECT_NE(in_situ_recipe(softer, target, {}, {}), recipe({}));
+  Snapshot sliding, plain;
+  plain.cell = sliding.cell = PeriodicCell::with_edges(Vec3::Ones());
+  sliding.cell->strain_step(0, 1) = 1e-6;
+  EXPECT_NE(in_situ_recipe(sliding, target, {}, {}), in_situ_recipe(plain, target, {}, {}));
   EXPECT_NE(in_situ_recipe({}, 2 * target, {}, {}), recipe({}));
 }
 } // namespace isostat
