@@ -63,7 +63,7 @@ struct BiaxialScene
   bool operator==(const BiaxialScene &) const = default;
 };
 
-/// Reads and checks a scene file. A relative library counts from the folder of the scene file; an output folder left
+/// Reads and checks a scene file. A relative library is looked for as found_file() does; an output folder left
 /// out becomes results/<scene file name without ending>.
 /// @param overrides  "a.b=c" from --set
 /// @throws InputError with file:line, value, allowed range and remedy   tested: tests/apps/biaxial_test.py

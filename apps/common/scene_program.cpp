@@ -13,7 +13,8 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
 {
   line.add_option("scene", o.scene, program.scene_text)->transform(shipped_scene);
   line.add_option("-o,--output", o.output, "results folder (default: results/<scene name>)");
-  line.add_option("--set", o.set, fmt::format("override a key, e.g. --set {} (repeatable)", program.set_example));
+  line.add_option("--set", o.set, fmt::format("override a key, e.g. --set {} (repeatable)", program.set_example))
+      ->allow_extra_args(false); // else it takes the scene, too
   line.add_flag("--validate", o.validate, "check the scene, print it with every key, and stop");
   line.add_flag("--print-defaults", o.print_defaults, "print a commented scene with all keys, units and ranges");
   CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace results that are there");

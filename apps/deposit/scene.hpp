@@ -197,7 +197,7 @@ SoilProfile soil_profile(const ColumnScene &scene);
 /// @throws InputError from the record's file
 std::array<Motion, 3> column_motions(const ColumnScene &scene);
 
-/// Reads and checks a scene file of the soil column. A relative motion file counts from the folder of the scene file;
+/// Reads and checks a scene file of the soil column. A relative motion file is looked for as found_file() does;
 /// an output folder left out becomes results/<scene file name without ending>.
 /// @param overrides  "a.b=c" from --set, as in dem/scene/scene.hpp; `layer.0.thickness=2 m` is the uppermost layer
 /// @throws InputError with file:line (or `--set a.b`), value, allowed range and remedy

@@ -168,7 +168,8 @@ constexpr Key loading_keys[] = {
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.kind; }},
   {.path = "motion.file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
    .kinds = record,
-   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file.",
+   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file or "
+           "else from the working directory.",
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.file; }},
   {.path = "motion.unit", .kind = Kind::choice, .value = "g", .choices = unit_choices, .kinds = record,
    .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",

@@ -175,13 +175,15 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
                        const std::string &file)
 {
   namespace fs = std::filesystem;
-  const fs::path path = fs::absolute(fs::path(scene_path).parent_path() / file).lexically_normal();
+  const auto absolute = [](const fs::path &path) { return fs::absolute(path).lexically_normal(); };
+  const fs::path beside_scene = absolute(fs::path(scene_path).parent_path() / file), here = absolute(file);
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored))
-    document.refuse(key, fmt::format("is not there ({}). A relative path counts from the folder of the scene file; "
-                                     "correct it.",
-                                     path.string()));
-  return path.string();
+  for (const fs::path &path : {beside_scene, here})
+    if (fs::is_regular_file(path, ignored))
+      return path.string();
+  document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the scene "
+                                   "file or else from the working directory; correct it.",
+                                   beside_scene.string(), here.string()));
 }
 
 std::string results_folder(const std::string &scene_path)

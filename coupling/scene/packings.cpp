@@ -14,8 +14,8 @@ constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
 // clang-format off
 constexpr Key packings[] = {
   {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
-   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file. Needed by soil of "
-           "grains.",
+   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file or else from the "
+           "working directory. Needed by soil of grains.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.library; }},
   {.path = "cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
    .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
