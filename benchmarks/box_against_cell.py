@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Undrained triaxial compression in a box and in periodic cells: one figure and one table from finished runs.
 
-    box_against_cell.py --out FIGURE.png LABEL=RESULTS_FOLDER ...        the first run is what the others are held against
+    box_against_cell.py --out FIGURE.png LABEL=RESULTS_FOLDER ...    the first run is what the others are held against
 
 The runs are those of element_test. Strains of the table: 0.01, 0.1, 0.5 and 1 %.
 """
@@ -38,7 +38,8 @@ def table(runs):
     for label, summary, c in runs:
         cells = [f"{np.interp(s, c['eps_y'], c['q']) / 1e3:.1f}; {np.interp(s, c['eps_y'], c['p']) / 1e3:.1f}"
                  for s in STRAINS]
-        print(f"| {label} | {summary['void_ratio']:.3f} | {summary['preparation_friction_deg']:.2f} | {c['Z'][0]:.2f} | "
+        print(f"| {label} | {summary['void_ratio']:.3f} | {summary['preparation_friction_deg']:.2f} | "
+              f"{c['Z'][0]:.2f} | "
               + " | ".join(cells) + " |")
 
 

@@ -169,7 +169,8 @@ def run(arguments, case):
               "load.surcharge": "20 kPa", "layer.0.cells": case.cells, "layer.0.realisation": case.seed,
               "grains.realisations": case.realisations,
               "grains.quasi_static_tolerance": rates["quasi_static_tolerance"],
-              "grains.rate_floor": f"{rates['rate_floor']!r} 1/s", "grains.rate_ceiling": f"{rates['rate_ceiling']!r} 1/s",
+              "grains.rate_floor": f"{rates['rate_floor']!r} 1/s",
+              "grains.rate_ceiling": f"{rates['rate_ceiling']!r} 1/s",
               "motion.0.amplitude": f"{float(value) * settings.get('factor', 1):.9g} {unit}", "motion.0.ramp": ramp,
               "motion.0.duration": duration, "analysis.duration": duration,
               "output.history_interval": "4 ms", "output.profile_interval": "20 ms", "output.paraview_interval": "10 s"}

@@ -46,7 +46,8 @@ def read(folder):
             (("t", "time (s)"), ("v", "surface_vx (m/s)"), ("a", "surface_ax (m/s2)"), ("top", "max_ru (-)"))}
     with h5py.File(folder / "profiles.h5", "r") as file:
         order = np.argsort(file["depth"])
-        data.update(time=np.array(file["time"]), depth=np.array(file["depth"])[order], ru=np.array(file["ru"])[:, order])
+        data.update(time=np.array(file["time"]), depth=np.array(file["depth"])[order],
+                    ru=np.array(file["ru"])[:, order])
     times = json.loads((folder / "times.json").read_text(encoding="utf-8"))
     data["steps"] = times["packing_steps"]
     data["per_call"] = times["packing_steps"] / times["packing_calls"]
@@ -182,7 +183,8 @@ def numerics_table(runs, level, seeds, grains=250):
         head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
     else:
         head += ["bias of the final r_u, %", "largest r_u"]
-    print(f"\n<!-- numerics, {level}, {grains} grains, seeds {seeds} -->\n\n| {' | '.join(head)} |\n|" + "---|" * len(head))
+    print(f"\n<!-- numerics, {level}, {grains} grains, seeds {seeds} -->\n\n"
+          f"| {' | '.join(head)} |\n|" + "---|" * len(head))
     for _, label in runs.labels(level, grains):
         rows = runs.errors(level, label, grains, seeds)
         if not rows:
@@ -206,7 +208,8 @@ def twins(runs, level):
     pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
              "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
              "packings in situ at a floor of 0.02 1/s": ("rates 0.02 to 2, own packings", "rates 0.02 to 2")}
-    print(f"\n<!-- twins, {level} -->\n\n| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
+    print(f"\n<!-- twins, {level} -->\n\n"
+          "| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
           "|---|---|---|---|---|")
     for text, (one, other) in pairs.items():
         one, other = runs.of(level, one), runs.of(level, other)
@@ -305,7 +308,8 @@ def panel(axes, runs, level, key, factor, title, label):
         if not np.isfinite(y):
             continue
         colour, marker, _ = LOOK[family]
-        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5, zorder=3 + (family in ("default", "recommended")))
+        axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5,
+                  zorder=3 + (family in ("default", "recommended")))
         points.append((x, factor * y, name, colour))
     settings = list(points)
     points = grouped(points, 0.05 if level == "weak" else 0.6)
@@ -350,7 +354,8 @@ def draw(runs, path):
         figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
         panel(left, runs, "weak", "v", 100, "(a) weak motion, N = 250, far from liquefaction: surface velocity",
               "rms error, % of the rms")
-        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: first r_u > 0.95", "later than in the reference, s")
+        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: first r_u > 0.95",
+              "later than in the reference, s")
         handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
                    for c, m, text in LOOK.values()]
         figure.legend(handles=handles, loc="upper center", ncol=5, fontsize=8, handletextpad=0.2, columnspacing=1.4)
@@ -367,7 +372,8 @@ def write_csv(runs, path):
             data, slow = read(folder), runs.of(case.level, "reference", case.grains, case.cells).get(case.seed)
             error = differences(folder, slow) if slow and case.realisations == 1 else ("", "")
             out.writerow([case.level, case.family, case.label, case.grains, case.cells, case.seed, case.realisations,
-                          data["steps"], data["steps"] * case.grains, data["seconds"], *error, *quantities(folder).values()])
+                          data["steps"], data["steps"] * case.grains, data["seconds"], *error,
+                          *quantities(folder).values()])
 
 
 def write(there, table, figure):

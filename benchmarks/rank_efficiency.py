@@ -5,8 +5,8 @@
     rank_efficiency.py BIN SCENE LIBRARY [--rounds 5] [--set key=value ...]
 
 The last case is the machine's own limit: two programs that share nothing but caches and memory. Times are the
-wall clock that soil_column measures, with the reading of packings that were brought to their stress before. Prints medians and ranges; efficiency is
-T(1)/(2 T), the limit T(1)/T(side by side). A quiet machine with two cores, please.
+wall clock that soil_column measures, with the reading of packings that were brought to their stress before. Prints
+medians and ranges; efficiency is T(1)/(2 T), the limit T(1)/T(side by side). A quiet machine with two cores, please.
 """
 import argparse
 import json
@@ -21,8 +21,9 @@ ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROO
 
 
 def start(arguments, ranks, folder, threads=1):
-    command = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(arguments.bin / "soil_column"), str(arguments.scene), "-o",
-               folder, "-q", "--no-figures", "--threads", str(threads), "--set", f"grains.library={arguments.library.resolve()}"]
+    command = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(arguments.bin / "soil_column"),
+               str(arguments.scene), "-o", folder, "-q", "--no-figures", "--threads", str(threads),
+               "--set", f"grains.library={arguments.library.resolve()}"]
     for setting in arguments.set:
         command += ["--set", setting]
     return folder, subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
@@ -36,7 +37,8 @@ def seconds(run):
 
 
 def measure(arguments, cache):
-    cases = {"1 rank": (1, 1, 1), "2 ranks": (2, 1, 1), "1 rank of 2 threads": (1, 2, 1), "two runs side by side": (1, 1, 2)}
+    cases = {"1 rank": (1, 1, 1), "2 ranks": (2, 1, 1), "1 rank of 2 threads": (1, 2, 1),
+             "two runs side by side": (1, 1, 2)}
     times = {name: [] for name in cases}
     for _ in range(arguments.rounds):
         for name, (ranks, threads, copies) in cases.items():

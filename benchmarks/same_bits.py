@@ -5,10 +5,10 @@
     same_bits.py BIN_FOLDER --store digests.json            # of the build before a change; goes on where it stopped
     same_bits.py BIN_FOLDER --against digests.json          # of the build after it; returns 1 if a digest differs
 
-Hashed (SHA-256) are the bytes of history.csv and, of every HDF5 file with numbers (snapshots, profiles, maps, strain paths,
-specimens), the values of its datasets with their names and shapes; attributes, texts and checkpoints are left out, because what
-describes a result may improve while the result stays. Both builds run on the same machine: another instruction set
-rounds differently. Some ten minutes on one core.
+Hashed (SHA-256) are the bytes of history.csv and, of every HDF5 file with numbers (snapshots, profiles, maps, strain
+paths, specimens), the values of its datasets with their names and shapes; attributes, texts and checkpoints are left
+out, because what describes a result may improve while the result stays. Both builds run on the same machine: another
+instruction set rounds differently. Some ten minutes on one core.
 """
 import argparse
 import hashlib
@@ -27,8 +27,8 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SCENES = ROOT / "apps/scenes"
 COLUMNS = ROOT / "tests/regression/columns"
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
-               "OPENBLAS_NUM_THREADS": "1"}
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 FEW = ("--set", "grading.grains=300", "--set", "grading.cloud_edge=3.107 mm")
 TINY = ("--set", "grading.grains=150", "--set", "grading.cloud_edge=2.45 mm", "--set", "grading.truncate=[20, 80]")
 
@@ -68,7 +68,8 @@ strain = 0.001
 energy = true
 """
 
-# name -> program, arguments; {work} is the folder of all runs. In order: later ones may use the results of earlier ones.
+# name -> program, arguments; {work} is the folder of all runs. In order: later ones may use the results of earlier
+# ones.
 RUNS = {
     "box, cyclic, liquefies": ("element_test", SCENES / "quick_cyclic_liquefies.toml", *FEW,
                                "--set", "stage.0.until.reversals_after_liquefaction=1"),
@@ -77,7 +78,8 @@ RUNS = {
     "box, loose, compression": ("element_test", SCENES / "quick_monotonic_compression_dr30.toml", *FEW,
                                 "--set", "specimen.relative_density=0.45", "--set", "specimen.density_tolerance=0.2",
                                 "--set", "stage.0.strain=0.003"),
-    "box, drained": ("element_test", SCENES / "quick_drained_dr64.toml", *FEW, "--set", "specimen.preparation_friction=6 deg",
+    "box, drained": ("element_test", SCENES / "quick_drained_dr64.toml", *FEW,
+                     "--set", "specimen.preparation_friction=6 deg",
                      "--set", "stage.0.strain=0.003"),
     "box, 2,600 grains, two threads": ("element_test", SCENES / "quick_monotonic_compression_dr64.toml",
                                        "--set", "grading.grains=2600", "--set", "grading.cloud_edge=6.38 mm",
@@ -95,7 +97,8 @@ RUNS = {
     "library": ("specimen_library", SCENES / "rve_library.toml", "--pressures", "20 kPa,50 kPa", "-n", "2", *TINY,
                 "--set", "contact.young=500 MPa", "--set", "specimen.density_tolerance=0.03"),
     "column, elastic": ("soil_column", SCENES / "column/uniform_layer.toml", "--set", "analysis.duration=2 s"),
-    "column, compliant base": ("soil_column", SCENES / "column/two_layers_compliant.toml", "--set", "analysis.duration=2 s"),
+    "column, compliant base": ("soil_column", SCENES / "column/two_layers_compliant.toml",
+                               "--set", "analysis.duration=2 s"),
     "column, Iwan": ("soil_column", SCENES / "column/recorded_motion.toml"),
     "column, Iwan, u-p": ("soil_column", SCENES / "column/recorded_motion.toml", "--set", "water.drainage=coupled",
                           "--set", "analysis.duration=3 s"),
@@ -104,7 +107,8 @@ RUNS = {
     "column, grains, undrained, two ranks": ("mpirun", "soil_column", COLUMNS / "undrained.toml"),
     "column, grains, u-p": ("soil_column", COLUMNS / "drained.toml"),
     "column, grains, layered, two ranks": ("mpirun", "soil_column", COLUMNS / "layered.toml"),
-    "biaxial, Iwan": ("biaxial", SCENES / "biaxial/iwan.toml", "--set", "test.axial_strain=0.002", "--set", "test.steps=4"),
+    "biaxial, Iwan": ("biaxial", SCENES / "biaxial/iwan.toml", "--set", "test.axial_strain=0.002",
+                      "--set", "test.steps=4"),
     "biaxial, grains": ("biaxial", "{work}/block.toml"),
 }
 
@@ -155,9 +159,9 @@ def digests_of(folder):
 
 
 def run(command, log, stop_after=None):
-    """Exit code of a run; one that is to be stopped gets SIGINT once it has left three files in the folder `stop_after`."""
-    process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=log,
-                               stderr=subprocess.STDOUT)
+    """Exit code of a run; one that is to be stopped gets SIGINT once three files are in the folder `stop_after`."""
+    process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
+                               stdout=log, stderr=subprocess.STDOUT)
     if stop_after:
         while process.poll() is None and len(list(stop_after.glob("*"))) < 3:
             time.sleep(0.05)
@@ -180,7 +184,9 @@ def run_all(binaries, work, chosen, keep):
         launcher = []
         if program == "mpirun":
             launcher, program, arguments = ["mpirun", "--oversubscribe", "-n", 2], arguments[0], arguments[1:]
-        output = ("--output", folder / "library.h5") if program == "specimen_library" else ("--output", folder / "run", "-q", "--no-figures")
+        output = ("--output", folder / "run", "-q", "--no-figures")
+        if program == "specimen_library":
+            output = ("--output", folder / "library.h5")
         command = [*launcher, binaries / program, *arguments, *output]
         begin = time.time()
         with open(folder / "log.txt", "w") as log:

@@ -48,7 +48,8 @@ def integers(text):
 
 
 def table(results, threads):
-    head = "| packing | grains | contacts | " + " | ".join(f"ms/step, {t} thread{'s' if t > 1 else ''}" for t in threads)
+    times = " | ".join(f"ms/step, {t} thread{'s' if t > 1 else ''}" for t in threads)
+    head = "| packing | grains | contacts | " + times
     head += " | ns per contact and step, 1 thread | speed-up | bytes per grain: state, working |"
     lines = [head, "|" + "---|" * (head.count("|") - 1)]
     for (name, _), by_threads in results.items():

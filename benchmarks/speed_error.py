@@ -6,9 +6,9 @@
     speed_error.py --dry-run          the plan with its estimated hours
     speed_error.py --quick            a smoke run of two minutes; its report stays in the work folder
 
-Runs undrained cyclic and monotonic tests with element_test, one factor at a time around the default, every setting on the
-same specimens. Finished runs are kept in --work and not run again; after an interrupt (Ctrl-C, SIGTERM) the same command
-goes on from checkpoints. The settings and their reasons are in speed_error/plan.py.
+Runs undrained cyclic and monotonic tests with element_test, one factor at a time around the default, every setting on
+the same specimens. Finished runs are kept in --work and not run again; after an interrupt (Ctrl-C, SIGTERM) the same
+command goes on from checkpoints. The settings and their reasons are in speed_error/plan.py.
 """
 import argparse
 import pathlib
@@ -59,8 +59,8 @@ def print_plan(store, runs, jobs):
         print(f"{grains:>7}  {what:<32}{kind:<11}{number:>5}{left:>7}{seconds / 60:>9.1f}")
     left = [run for run in runs if not store.is_done(run)]
     hours = scale * sum(run.estimated_seconds() for run in left) / 3600
-    print(f"{len(runs)} runs, {len(left)} to do, about {hours:.2f} CPU hours, {hours / jobs:.2f} hours with {jobs} jobs "
-          f"(estimate x {scale:.2f} from {len(runs) - len(left)} runs done)", flush=True)
+    print(f"{len(runs)} runs, {len(left)} to do, about {hours:.2f} CPU hours, {hours / jobs:.2f} hours with {jobs} "
+          f"jobs (estimate x {scale:.2f} from {len(runs) - len(left)} runs done)", flush=True)
 
 
 def write_report(store, runs, path, command):

@@ -4,9 +4,9 @@
 
     layering.py [--root REPOSITORY] [EXECUTABLE or LIBRARY ...]
 
-Dependencies run one way: apps -> coupling -> {fem, dem} -> base. Inside dem they follow the time step. Prints every violation
-as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as arguments must
-not need deal.II or PETSc.
+Dependencies run one way: apps -> coupling -> {fem, dem} -> base. Inside dem they follow the time step. Prints every
+violation as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as
+arguments must not need deal.II or PETSc.
 """
 import argparse
 import pathlib

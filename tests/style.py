@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ctest `style`: how long a file and a function may be, where a header is tested, why a tolerance is what it is.
+"""The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is what it is.
 
     style.py [--root REPOSITORY] [--table]
 
@@ -15,12 +15,13 @@ import sys
 
 MAX_FILE = 400  # lines
 MAX_FUNCTION = 60  # lines: one screen
+MAX_LINE = 120  # columns; the tables between `clang-format off` and `on` have wider rows
 LIBRARIES = ("base", "dem", "fem", "coupling", "apps/common", "apps/deposit")
 MIRRORS = {("tests", top) for top in ("base", "dem", "fem", "coupling")}
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
 
 # A comparison with a tolerance that does not say why, as the helpers of tests/support/near.hpp and support.py do.
-SMALL = r"\d(?:\.\d+)?e-\d"
+SMALL = r"(?:\d(?:\.\d+)?e-\d|(?<![\w.])0?\.\d)"  # a number below one
 BARE = {
     ".cpp": re.compile(rf"\b(?:EXPECT|ASSERT)_(?:NEAR|FLOAT_EQ)\(|\bDoubleNear\(|\b(?:EXPECT|ASSERT)_L[TE]\(.*{SMALL}"),
     ".py": re.compile(rf"assertAlmostEqual|\ballclose\(|assert_allclose|\bisclose\(|assertLess(?:Equal)?\(.*{SMALL}"),
@@ -29,7 +30,7 @@ HELPERS = {"tests/support/near.hpp", "tests/apps/support.py", "tests/style.py"}
 
 # What opens a block of its own but is no function, and what names an existing test in a header's comment.
 NO_FUNCTION = re.compile(r"(inline )?namespace\b|(template\s*<.*>\s*)?(class|struct|union|enum)\b|extern\b")
-NAMED_TEST = re.compile(r"\btests/[\w/]+\.(?:cpp|py)\b")
+NAMED_TEST = re.compile(r"\btests/([\w/]*)(?:\{([\w,]+)\}(\w*))?\.(cpp|py)\b")
 
 
 def indent(line):
@@ -71,15 +72,34 @@ def statements(lines):
         at += 1
 
 
+def named_tests(text):
+    """Paths of the tests that a text names; tests/{a,b}_test.cpp are two."""
+    return [f"tests/{head}{name}{tail}.{end}" for head, names, tail, end in NAMED_TEST.findall(text)
+            for name in names.split(",")]
+
+
+def check_named(root, name, lines):
+    """Tests that a file names and that are not there."""
+    return [f"{name}:{at}: names {test}, which is not there" for at, line in enumerate(lines, 1)
+            for test in named_tests(line) if not (root / test).is_file()]
+
+
 def check_tested(root, header, text):
     """Nothing, or why this header of a library is tested nowhere."""
     mirror = root / "tests" / header.parent / (header.stem + "_test")
-    named = [root / path for path in NAMED_TEST.findall(text)]
-    if any(mirror.with_suffix(end).is_file() for end in (".cpp", ".py")) or (named and all(p.is_file() for p in named)):
+    if any(mirror.with_suffix(end).is_file() for end in (".cpp", ".py")) or named_tests(text):
         return []
-    missing = ", ".join(str(p.relative_to(root)) for p in named if not p.is_file())
-    return [f"{header}: names {missing}, which is not there" if missing else
-            f"{header}: no {mirror.relative_to(root)}.cpp, and no comment names the test that covers it"]
+    return [f"{header}: no {mirror.relative_to(root)}.cpp, and no comment names the test that covers it"]
+
+
+def wide_lines(lines):
+    """Numbers of the lines that are too wide, but for tables that clang-format leaves alone."""
+    is_table = False
+    for at, line in enumerate(lines, 1):
+        if "// clang-format o" in line:
+            is_table = "// clang-format off" in line
+        elif len(line) > MAX_LINE and not is_table:
+            yield at
 
 
 def check_mirrors(root, test):
@@ -104,6 +124,8 @@ def check_file(root, path):
     functions = python_functions(text) if path.suffix == ".py" else cpp_functions(lines)
     problems += [f"{name}:{at}: a function of {n} lines, more than {MAX_FUNCTION}"
                  for at, n in functions if n > MAX_FUNCTION]
+    problems += [f"{name}:{at}: more than {MAX_LINE} columns" for at in wide_lines(lines)]
+    problems += check_named(root, name, lines) if name.as_posix() not in HELPERS else []
     if path.suffix == ".hpp" and name.as_posix().startswith(tuple(f"{library}/" for library in LIBRARIES)):
         problems += check_tested(root, name, text)
     if name.name.endswith("_test.cpp") and name.parts[:2] in MIRRORS:

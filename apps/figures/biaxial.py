@@ -123,8 +123,8 @@ def report_band(block, field):
     values, vectors = np.linalg.eigh(np.cov(place))
     angle = np.degrees(np.arctan2(abs(vectors[1, 1]), abs(vectors[0, 1])))
     side = "rising" if vectors[0, 1] * vectors[1, 1] > 0 else "falling"
-    print(f"the fifth of points that shears most has {field[most].sum() / field.sum():.2f} of the shear strain; it lies "
-          f"along {angle:.0f} deg to the horizontal, {side}; spread across over along "
+    print(f"the fifth of points that shears most has {field[most].sum() / field.sum():.2f} of the shear strain; it "
+          f"lies along {angle:.0f} deg to the horizontal, {side}; spread across over along "
           f"{np.sqrt(max(values[0], 0) / values[1]):.2f}")
 
 
@@ -134,8 +134,8 @@ def band(block):
     total = block.maps["shear_strain"][-1] / block.maps["shear_strain"][-1].mean()
     for when, field in ("the start", total), (f"{100 * block.strain[before]:.2g} %", came):
         elements = block.cells(field)
-        print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} to "
-              f"{elements.max():.2f}")
+        print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} "
+              f"to {elements.max():.2f}")
     maps = [(total, 0, "Shear strain / mean", "since the start"),
             (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
     if block.maps["redundancy"].any():

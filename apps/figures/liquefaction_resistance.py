@@ -3,8 +3,8 @@
 
     python3 -m figures liquefaction_resistance RESULTS
 
-resistance.png   cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that did
-                 not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
+resistance.png   cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that
+                 did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
 """
 import csv
 import json

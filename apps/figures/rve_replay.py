@@ -20,7 +20,8 @@ class Replay:
         same = summary["equal"] == summary["increments"]
         self.title = f"Packing at {summary['depth']:.4g} m, alone" + (
             ": the stress of the column to the bit" if same else
-            f": {100 * summary['shear_error']:.2g} % off in shear stress, {100 * summary['pressure_error']:.2g} % in p'")
+            f": {100 * summary['shear_error']:.2g} % off in shear stress, "
+            f"{100 * summary['pressure_error']:.2g} % in p'")
 
 
 def both(axes, run, x, y):

@@ -13,8 +13,8 @@
 
 namespace isostat
 {
-/// Appends values, texts and rows of numbers to a row of bytes, in the machine's own representation: what travels between
-/// ranks and into checkpoints, the state of materials and packings. A row or text stands behind its length.
+/// Appends values, texts and rows of numbers to a row of bytes, in the machine's own representation: what travels
+/// between ranks and into checkpoints, the state of materials and packings. A row or text stands behind its length.
 /// Tested: tests/base/files/bytes_test.cpp.
 class ByteWriter
 {
@@ -62,8 +62,8 @@ private:
   std::vector<std::byte> bytes_;
 };
 
-/// Takes them out again in the same order; whatever does not fit is an InputError that begins with `reader` and ends with
-/// what the user can do.
+/// Takes them out again in the same order; whatever does not fit is an InputError that begins with `reader` and ends
+/// with what the user can do.
 class ByteReader
 {
 public:

@@ -79,4 +79,5 @@ contacts = sum(1 for i in O.interactions if i.isReal)
 s = wall_stress()
 with open(times, "w") as file:
     json.dump([{"steps_per_s": int(steps) / seconds, "contacts": contacts, "p_kPa": sum(s) / 3e3,
-                "q_kPa": (s[1] - 0.5 * (s[0] + s[2])) / 1e3, "grains": len(O.bodies) - 6, "cores": used / seconds}], file)
+                "q_kPa": (s[1] - 0.5 * (s[0] + s[2])) / 1e3, "grains": len(O.bodies) - 6, "cores": used / seconds}],
+                file)

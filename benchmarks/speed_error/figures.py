@@ -64,7 +64,8 @@ def scatter_panel(axes, rows, minutes, window, title):
             axes.errorbar(x, 100 * mean, [[low], [high]], fmt=marker, color=colour, ms=9 if marker == "*" else 5,
                           elinewidth=0.7, capsize=2)
             points.append((x, 100 * mean, row.setting.label, colour))
-    axes.set(xscale="log", yscale="log", xlabel="CPU time of the test, min", ylabel="largest error of the path, % of p0'")
+    axes.set(xscale="log", yscale="log", xlabel="CPU time of the test, min",
+             ylabel="largest error of the path, % of p0'")
     axes.set_title(title, fontsize=9.5, loc="left")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
@@ -96,8 +97,8 @@ def pareto(results, path):
         rows = [r for r in results.rows.values() if r.family != "reference"]
         whole = [r for r in rows if r.setting.reversals_after > 0]
         scatter_panel(left, whole, lambda r: r.minutes, "early",
-                      f"(a) cyclic: path to reversal {results.limits.early_reversals}; time of the whole test, liquefied "
-                      "part included")
+                      f"(a) cyclic: path to reversal {results.limits.early_reversals}; time of the whole test, "
+                      "liquefied part included")
         scatter_panel(right, [r for r in rows if r.monotonic],
                       lambda r: paths.ensemble(r.monotonic_cpu)[0] / 60, "monotonic",
                       f"(b) monotonic: path to {100 * results.limits.early_strain:g} % strain; time to "
@@ -116,7 +117,8 @@ def ensembles(results, path):
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(9.5, 0.26 * len(rows) + 1.3), sharey=True)
         figure.subplots_adjust(left=0.17, right=0.98, bottom=0.7 / (0.26 * len(rows) + 1.3), top=0.97, wspace=0.06)
-        for panel, name, label in zip(axes, ("cycles", "redundancy"), ("cycles to initial liquefaction", "I_R at onset")):
+        for panel, name, label in zip(axes, ("cycles", "redundancy"),
+                                      ("cycles to initial liquefaction", "I_R at onset")):
             slow = results.slow
             if slow:
                 mean, deviation, _, n = paths.ensemble(getattr(slow, name).values())

@@ -47,7 +47,7 @@ def name_of(row, base):
 
 
 def compared(results):
-    """Rows of the base number of grains that are held against the reference, run on as many specimens as the default."""
+    """Rows of the base number of grains that are held against the reference, on as many specimens as the default."""
     return [r for r in results.rows.values()
             if r.family not in ("reference", "grains") and r.n_tests >= results.base.n_tests]
 
@@ -99,7 +99,8 @@ def cost_table(results):
                      number(paths.ensemble(row.cpu)[0], 1), number(paths.ensemble(row.wall)[0], 1),
                      number(row.milliseconds_per_step, 4), count(paths.ensemble(row.monotonic_steps)[0]),
                      number(paths.ensemble(row.monotonic_cpu)[0], 1)])
-    return table(["setting", "steps", "to the onset", "liquefied", "reversals liquefied", "strain travelled liquefied, %",
+    return table(["setting", "steps", "to the onset", "liquefied", "reversals liquefied",
+                  "strain travelled liquefied, %",
                   "steps per 1 % of it",
                   "median η liquefied", "CPU s", "wall s", "ms per step", "monotonic: steps", "CPU s"], rows)
 
@@ -156,7 +157,8 @@ def recommendation(results):
         return (f"**Recommended:** none of the {what} that were run keeps the early paths within "
                 f"{100 * GOOD:g} %. {floor}")
     keys = dict(tolerance.setting.motion)
-    text = (f"**Recommended:** `quasi_static_tolerance = {keys.get('quasi_static_tolerance', '0.01')}` (largest error of the "
+    text = (f"**Recommended:** `quasi_static_tolerance = {keys.get('quasi_static_tolerance', '0.01')}` (largest error "
+            f"of the "
             f"cyclic path to reversal {reversal} and of the monotonic one to {100 * results.limits.early_strain:g} %: "
             f"{errors_of(tolerance)}) and `time_step_safety = "
             f"{dict(step.setting.motion).get('time_step_safety', '0.8')}` ({errors_of(step)}): the fewest steps among "
@@ -173,7 +175,9 @@ def floor_of(results, window):
     """How far the slow limit itself lies from the reference: it differs in the time step only."""
     slow = results.slow
     value = slow.error(window)[0] if slow else math.nan
-    return f"The slow limit itself is {percent(value)} % from the reference in the cyclic one." if not math.isnan(value) else ""
+    if math.isnan(value):
+        return ""
+    return f"The slow limit itself is {percent(value)} % from the reference in the cyclic one."
 
 
 def costs(candidates, error):
@@ -191,8 +195,8 @@ def costs(candidates, error):
 
 def user_sentence(results):
     candidates = [r for r in compared(results) if r.family in ADAPTIVE and not math.isnan(r.minutes)]
-    text = (f"**For users:** in a cyclic test of {results.base.setting.grains:,} grains on one core, run to the end of the "
-            f"liquefied part, with the error taken at the worst point of the cyclic path to reversal "
+    text = (f"**For users:** in a cyclic test of {results.base.setting.grains:,} grains on one core, run to the end of "
+            f"the liquefied part, with the error taken at the worst point of the cyclic path to reversal "
             f"{results.limits.longer_reversals}, " + ", ".join(costs(candidates, lambda r: r.error("longer")[0]))
             + f". With that of the monotonic path to {100 * results.limits.early_strain:g} % as well, "
             + ", ".join(costs(candidates, path_error)))
@@ -247,9 +251,11 @@ def compare(results, strain, rows, family, condition):
         missing = [name for name, row in (("adaptive rate", adaptive), (what, other)) if row is None]
         return f"{condition[0].upper() + condition[1:]}: reached by no {' and no '.join(missing)} that was run."
     ratio = steps(adaptive) / steps(other)
-    return (f"{condition[0].upper() + condition[1:]}: the adaptive rate **{'reaches' if ratio <= 0.5 else 'does not reach'}** "
-            f"it in at most half the steps of the best {what}. {adaptive.setting.label} takes {ratio:.2f} of the steps of "
-            f"{other.setting.label} ({adaptive.mean('steps') / other.mean('steps'):.2f} as counted, strains not brought to "
+    return (f"{condition[0].upper() + condition[1:]}: the adaptive rate "
+            f"**{'reaches' if ratio <= 0.5 else 'does not reach'}** "
+            f"it in at most half the steps of the best {what}. {adaptive.setting.label} takes {ratio:.2f} of the steps "
+            f"of {other.setting.label} ({adaptive.mean('steps') / other.mean('steps'):.2f} as counted, strains not "
+            f"brought to "
             f"the same amount); median η of the liquefied parts {number(adaptive.mean('indicator_after'), 4)} and "
             f"{number(other.mean('indicator_after'), 4)}.")
 
@@ -262,15 +268,18 @@ def at_equal_quality(results, strain, rows, whole, family):
                         lambda r: results.whole_test(r, strain))
     head = f"Equally near to equilibrium when liquefied, {what}: "
     if adaptive is None:
-        return head + f"no adaptive rate within {100 * GOOD:g} % has a median η up to {number(limit, 4)} (default + 10 %)."
+        return (head + f"no adaptive rate within {100 * GOOD:g} % has a median η up to "
+                f"{number(limit, 4)} (default + 10 %).")
     eta = adaptive.mean("indicator_after")
     points = sorted((r.mean("indicator_after"), results.whole_test(r, strain), r.setting.label) for r in whole
                     if r.family == family and not math.isnan(r.mean("indicator_after")))
     for (low, many, slower), (high, few, faster) in zip(points, points[1:]):
         if low <= eta <= high and high > low:
             share = math.log(eta / low) / math.log(high / low)
-            ratio = results.whole_test(adaptive, strain) / math.exp((1 - share) * math.log(many) + share * math.log(few))
-            return (head + f"{adaptive.setting.label} has a median η of {number(eta, 4)} and takes {ratio:.2f} of the steps "
+            interpolated = math.exp((1 - share) * math.log(many) + share * math.log(few))
+            ratio = results.whole_test(adaptive, strain) / interpolated
+            return (head + f"{adaptive.setting.label} has a median η of {number(eta, 4)} and takes {ratio:.2f} of the "
+                           f"steps "
                     f"of the fixed one with that η, interpolated between {slower} and {faster}: "
                     f"**{'at most' if ratio <= 0.5 else 'more than'} half**.")
     return head + f"none was run on both sides of η = {number(eta, 4)} ({adaptive.setting.label})."
@@ -287,16 +296,16 @@ What a tolerance, a rate, a time step, damping and the number of grains cost, an
 {state}
 
 Undrained tests on Karlsruhe fine sand, prepared at 10 deg and 200 kPa: cyclic with q_amp = 60 kPa to {after} reversals
-after liquefaction (or a strain of 3 %), monotonic compression to {strain:g} %. One factor at a time around tolerance 0.01
-(rate between 0.2 and 2 1/s), time step 0.8 of the critical one, damping 0.2, N = {base:,}; every setting on the same
-{seeds} specimens (seeds {seed_list}; fewer for the largest N).
+after liquefaction (or a strain of 3 %), monotonic compression to {strain:g} %. One factor at a time around tolerance
+0.01 (rate between 0.2 and 2 1/s), time step 0.8 of the critical one, damping 0.2, N = {base:,}; every setting on
+the same {seeds} specimens (seeds {seed_list}; fewer for the largest N).
 
-**Errors** are distances in the p'-q plane over p0', against a run of the same specimen with I = {slow_number} and 0.2 of
-the critical step: cyclic at equal q, point by point (1 kPa apart, and at the reversals) up to reversal {early}, and up to
-reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the worst point of a
-path; figures are means over
-realisations ± their standard error, in percent of p0'. **Cycles** and I_R at onset are ensembles: mean ± standard error,
-standard deviation beside it. The slow limit is {slow}. "Wide" lets the rate go from 0.02 to 20 1/s.
+**Errors** are distances in the p'-q plane over p0', against a run of the same specimen with I = {slow_number} and 0.2
+of the critical step: cyclic at equal q, point by point (1 kPa apart, and at the reversals) up to reversal {early}, and
+up to reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the
+worst point of a path; figures are means over realisations ± their standard error, in percent of p0'. **Cycles** and
+I_R at onset are ensembles: mean ± standard error, standard deviation beside it. The slow limit is {slow}. "Wide" lets the
+rate go from 0.02 to 20 1/s.
 
 {recommendation}
 
@@ -304,12 +313,12 @@ standard deviation beside it. The slow limit is {slow}. "Wide" lets the rate go 
 
 ## Adaptive against fixed rates
 
-Steps of the whole cyclic test, liquefied part included, of the cheapest setting that keeps the error at the worst point of
-the path (mean over realisations) within a target and whose mean cycles to liquefaction lie within one standard deviation
-of the slow limit ({cycles}). Specimens strain differently after liquefaction, so its steps are brought to the same strain
-travelled, {travelled} % (that of the default). Adaptive: any tolerance, wide bounds or not. Settings that were run to the
-onset only cannot compete. The fixed rates stand a factor of 2 to 4 apart, the inertial numbers 3 to 10, the tolerances 2 to
-3: a ratio is no surer than that.
+Steps of the whole cyclic test, liquefied part included, of the cheapest setting that keeps the error at the worst point
+of the path (mean over realisations) within a target and whose mean cycles to liquefaction lie within one standard
+deviation of the slow limit ({cycles}). Specimens strain differently after liquefaction, so its steps are brought to the
+same strain travelled, {travelled} % (that of the default). Adaptive: any tolerance, wide bounds or not. Settings that
+were run to the onset only cannot compete. The fixed rates stand a factor of 2 to 4 apart, the inertial numbers 3 to 10,
+the tolerances 2 to 3: a ratio is no surer than that.
 
 {verdict}
 
@@ -323,8 +332,8 @@ onset only cannot compete. The fixed rates stand a factor of 2 to 4 apart, the i
 
 ## Number of grains
 
-Mean path of all realisations of N against that of the largest N, and the error of rate and time step against the reference
-of the same specimens. Void ratios differ: the same preparation friction makes small specimens looser (walls).
+Mean path of all realisations of N against that of the largest N, and the error of rate and time step against the
+reference of the same specimens. Void ratios differ: the same preparation friction makes small specimens looser (walls).
 
 {grains}
 
@@ -352,7 +361,8 @@ def write(results, command):
     state = (f"{results.done} of {results.planned} runs done, {results.cpu / 3600:.2f} CPU hours, "
              f"{len(results.binaries)} build{'s' if len(results.binaries) != 1 else ''} of the program: "
              f"{'; '.join(sorted(results.builds))}.")
-    prepared = ", ".join(f"{paths.ensemble(cpu)[0]:.0f} s for N = {n:,}" for n, cpu in sorted(results.preparation.items()))
+    prepared = ", ".join(f"{paths.ensemble(cpu)[0]:.0f} s for N = {n:,}"
+                         for n, cpu in sorted(results.preparation.items()))
     after = base.setting.reversals_after if results.limits.reversals_after is None else results.limits.reversals_after
     return TEXT.format(
         command=command, state=state, after=after, strain=100 * results.limits.strain, base=base.setting.grains,

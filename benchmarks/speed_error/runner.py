@@ -95,7 +95,8 @@ class Campaign:
         self.begin = time.monotonic()
         for name in (signal.SIGINT, signal.SIGTERM):
             signal.signal(name, lambda *_: self.stop("interrupted: writing checkpoints"))
-        threads = [threading.Thread(target=self.work, args=(self.cores[k % len(self.cores)],)) for k in range(self.jobs)]
+        threads = [threading.Thread(target=self.work, args=(self.cores[k % len(self.cores)],))
+                   for k in range(self.jobs)]
         for thread in threads:
             thread.start()
         while any(thread.is_alive() for thread in threads):

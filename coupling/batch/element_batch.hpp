@@ -22,8 +22,9 @@ struct ElementRow
 ///
 ///     trial:   H of every point -> [ rank 0: elements 0, 3, 4 ][ rank 1: 1, 2, 5 ]... -> rows of all, by id
 ///
-/// Calls are collective unless they are const getters: every rank makes them in the same order with the same arguments, and gets
-/// the same answer, bitwise, wherever elements are. A failure of an element is the same exception on every rank.
+/// Calls are collective unless they are const getters: every rank makes them in the same order with the same arguments,
+/// and gets the same answer, bitwise, wherever elements are. A failure of an element is the same exception on every
+/// rank.
 /// tested: tests/coupling/batch/rve_material_test.cpp, tests/mpi/rve_material_mpi.cpp
 class ElementBatch
 {

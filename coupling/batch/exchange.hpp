@@ -13,7 +13,8 @@ namespace isostat
 using Bytes = std::vector<std::byte>;
 
 /// What goes between ranks. Every call is collective on the communicator, in the same order on all ranks; nothing is
-/// summed by MPI, so results are bitwise the same for any number of ranks. One rank alone makes no MPI call but those for its number.
+/// summed by MPI, so results are bitwise the same for any number of ranks. One rank alone makes no MPI call but those
+/// for its number.
 /// tested: tests/mpi/rve_material_mpi.cpp
 class Exchange
 {

@@ -19,8 +19,8 @@ struct RveMaterialCost
 /// A soil whose every Gauss point is `realisations` packings of grains: representative volume elements under the
 /// displacement gradient of the point, z upwards, see column_frame().
 ///
-///     increments -> ElementBatch (ranks, threads, trial and commit) -> stresses of all elements -> Realisations -> means
-///                        placed by CostMeter and BalanceRule             WaveModuliCache, committed
+///   increments -> ElementBatch (ranks, threads, trial and commit) -> stresses of all elements -> Realisations -> means
+///                      placed by CostMeter and BalanceRule             WaveModuliCache, committed
 ///
 /// All calls are collective: every rank of the communicator calls them in the same order with the same arguments, and
 /// gets the same answer, bitwise, for any number of ranks and threads and any placement. Placement

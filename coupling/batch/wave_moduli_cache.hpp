@@ -9,7 +9,7 @@ namespace isostat
 /// A_ij = C_ikjl n_k n_l its largest eigenvalue and the one below, each the largest of 203 directions n (the axes and
 /// a spiral over half of the sphere, 8 degrees apart: some 0.5 % below the largest of all).
 /// Negative ones, from rounding, count as zero.   cost 0.3 ms
-/// tested: tests/coupling/batch/rve_material_test.cpp (isotropic, cubic)
+/// tested: tests/coupling/batch/wave_moduli_test.cpp (isotropic, cubic)
 WaveModuli max_wave_moduli(const Stiffness &stiffness);
 
 /// When wave moduli are computed anew.
@@ -22,8 +22,8 @@ struct RefreshRule
   bool operator==(const RefreshRule &) const = default;
 };
 
-/// Wave moduli of elements, and the p' at which each was computed. They fall with p' and hardly rise with it, so that an old value is
-/// rather too large: good for the bound of a stable time step.
+/// Wave moduli of elements, and the p' at which each was computed. They fall with p' and hardly rise with it, so that
+/// an old value is rather too large: good for the bound of a stable time step.
 /// tested: tests/coupling/batch/wave_moduli_cache_test.cpp
 class WaveModuliCache
 {

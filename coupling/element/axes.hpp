@@ -5,8 +5,9 @@
 
 namespace isostat
 {
-/// Axes of a specimen in a soil, as columns: the specimen's x is the soil's x, its vertical y the soil's z, its z the soil's -y.
-/// The simple shear of the element tests (u_x grows with y) is then the column's shear xz, component by component.
+/// Axes of a specimen in a soil, as columns: the specimen's x is the soil's x, its vertical y the soil's z, its z the
+/// soil's -y. The simple shear of the element tests (u_x grows with y) is then the column's shear xz, component by
+/// component.
 /// tested: tests/coupling/element/axes_test.cpp
 inline Mat3 column_frame()
 {

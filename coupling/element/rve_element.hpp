@@ -23,8 +23,8 @@ struct ElementTrial
   std::uint64_t steps = 0;
 };
 
-/// A representative volume element for trials: each starts from the committed state, any number of them, and the way back to it
-/// is bitwise.
+/// A representative volume element for trials: each starts from the committed state, any number of them, and the way
+/// back to it is bitwise.
 ///
 /// An element goes on from where the last trial left it, so a trial that is committed costs nothing beyond itself. The
 /// way back is a copy of an earlier committed state and the increments taken since, to be run again: the copy is

@@ -22,8 +22,8 @@ struct InSituSettings
 };
 
 /// A specimen at a target stress, in its own axes. The element's mixed control leads there in steps of a
-/// factor 2 at most, geometric in normal stresses, and is repeated until no stress moves by more than twice the tolerance in 2,000
-/// time steps without strain: a packing at a few kPa has soft modes that need so many.
+/// factor 2 at most, geometric in normal stresses, and is repeated until no stress moves by more than twice the
+/// tolerance in 2,000 time steps without strain: a packing at a few kPa has soft modes that need so many.
 /// @param target  Cauchy effective stress in the specimen's axes (y vertical), Pa, tension positive
 /// @param motion  of the grains on their way
 /// @throws InputError  not compressive, p' < min_pressure    @throws RunFailure  not reached: says how near it came
@@ -36,8 +36,8 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &tar
 /// @throws RunFailure  a controlled component is off by more than 1 % of p'
 void check_reached(const Mat3 &stress, const Mat3 &target, InSituPath path);
 
-/// All that the result of bring_to_stress() depends on, as text: a version, the hash of the specimen (law, all fields of
-/// the cell, grains, contacts, bitwise), target stress, settings. Caches of earlier runs are found by it: the same
+/// All that the result of bring_to_stress() depends on, as text: a version, the hash of the specimen (law, all fields
+/// of the cell, grains, contacts, bitwise), target stress, settings. Caches of earlier runs are found by it: the same
 /// arguments give the same text until the version is raised.
 /// tested: tests/coupling/in_situ/recipe_test.cpp
 std::string in_situ_recipe(const Snapshot &specimen, const Mat3 &target, const MotionSpec &motion,

@@ -10,8 +10,8 @@
 
 namespace isostat
 {
-/// Brings the specimens of many elements to their stresses in situ. Elements with the same recipe share one specimen, and what the
-/// cache holds is not prepared again:
+/// Brings the specimens of many elements to their stresses in situ. Elements with the same recipe share one specimen,
+/// and what the cache holds is not prepared again:
 ///
 ///     add() every element  ->  prepare() each, side by side  ->  prepared() to the cache,  specimen() for each element
 ///

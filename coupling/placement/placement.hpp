@@ -41,7 +41,8 @@ struct BalanceRule
   bool operator==(const BalanceRule &) const = default;
 };
 
-/// Where elements should be from now on: `present` unless the imbalance is above the threshold and longest_first lowers it enough.
+/// Where elements should be from now on: `present` unless the imbalance is above the threshold and longest_first lowers
+/// it enough.
 Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ranks, const BalanceRule &rule);
 
 /// Elements of one rank by falling cost: the order in which its threads take them.

@@ -13,8 +13,8 @@ namespace isostat
 namespace
 {
 constexpr double max_strain_step = 0.01;
-/// Of the smallest radius, in one step: from there on a packing is said to explode. At p' = 10 MPa overlaps reach a tenth
-/// of the radius, and a grain that snaps off moves by 1 %.
+/// Of the smallest radius, in one step: from there on a packing is said to explode. At p' = 10 MPa overlaps reach a
+/// tenth of the radius, and a grain that snaps off moves by 1 %.
 constexpr double max_grain_step = 0.05;
 
 /// Says which grain moves too fast, or at a velocity that is not a number.

@@ -45,7 +45,8 @@ struct AssemblyState
 /// ContactForces. Between the halves the state is consistent: a driver reads stresses there, a recorder takes
 /// snapshots. After move() the state is what a checkpoint keeps. Where walls go is decided by the drivers (dem/drive).
 /// Views are not for several threads at once: the first one may evaluate forces.
-/// tested: tests/dem/assembly/assembly_test.cpp, tests/verification/{threads,cell_bits,cell_strain,energy_balance}_test.cpp
+/// tested: tests/dem/assembly/assembly_test.cpp,
+/// tests/verification/{threads,cell_bits,cell_strain,energy_balance}_test.cpp
 class Assembly
 {
 public:

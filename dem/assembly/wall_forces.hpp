@@ -5,8 +5,8 @@
 
 namespace isostat
 {
-/// What grains and the six rigid, frictionless walls (x-, x+, y-, y+, z-, z+) do to each other in one step: a grain that
-/// overlaps a wall is pushed inwards as the contact law says. Sums run chunk by chunk and then in order of
+/// What grains and the six rigid, frictionless walls (x-, x+, y-, y+, z-, z+) do to each other in one step: a grain
+/// that overlaps a wall is pushed inwards as the contact law says. Sums run chunk by chunk and then in order of
 /// chunks, so that they do not depend on the number of threads.
 /// tested: tests/dem/assembly/assembly_test.cpp (against the measures of a snapshot)
 class WallForces

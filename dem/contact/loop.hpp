@@ -64,8 +64,8 @@ struct LoopView
 /// @pre               the layout of the list is law.history()
 /// @param cell        of a list with images: branch vectors end at the image, the velocities of `packing` are
 ///                    fluctuations, and the virial is summed; 26 vector operations more. nullptr in a box
-/// cost, linear-rolling: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with AVX-512 no divide
-/// and no root (estimates and series); 400 bytes of traffic per pair; see benchmarks/README.md
+/// cost, linear-rolling: about 190 vector operations for eight pairs and 120 to bring grains in and forces out; with
+/// AVX-512 no divide and no root (estimates and series); 400 bytes of traffic per pair; see benchmarks/README.md
 /// tested: tests/dem/contact/loop_test.cpp (against the scalar twin, 1e-13, every variant and instruction set)
 void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
                         double *action, DissipationPerPair *dissipation, const CellMotion *cell = nullptr);

@@ -29,12 +29,12 @@ inline Eigen::Vector3i image_shift(ImageCode code)
 ///     a  |   |  /         so that all it ever sees is stretch; laboratory = rotation * own
 ///        |___| /
 ///
-/// A step with displacement gradient H = L dt (laboratory) is split at mid-step (Hughes & Winget 1980, doi:10.1002/nme.1620151210): with Q the
-/// rotation half a step on, E = sym(Q'HQ) stretches cell and grains by A = I + E + E^2/2, and rotation <- rotation
-/// exp(skew). A rigid rotation thus changes no bit of grains and forces, and stress turns with `rotation` alone.
-/// Volume is set, not accumulated: det(edges) = reference_volume exp(sum tr E), to round-off after any number of steps.
-/// Inertia of the affine motion (L^2 x, L w) is left out: the element has no place in space, and it is of the order of
-/// (rate * time step)^2.
+/// A step with displacement gradient H = L dt (laboratory) is split at mid-step (Hughes & Winget 1980,
+/// doi:10.1002/nme.1620151210): with Q the rotation half a step on, E = sym(Q'HQ) stretches cell and grains by A = I +
+/// E + E^2/2, and rotation <- rotation exp(skew). A rigid rotation thus changes no bit of grains and forces, and stress
+/// turns with `rotation` alone. Volume is set, not accumulated: det(edges) = reference_volume exp(sum tr E), to
+/// round-off after any number of steps. Inertia of the affine motion (L^2 x, L w) is left out: the element has no place
+/// in space, and it is of the order of (rate * time step)^2.
 /// tested: tests/dem/domain/periodic_cell_test.cpp
 struct PeriodicCell
 {

@@ -6,8 +6,8 @@
 
 namespace isostat
 {
-/// A packing from text. A folder holds one with contact history, in three tables of comma separated columns named in the
-/// first line, each plain or gzipped (.csv or .csv.gz):
+/// A packing from text. A folder holds one with contact history, in three tables of comma separated columns named in
+/// the first line, each plain or gzipped (.csv or .csv.gz):
 ///
 ///     comp_particles_step0   id,x,y,z,r,vx,vy,vz,wx,wy,wz
 ///     comp_contacts_step0    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2

@@ -43,7 +43,8 @@ struct EnergyBalance
 
   ISOSTAT_FIELDS(boundary_work, kinetic, elastic, sliding, rolling, released, damping, created)
   double dissipated() const { return sliding + rolling + released + damping; }
-  /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the time step.
+  /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the
+  /// time step.
   double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }
 };
 } // namespace isostat

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Equation numbers are those of "Micromechanical analysis of the cyclic mechanical response of granular materials through
-// DEM simulations".
+// Equation numbers are those of "Micromechanical analysis of the cyclic mechanical response of granular materials
+// through DEM simulations".
 #pragma once
 #include "dem/state/snapshot.hpp"
 
@@ -44,8 +44,8 @@ struct Anisotropies
 /// Smallest relative contact density for which a force is divided by it.
 inline constexpr double density_floor = 0.1;
 
-/// Anisotropies of second order (Rothenburg & Bathurst 1989, doi:10.1680/geot.1989.39.4.601; Chantawarangul 1993; in the notation of Guo & Zhao 2013,
-/// Computers and Geotechnics 47, section 4):
+/// Anisotropies of second order (Rothenburg & Bathurst 1989, doi:10.1680/geot.1989.39.4.601; Chantawarangul 1993; in
+/// the notation of Guo & Zhao 2013, Computers and Geotechnics 47, section 4):
 ///
 ///     density  E(n) = (1 + a_c:nn)/4pi          a_c = 15/2 dev F                     F: contact_fabric
 ///     normal   fn(n) = f0 (1 + a_n:nn)          a_n = 15/2 dev X / f0                X = <fn n n / (1 + a_c:nn)>

@@ -6,9 +6,9 @@
 
 namespace isostat
 {
-/// Grain-grain contacts by what has yielded (the source, section 4). Every contact is in exactly one class. What the law
-/// leaves out never yields: without rolling C_R = C_SR = 0; without friction all are C_NSR although each holds a single
-/// constraint, so none of the indices below is meant for a frictionless law.
+/// Grain-grain contacts by what has yielded (the source, section 4). Every contact is in exactly one class. What the
+/// law leaves out never yields: without rolling C_R = C_SR = 0; without friction all are C_NSR although each holds a
+/// single constraint, so none of the indices below is meant for a frictionless law.
 struct ContactClasses
 {
   std::size_t nsr = 0; ///< C_NSR, neither slides nor rolls
@@ -54,9 +54,9 @@ struct ContactNetwork
   /// Z = 2C / (N - N0): mean number of contacts of the grains that have any.
   double coordination_number() const;
 
-  /// Z_m = (2C - N1) / (N - N0 - N1), Thornton (2000), doi:10.1680/geot.2000.50.1.43: grains with fewer than two contacts carry no
-  /// load. One pass, not iterated: what loses a contact by this stays in. Z_m >= Z, unless no grain has two contacts
-  /// (then Z_m = 0).
+  /// Z_m = (2C - N1) / (N - N0 - N1), Thornton (2000), doi:10.1680/geot.2000.50.1.43: grains with fewer than two
+  /// contacts carry no load. One pass, not iterated: what loses a contact by this stays in. Z_m >= Z, unless no grain
+  /// has two contacts (then Z_m = 0).
   double mechanical_coordination_number() const;
 
   /// Share of a class in all contacts [-], e.g. fraction(network.classes.s).

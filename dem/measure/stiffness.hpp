@@ -13,7 +13,7 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 enum class Sliding
 {
   elastic, ///< as if it had never yielded: stiffness after a reversal, that of small waves
-  released ///< no ks where the contact slides, no kr where it rolls: a loading that keeps all yielding contacts yielding
+  released ///< no ks where the contact slides, no kr where it rolls: a loading that keeps yielding contacts yielding
 };
 
 /// Instantaneous elastic stiffness of a periodic packing, by condensation of its contact network onto the mean strain.

@@ -24,9 +24,9 @@ struct PreparedDensity
 };
 
 /// Finds the preparation friction whose isotropic compression ends at a void ratio, within tolerance: bracketed root
-/// search (TOMS 748, doi:10.1145/210089.210111) on e(tan phi) between 0 and 60 degrees, each evaluation a full compression of the same cloud. With
-/// few grains e(tan phi) is noisy; where the bracket closes on a jump, frictions around it are tried in steps of 0.1
-/// degree.
+/// search (TOMS 748, doi:10.1145/210089.210111) on e(tan phi) between 0 and 60 degrees, each evaluation a full
+/// compression of the same cloud. With few grains e(tan phi) is noisy; where the bracket closes on a jump, frictions
+/// around it are tried in steps of 0.1 degree.
 /// @param target, tolerance  void ratios [-]
 /// @throws InputError when the target lies outside what the cloud gives between frictionless and 60 degrees; names both
 /// @throws RunFailure when no friction tried comes within the tolerance

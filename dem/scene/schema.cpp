@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage stand beside their structs
-// and are spliced in. A new one of the others is an entry here and a field in dem/scene/scene.hpp. Rules that bind several
-// keys are in dem/scene/checks.cpp.
+// The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage stand beside their
+// structs and are spliced in. A new one of the others is an entry here and a field in dem/scene/scene.hpp. Rules that
+// bind several keys are in dem/scene/checks.cpp.
 #include "dem/scene/schema.hpp"
 
 #include "base/scene/fragment.hpp"

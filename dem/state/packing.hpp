@@ -12,9 +12,9 @@ namespace isostat
 ///     velocity  [vx vy vz 1/mass]      m/s, 1/kg      at the half step before the positions (leapfrog)
 ///     spin      [wx wy wz 1/inertia]   rad/s, 1/(kg m2)
 ///
-/// The incremental contact law needs no orientations, so none are stored (docs/theory.md, section 3). `id` is the grain's number in the
-/// specimen; storage order is the order of summation and never changes during a run. Two padding records stand behind
-/// the last grain: far away, radius 0; idle lanes of the SIMD loop point at them.
+/// The incremental contact law needs no orientations, so none are stored (docs/theory.md, section 3). `id` is the
+/// grain's number in the specimen; storage order is the order of summation and never changes during a run. Two padding
+/// records stand behind the last grain: far away, radius 0; idle lanes of the SIMD loop point at them.
 struct Packing
 {
   static constexpr std::size_t n_padding = 2;

@@ -5,8 +5,8 @@
 namespace isostat
 {
 /// A sand for Iwan. p' is the mean effective stress, compression positive; tau = sqrt(J2) is the shear stress of simple
-/// shear; eta = tau/p'. The defaults are a loose sand. Ranges are in fem/material/iwan_scene.cpp, from which the keys of
-/// scenes, the checks and the bytes of Iwan follow.
+/// shear; eta = tau/p'. The defaults are a loose sand. Ranges are in fem/material/iwan_scene.cpp, from which the keys
+/// of scenes, the checks and the bytes of Iwan follow.
 struct IwanParameters
 {
   double shear_modulus = 50e6;             ///< G at small strain and p' = reference_pressure, Pa

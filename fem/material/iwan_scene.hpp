@@ -12,7 +12,8 @@ SceneFragment<IwanParameters> iwan_keys();
 /// Those and all other parameters: what bytes and checks are made of.
 SceneFragment<IwanParameters> all_iwan_keys();
 
-/// @param prefix  where the keys of the sand are, "layer.0"   @throws InputError  phase transformation above the strength
+/// @param prefix  where the keys of the sand are, "layer.0"
+/// @throws InputError  phase transformation above the strength
 /// tested: tests/apps/deposit/scene_error_test.cpp
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand);
 } // namespace isostat

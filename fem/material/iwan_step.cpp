@@ -96,9 +96,9 @@ void Iwan::change_pressure(const double *from, const Shear &flow, double volumet
   to[floor_pressure] = from[floor_pressure];
 }
 
-/// One sub-step of (19) to (21); `to` may be `from`. Elements yield with the p' of the beginning, which gives flow and the
-/// new p', and are then returned to the yield of the new one. Sums run over `lanes` elements side by side, in a fixed
-/// order.
+/// One sub-step of (19) to (21); `to` may be `from`. Elements yield with the p' of the beginning, which gives flow and
+/// the new p', and are then returned to the yield of the new one. Sums run over `lanes` elements side by side, in a
+/// fixed order.
 void Iwan::step(const double *from, const Increment &d, double *to) const
 {
   const double p = from[pressure], shear = shear_modulus(p), compliance = 1 / shear;

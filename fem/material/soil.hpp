@@ -42,8 +42,8 @@ struct Water
   bool operator==(const Water &) const = default;
 };
 
-/// Layers from the surface down, as a borehole log reads; the one order of layers and their numbers everywhere. Heights:
-/// z = 0 at the base, upwards positive, water table at the surface.
+/// Layers from the surface down, as a borehole log reads; the one order of layers and their numbers everywhere.
+/// Heights: z = 0 at the base, upwards positive, water table at the surface.
 /// tested: tests/fem/material/soil_test.cpp
 struct SoilProfile
 {

@@ -48,7 +48,7 @@ struct DynamicsEnergy
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
 /// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still to the
-/// bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/fem/solve/shear_layer_test.cpp,
+/// bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/verification/shear_layer_test.cpp,
 /// tests/fem/water/pressure_system_test.cpp
 class Dynamics
 {

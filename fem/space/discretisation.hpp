@@ -31,8 +31,8 @@ public:
 
   /// Diagonal mass by Gauss-Lobatto at the nodes, kg; 0 at unknowns that a tie has removed.
   Vector lumped_mass() const;
-  /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2: int N_A over the
-  /// face by Gauss-Lobatto at the nodes.   @throws InputError  the face is of an axis that is not meshed
+  /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2: int N_A over
+  /// the face by Gauss-Lobatto at the nodes.   @throws InputError  the face is of an axis that is not meshed
   virtual Vector face_area(Face face) const = 0;
   /// Where the node of each owned displacement unknown is, m; of a tie, the node that stays.
   virtual std::vector<Place> node_places() const = 0;
@@ -44,8 +44,8 @@ public:
   /// Displacement gradients h_cd = factor sum_A u_Ac dN_A/dx_d at all points, along the axes that are meshed; the other
   /// entries of `out` stay as they are (0).   @pre ghost entries of u are up to date   Cost: in the loop.
   void gradients(const Vector &u, std::span<Gradient> out, double factor = 1) const;
-  /// f_Ac += int sigma_cd dN_A/dx_d, the internal force of effective stresses (N); what belongs to other ranks is brought
-  /// home.   Cost: in the loop.
+  /// f_Ac += int sigma_cd dN_A/dx_d, the internal force of effective stresses (N); what belongs to other ranks is
+  /// brought home.   Cost: in the loop.
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
   /// Pressure at all points, Pa, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
@@ -67,8 +67,8 @@ protected:
 template <int dim>
 class Unknowns;
 
-/// The same, made by deal.II. `communicator` MPI_COMM_SELF: the whole problem is on this rank; else the cells are shared
-/// out (dim > 1).
+/// The same, made by deal.II. `communicator` MPI_COMM_SELF: the whole problem is on this rank; else the cells are
+/// shared out (dim > 1).
 ///
 ///     block.hpp          what is requested: layers, widths, supports
 ///     mesh.hpp           cells                                                    (deal.II)

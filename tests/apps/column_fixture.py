@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes results folders as soil_column writes them, from closed forms: an elastic layer in the frequency domain, a
-consolidation by the eigenvectors of finite differences, and a made-up liquefaction, with grains if requested. For tests of
-the figures."""
+consolidation by the eigenvectors of finite differences, and a made-up liquefaction, with grains if requested. For tests
+of the figures."""
 import json
 import pathlib
 import re

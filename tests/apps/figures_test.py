@@ -18,7 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 APPS = ROOT / "apps"
 sys.path[:0] = [str(APPS), str(ROOT / "scripts")]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
-from figures.column_analysis import Terzaghi, exact_transfer, response_spectrum, smoothed, transfer_function  # noqa: E402
+from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,  # noqa: E402
+                                     transfer_function)
 from figures.column_results import Column, quantity  # noqa: E402
 from figures.column_grains import first  # noqa: E402
 from figures.column_soil import outline  # noqa: E402
@@ -123,7 +124,8 @@ class Figures(ToleranceTest):
 
     def draw(self, folder, *arguments):
         return subprocess.run([sys.executable, "-m", "figures", "soil_column", str(folder), *arguments],
-                              env={**os.environ, "PYTHONPATH": str(APPS)}, capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
+                              env={**os.environ, "PYTHONPATH": str(APPS)}, capture_output=True, text=True,
+                              timeout=120 * PATIENCE, check=False)
 
     def expect(self, folder, *names):
         result = self.draw(folder)

@@ -35,7 +35,8 @@ class LiquefactionResistance(AppTest):
         return [{name: cell for name, cell in row.items() if name != "wall"} for row in self.table(folder)]
 
     def finish_times(self, folder="out"):
-        return {path.parent.name: path.stat().st_mtime_ns for path in (self.folder / folder).glob("runs/*/summary.json")}
+        return {path.parent.name: path.stat().st_mtime_ns
+                for path in (self.folder / folder).glob("runs/*/summary.json")}
 
     def test_curve(self):
         result = self.run_it(*RATIOS, "-n", "2", "--jobs", "2", "-o", "out")
@@ -124,7 +125,8 @@ class LiquefactionResistance(AppTest):
         self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "is not there")
         packing = self.write("packing.txt", "# box 0 1 0 1 0 1\n0.5 0.5 0.5 0.5\n")
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", "--set", f"specimen.file={packing}",
-                                        scene=self.write("triaxial.toml", TRIAXIAL)), "specimen.file", "--realisations 1")
+                                        scene=self.write("triaxial.toml", TRIAXIAL)), "specimen.file",
+                            "--realisations 1")
         self.assertFalse((self.folder / "out").exists())
 
     def test_folder_of_others(self):

@@ -22,7 +22,8 @@ def triples(*names):
     return [name + axis for name in names for axis in "xyz"]
 
 
-PAIR_COLUMNS = ["step"] + triples("x1", "x2", "v1", "v2", "w1", "w2") + ["fn"] + triples("fs", "mb", "mt", "F2", "T1", "T2")
+PAIR_COLUMNS = (["step"] + triples("x1", "x2", "v1", "v2", "w1", "w2")
+                + ["fn"] + triples("fs", "mb", "mt", "F2", "T1", "T2"))
 START_COLUMNS = ["id1", "id2", "un"] + triples("n") + ["kn", "fn"] + triples("fs", "mb", "mt")
 CONTACT_COLUMNS = ["id1", "id2", "fn"] + triples("fs", "mb", "mt")
 PATH_COLUMNS = ["step", "eps_y", "p", "q"]

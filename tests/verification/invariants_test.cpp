@@ -198,7 +198,8 @@ TEST_P(PackingAtRest, TraceOfFabricAndBoundOfRedundancyHoldWhileItYields)
   EXPECT_GT(network.classes.s, 100u);
   EXPECT_NEAR_BECAUSE(contact_fabric(s).trace(), 1, 1e-14, "round-off of a mean of thousands of unit vectors");
   EXPECT_GE(network.redundancy_index(), 1.0 / 6);
-  EXPECT_LE(network.redundancy_index(), 0.5 * network.coordination_number());
+  EXPECT_BELOW_BECAUSE(network.redundancy_index(), 0.5 * network.coordination_number(),
+                       "I_R = Z/2 where nothing yields, and each yielding contact counts less");
 }
 INSTANTIATE_TEST_SUITE_P(Packings, PackingAtRest, testing::Values("medium", "vloose"),
                          [](const auto &packing) { return std::string(packing.param); });

@@ -34,9 +34,9 @@ struct ContactForce
 /// 3). R1, R2 radii, n the normal from grain 1 to grain 2, u the overlap:
 ///
 ///     kn = 2 E R1 R2/(R1+R2),  ks = (ks/kn) kn,  kr = R1 R2 ks alpha_r,  kt = R1 R2 ks alpha_t
-///     fn = kn u                       fs <- turned(fs) - ks dt (slip rate),     |fs| <= mu fn
-///                                     mb <- turned(mb) - kr dt (rolling rate),  |mb| <= rho_r fn,  rho_r = eta_r min(R)
-///                                     mt <- turned(mt) - kt dt (twisting rate), no limit
+///     fn = kn u                 fs <- turned(fs) - ks dt (slip rate),     |fs| <= mu fn
+///                               mb <- turned(mb) - kr dt (rolling rate),  |mb| <= rho_r fn,  rho_r = eta_r min(R)
+///                               mt <- turned(mt) - kt dt (twisting rate), no limit
 ///
 /// turned(): history rotates with the contact. A wall counts as a sphere of the same radius, kn = E R.
 /// tested: tests/dem/contact/linear_rolling/law_test.cpp (recorded pair paths, 1e-11), tests/dem/contact/loop_test.cpp

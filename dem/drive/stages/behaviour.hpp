@@ -46,10 +46,11 @@ struct StageContext
   RigidBox box_of(const Vec3 &edges) const { return RigidBox::about(state.path.reference.centre(), edges); }
 };
 
-/// One stage of a programme, as the run loop (dem/drive/programme.hpp) sees it. A kind of stage is a class: its settings,
-/// and what it does when it is asked. The kinds are listed in dem/drive/stages/stages.hpp, their keys in stages.cpp.
+/// One stage of a programme, as the run loop (dem/drive/programme.hpp) sees it. A kind of stage is a class: its
+/// settings, and what it does when it is asked. The kinds are listed in dem/drive/stages/stages.hpp, their keys in
+/// stages.cpp.
 ///
-///     begin -> { begin_shear (first step) -> judge -> next_box or next_gradient }  each step, until the verdict is finished
+///     begin -> { begin_shear (first step) -> judge -> next_box or next_gradient }  each step, until it is finished
 ///
 /// The defaults are those of a specimen that is left alone. Nothing here may change the trajectory but through the box
 /// or gradient that is returned, the state, and begin().

@@ -5,8 +5,8 @@
 
 namespace isostat
 {
-/// Constant-volume shear: an undrained test on saturated sand by the constant-volume method. In triaxial shear the axial
-/// rate is r, the lateral one -r/2; in simple shear the rate is that of gamma_xy and nothing else moves.
+/// Constant-volume shear: an undrained test on saturated sand by the constant-volume method. In triaxial shear the
+/// axial rate is r, the lateral one -r/2; in simple shear the rate is that of gamma_xy and nothing else moves.
 /// Liquefaction is p'/p0 below `liquefaction_ratio`; the state notes step, reversals and largest strain before it.
 /// tested: tests/dem/drive/stages/constant_volume_test.cpp, tests/regression/
 class ConstantVolume : public ShearStage
@@ -39,8 +39,8 @@ public:
 };
 
 /// ... between two equal and opposite loads. The direction turns when |load| reaches the limit of the kind; because the
-/// walls brake before it (rate_control.hpp) and turn in the step that crosses, the overshoot is what one step at a tenth
-/// of the rate adds. The stage ends at whichever of its conditions comes first.
+/// walls brake before it (rate_control.hpp) and turn in the step that crosses, the overshoot is what one step at a
+/// tenth of the rate adds. The stage ends at whichever of its conditions comes first.
 class CyclicConstantVolume : public ConstantVolume
 {
 public:

@@ -50,7 +50,8 @@ TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
   EXPECT_EQ(first.pack(), second.pack());
   std::printf("three elements of 200 grains: %.2f s at first, %.3f s from the cache\n",
               std::chrono::duration<double>(middle - begin).count(), fast);
-  EXPECT_LT(fast, 0.3 * std::chrono::duration<double>(middle - begin).count());
+  EXPECT_BELOW_BECAUSE(fast, 0.3 * std::chrono::duration<double>(middle - begin).count(),
+                       "three packings are read, not brought to their stress; a factor of three on a busy machine");
   const auto entries = list_library(settings.cache);
   ASSERT_EQ(entries.size(), 3u);
   EXPECT_THAT(entries[0].text("source"), testing::StartsWith("s000"));
@@ -77,7 +78,7 @@ TEST_F(InSitu, IsAtRest)
       for (int c = 0; c < 6; ++c)
         worst = std::max(worst, std::abs(after[i][c] - before[i][c]) / p);
     }
-  EXPECT_LT(worst, 0.01);
+  EXPECT_BELOW_BECAUSE(worst, 0.01, "what set_initial_stress() promises: 1 % of p'");
   std::printf("after 1,000 time steps at rest no stress has moved by more than %.1e of p'\n", worst);
   material.set_initial_stress(target);
   material.trial(nothing, after);

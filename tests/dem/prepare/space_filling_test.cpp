@@ -81,7 +81,8 @@ TEST(MortonOrder, IsAPermutationAndShortensTheWay)
       before += (points[i] - points[i - 1]).norm();
       after += (points[order[i]] - points[order[i - 1]]).norm();
     }
-  EXPECT_LT(after, 0.2 * before);
+  EXPECT_BELOW_BECAUSE(after, 0.2 * before,
+                       "spacing of 4,000 points, 0.06 edges, with jumps of the curve, against 0.66 edges for any two");
 }
 
 TEST(MortonOrder, NoneOneAndCoincidentPointsKeepTheirOrder)

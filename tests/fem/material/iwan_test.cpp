@@ -47,7 +47,8 @@ TEST(Iwan, ElementsFitTheHyperbola)
         std::printf("%u elements: backbone within %.2f %% of the hyperbola\n", n, 100 * worst);
       if (n >= 8)
         {
-          EXPECT_LT(worst, 0.0205 * std::pow(12.0 / n, 1.35));
+          EXPECT_BELOW_BECAUSE(worst, 0.0205 * std::pow(12.0 / n, 1.35),
+                               "a piecewise linear backbone: 2 % with 12 elements, order 1.35 as measured");
         }
     }
   EXPECT_THROW(fit_hyperbola(3), InputError);
