@@ -75,6 +75,14 @@ class Installed(support.ToleranceTest):
         self.assertLess(e.min(), e[0])
         self.assertGreater(e[-1], e.min())
 
+    def test_grains_do_without_deal_ii(self):
+        build = self.folder / "without"
+        run("cmake", "-S", EXAMPLES, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            "-DCMAKE_DISABLE_FIND_PACKAGE_deal.II=ON")
+        targets = run("cmake", "--build", build, "--target", "help")
+        self.assertIn("rve_path", targets)
+        self.assertNotIn("own_material", targets)
+
     def test_own_material(self):
         if not (self.prefix / "include/isostat/fem").exists():
             self.skipTest("the build has no continuum half")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is what it is.
+"""The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is so large.
 
     style.py [--root REPOSITORY] [--table]
 

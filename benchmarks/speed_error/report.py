@@ -304,8 +304,8 @@ the same {seeds} specimens (seeds {seed_list}; fewer for the largest N).
 of the critical step: cyclic at equal q, point by point (1 kPa apart, and at the reversals) up to reversal {early}, and
 up to reversal {longer}; monotonic at equal strain, to {early_strain:g} % and {longer_strain:g} %. "Largest" is the
 worst point of a path; figures are means over realisations ± their standard error, in percent of p0'. **Cycles** and
-I_R at onset are ensembles: mean ± standard error, standard deviation beside it. The slow limit is {slow}. "Wide" lets the
-rate go from 0.02 to 20 1/s.
+I_R at onset are ensembles: mean ± standard error, standard deviation beside it. The slow limit is {slow}.
+"Wide" lets the rate go from 0.02 to 20 1/s.
 
 {recommendation}
 
