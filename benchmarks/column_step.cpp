@@ -4,44 +4,40 @@
 // transfer function (tests/verification/shear_layer_test.cpp).
 //
 //   column_step [elements]
+#include "base/stopwatch.hpp"
 #include "fem/libraries.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/solve/dynamics.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 namespace
 {
 using namespace isostat;
-using Clock = std::chrono::steady_clock;
 
 /// Elastic soil that keeps the time spent in it.
 class Timed : public Elastic
 {
 public:
   using Elastic::Elastic;
-  mutable Clock::duration spent{};
+  mutable double spent = 0; ///< s
 
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override
   {
-    const auto begin = Clock::now();
+    const TimedScope timed(spent);
     Elastic::trial(increments, stresses);
-    spent += Clock::now() - begin;
   }
   void commit() override
   {
-    const auto begin = Clock::now();
+    const TimedScope timed(spent);
     Elastic::commit();
-    spent += Clock::now() - begin;
   }
   void wave_moduli(std::span<WaveModuli> moduli) const override
   {
-    const auto begin = Clock::now();
+    const TimedScope timed(spent);
     Elastic::wave_moduli(moduli);
-    spent += Clock::now() - begin;
   }
 };
 
@@ -51,8 +47,6 @@ struct Case
   unsigned degree;
   Drainage drainage;
 };
-
-double microseconds(Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); }
 
 /// Time per step outside the material and inside it, us.
 std::pair<double, double> step_cost(const Case &which, unsigned elements)
@@ -67,10 +61,10 @@ std::pair<double, double> step_cost(const Case &which, unsigned elements)
   for (int k = 0; k < 1000; ++k)
     run.step();
   material.spent = {};
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   for (int k = 0; k < n_steps; ++k)
     run.step();
-  const double total = microseconds(Clock::now() - begin), inside = microseconds(material.spent);
+  const double total = 1e6 * watch.seconds(), inside = 1e6 * material.spent;
   return {(total - inside) / n_steps, inside / n_steps};
 }
 } // namespace

@@ -8,12 +8,12 @@
 //
 //   rve_cost --grains 1000 --rounds 7
 #include "apps/common/command_line.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/motion/critical_step.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <fmt/format.h>
 
 namespace
@@ -22,9 +22,9 @@ using namespace isostat;
 
 double seconds_of(const std::function<void()> &work)
 {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return watch.seconds();
 }
 
 double median(std::vector<double> values)

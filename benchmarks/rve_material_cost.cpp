@@ -10,11 +10,11 @@
 //
 //   rve_material_cost --elements 20 --grains 1000 --rounds 5
 #include "apps/common/command_line.hpp"
+#include "base/stopwatch.hpp"
 #include "coupling/batch/rve_material.hpp"
 #include "tests/support/periodic.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <fmt/format.h>
 #include <numeric>
@@ -101,9 +101,9 @@ struct Contenders
         for (Rve &rve : alone)
           rve.undrained(h);
     });
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     r.kept = seconds_of([&] { trials(kept, 1, increments, stresses); });
-    r.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    r.wall = watch.seconds();
     r.tried = seconds_of([&] { trials(tried, 3, increments, stresses); });
     return r;
   }

@@ -8,11 +8,11 @@
 //   rve_tables twisting --grains 1000 --realisations 3
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/rve/rve.hpp"
 #include "tests/support/periodic.hpp"
 
-#include <chrono>
 #include <fmt/format.h>
 
 namespace
@@ -178,7 +178,7 @@ int main(int argc, char **argv)
   line.add_option("--degrees", degrees, "preparation friction")->check(CLI::Range(0.1, 60.0));
   line.add_option("--realisations", realisations, "packings of the twisting table")->check(CLI::Range(1, 100));
   return run_command(line, argc, argv, [&] {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     if (table == "twisting")
       print_twisting(grains, degrees, realisations);
     else
@@ -191,7 +191,6 @@ int main(int argc, char **argv)
           {
             fmt::print("\nStopped: {}\n", failure.what());
           }
-    fmt::print("\n{:.0f} s on one core\n",
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    fmt::print("\n{:.0f} s on one core\n", watch.seconds());
   });
 }

@@ -10,6 +10,7 @@
 #include "apps/common/command_line.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/specimen_file.hpp"
@@ -18,7 +19,6 @@
 #include "dem/prepare/space_filling.hpp"
 #include "tests/support/specimens.hpp"
 
-#include <chrono>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -99,9 +99,9 @@ void measure(const Options &options)
   Json times;
   for (int r = 0; r < options.repeats; ++r)
     {
-      const auto begin = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       run(options.steps);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      const double seconds = watch.seconds();
       assembly.compute_forces();
       const std::size_t contacts = n_contacts(assembly);
       const double grains = static_cast<double>(assembly.packing().n_grains());

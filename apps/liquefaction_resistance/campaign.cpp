@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <regex>
 
 namespace isostat
 {
@@ -58,12 +57,6 @@ double consolidation_pressure(const Scene &scene, std::size_t stage)
   return pressure;
 }
 
-/// A title without the CSR of the scene, which is not that of the runs: "..., CSR = 0.15".
-std::string without_ratio(const std::string &title)
-{
-  return std::regex_replace(title, std::regex(",? *CSR *=? *[0-9.]+"), "");
-}
-
 /// First line in which two texts differ, as it stands in the second.
 std::string difference(const std::string &one, const std::string &other)
 {
@@ -104,7 +97,6 @@ Campaign::Campaign(Scene scene, const CampaignPlan &plan, fs::path folder)
     throw InputError(fmt::format("{}: specimen.file is one specimen, which no seed changes. Give --realisations 1, or "
                                  "let the scene prepare its specimens.",
                                  shared_.title));
-  shared_.title = without_ratio(shared_.title);
   auto &cyclic = *as<CyclicConstantVolume>(shared_.stages[stage_]);
   cyclic.forget_stress_ratio(); // what differs between the runs is not part of what they share
   cyclic.max_cycles = plan.cycles;

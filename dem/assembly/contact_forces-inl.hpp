@@ -2,9 +2,9 @@
 // For files of dem/assembly alone, which are compiled with OpenMP.
 // tested: tests/verification/threads_test.cpp
 #pragma once
+#include "base/stopwatch.hpp"
 #include "dem/assembly/contact_forces.hpp"
 
-#include <chrono>
 #include <omp.h>
 #include <utility>
 
@@ -27,10 +27,10 @@ void ContactForces::for_chunks(int n_threads, const Work &work)
 #pragma omp parallel num_threads(n_threads)
   {
     const int thread = omp_get_thread_num();
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     for (std::size_t chunk = shares_.begin(thread); chunk < shares_.begin(thread + 1); ++chunk)
       work(chunk);
-    shares_.add_time(thread, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    shares_.add_time(thread, watch.seconds());
   }
 }
 
