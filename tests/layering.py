@@ -93,7 +93,7 @@ INNER = {
 # Any folder below dem/contact is a law, which knows the interface, the loop that runs it and no other law.
 A_LAW = BY_NAME | GRAINS | {"contact"}
 
-# What coupling sees of dem: the RVE is the only door; io stores and reads its state.
+# What coupling sees of dem: the RVE; scene has the keys of its motion, io stores and reads its state.
 COUPLING_SEES = {"rve", "scene", "io"}
 
 # External headers that a folder must not see, with the reason.
@@ -152,7 +152,7 @@ def inner_violation(source, target):
     if part is None:
         return f"{target} is in no part of {target_top}; add it to the table in tests/layering.py"
     if top == "coupling" and target_top == "dem" and part not in COUPLING_SEES:
-        return "coupling enters dem by rve/rve.hpp only"
+        return f"coupling sees of dem {', '.join(sorted(COUPLING_SEES))} alone"
     if top == target_top and own is not None and part != own and part not in INNER[top][own]:
         return f"{top}/{own} must not include {top}/{part}"
     return None

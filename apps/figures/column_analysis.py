@@ -36,7 +36,8 @@ def absolute_acceleration(a, h, omega, damping):
 
 
 def response_spectrum(a, dt, periods, damping=0.05):
-    """Peak absolute acceleration of oscillators (Nigam and Jennings 1969: exact for a that is linear between samples).
+    """Peak absolute acceleration of oscillators (Nigam and Jennings 1969, doi:10.1785/BSSA0590020909: exact for a that
+    is linear between samples).
 
     Steps are T/64 at most, which misses 0.13 % of a peak at most; one period of free vibration follows the motion.
     """
@@ -59,7 +60,8 @@ def fourier(a, dt):
 
 
 def smoothed(f, amplitude, centres, bandwidth=80.0):
-    """Konno and Ohmachi (1998): weights (sin(x)/x)^4, x = b log10(f/fc); wider bands where frequencies are higher."""
+    """Konno and Ohmachi (1998), doi:10.1785/BSSA0880010228: weights (sin(x)/x)^4, x = b log10(f/fc); wider bands where
+    frequencies are higher."""
     inside = f > 0
     x = bandwidth * np.log10(f[inside][None, :] / centres[:, None])
     weights = np.where(np.abs(x) < np.pi * 3, np.sinc(x / np.pi) ** 4, 0)

@@ -11,7 +11,11 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t modulus_interval = 20;
-}
+
+/// G over the modulus of one normal strain where grains follow the strain and contacts point everywhere:
+/// (2 + 3r)/(6 + 4r) with r = ks/kn, 1/3 to 1/2; here r = 0.3 (docs/theory.md, section 15).
+constexpr double shear_over_normal = 0.4;
+} // namespace
 
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
                  ServoState &state)
@@ -49,10 +53,11 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &target, const Eigen::Mat
     step = 0.8 * step + 0.2 * std::clamp(towards, -cap, cap);
     strain(i, j) = strain(j, i) = step;
   };
+  const double shear_modulus = shear_over_normal * state.modulus.mean();
   for (int axis = 0; axis < 3; ++axis)
     {
       follow(axis, axis, state.modulus[axis], state.step[axis]);
-      follow((axis + 1) % 3, (axis + 2) % 3, 2 * 0.4 * state.modulus.mean(), state.shear[axis]);
+      follow((axis + 1) % 3, (axis + 2) % 3, 2 * shear_modulus, state.shear[axis]); // sigma_ij = 2 G eps_ij
     }
   return strain;
 }

@@ -45,7 +45,7 @@ struct Anisotropies
 inline constexpr double density_floor = 0.1;
 
 /// Anisotropies of second order (Rothenburg & Bathurst 1989, doi:10.1680/geot.1989.39.4.601; Chantawarangul 1993; in
-/// the notation of Guo & Zhao 2013, Computers and Geotechnics 47, section 4):
+/// the notation of Guo & Zhao 2013, doi:10.1016/j.compgeo.2012.07.002, section 4):
 ///
 ///     density  E(n) = (1 + a_c:nn)/4pi          a_c = 15/2 dev F                     F: contact_fabric
 ///     normal   fn(n) = f0 (1 + a_n:nn)          a_n = 15/2 dev X / f0                X = <fn n n / (1 + a_c:nn)>

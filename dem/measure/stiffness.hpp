@@ -49,7 +49,8 @@ enum class Sliding
 Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
 
 /// The same without fluctuations, C = K_ee/V: Voigt bound, from above, with the contacts of all grains (Walton 1987,
-/// J. Mech. Phys. Solids 35, 213; Chang & Misra 1990, doi:10.1061/(ASCE)0733-9399(1990)116:5(1077), for no rotation).
+/// doi:10.1016/0022-5096(87)90036-6; Chang & Misra 1990, doi:10.1061/(ASCE)0733-9399(1990)116:5(1077), for no
+/// rotation).
 /// @throws RunFailure  as above     cost two 6 x 6 products per contact
 /// tested: tests/dem/measure/stiffness_test.cpp (cubic lattices, icosahedral directions)
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);

@@ -88,8 +88,9 @@ struct RveState
 ///
 /// Nothing moves between calls: the stress that a call returns is that of the grains as they are.
 /// Every step is that of the element tests: the same contact loop, damping, critical step (reviewed every 2,000 steps)
-/// and rate control (every 50 steps). The strain of a call is applied in equal steps, at the strain rate gamma_1 -
-/// gamma_3 (largest minus smallest principal stretching; in simple shear d gamma/dt) of the rate control.
+/// and rate control (every 50 steps). The strain of a call is applied in equal steps, at the strain rate of the rate
+/// control, max(gamma_1 - gamma_3, |gamma|max) of principal stretchings: largest minus smallest, in simple shear
+/// d gamma/dt; or the largest alone where all have one sign.
 /// Results depend on nothing but the sequence of calls: not on the lists, on saving, restoring or moving the element.
 /// @throws RunFailure  never from advance(): a failed run is a rejected increment
 /// tested: tests/dem/rve/rve_test.cpp, tests/verification/rve_*_test.cpp, tests/hard/rve_hard_cases_test.cpp

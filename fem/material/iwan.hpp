@@ -53,13 +53,14 @@ Backbone fit_hyperbola(unsigned elements);
 ///     (24) pressure       d p' = K (d eps_v - d eps_vp)
 ///     (25) moduli         G, K ~ (p'/p_ref)^n
 ///
-/// The volume law is Rowe's (1962) stress dilatancy with the stress ratio seen along the flow (Manzari and Dafalias
-/// 1997, doi:10.1680/geot.1997.47.2.255): after a reversal it contracts most. What has dilated contracts faster
-/// afterwards (the fabric of Dafalias and Manzari 2004, doi:10.1061/(ASCE)0733-9399(2004)130:6(622), here a number z
-/// that only grows), else no p' near zero is ever met. Without drainage p' falls cycle by cycle, and rises on the way
-/// to the strength: loops like a butterfly. As p' falls, elements are scaled back to their yield; this flow is not
-/// counted in the volume law. p' has a floor: contraction (or pulling apart) beyond it is kept as loosening, a strain
-/// that must be closed by compression or dilation before p' can rise again.
+/// The volume law is Rowe's (1962, doi:10.1098/rspa.1962.0193) stress dilatancy with the stress ratio seen along the
+/// flow (Manzari and Dafalias 1997, doi:10.1680/geot.1997.47.2.255): after a reversal it contracts most. What has
+/// dilated contracts faster afterwards (the fabric of Dafalias and Manzari 2004,
+/// doi:10.1061/(ASCE)0733-9399(2004)130:6(622), here a number z that only grows), else no p' near zero is ever met.
+/// Without drainage p' falls cycle by cycle, and rises on the way to the strength: loops like a butterfly. As p' falls,
+/// elements are scaled back to their yield; this flow is not counted in the volume law. p' has a floor: contraction (or
+/// pulling apart) beyond it is kept as loosening, a strain that must be closed by compression or dilation before p' can
+/// rise again.
 ///
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
 /// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are those of

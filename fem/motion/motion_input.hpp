@@ -76,8 +76,9 @@ Motion read_motion(const std::filesystem::path &path, AccelerationUnit unit);
 /// tested: tests/fem/motion/motion_input_test.cpp
 Motion harmonic_motion(double amplitude, double frequency, double duration, double ramp, double interval);
 
-/// Ricker wavelet a = A (1 - 2 b^2) exp(-b^2), b = pi f (t - t0), from 0 to 2 t0 (Ricker 1953); f is the peak of its
-/// spectrum. v = A (t - t0) exp(-b^2), d = -A/(2 pi^2 f^2) exp(-b^2), each but for what is cut off before t = 0.
+/// Ricker wavelet a = A (1 - 2 b^2) exp(-b^2), b = pi f (t - t0), from 0 to 2 t0 (Ricker 1953,
+/// doi:10.1190/1.1437843); f is the peak of its spectrum. v = A (t - t0) exp(-b^2), d = -A/(2 pi^2 f^2) exp(-b^2), each
+/// but for what is cut off before t = 0.
 /// @param amplitude  m/s2   @param frequency  Hz   @param t0, interval  s
 /// @throws InputError unless f > 0, f t0 >= 1 (less than 1e-3 A is cut off), 0 < interval <= 0.1/f
 /// tested: tests/fem/motion/motion_input_test.cpp

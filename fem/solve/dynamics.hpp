@@ -40,7 +40,7 @@ struct DynamicsEnergy
 /// pressure implicit. One evaluation of the material per step. docs/theory_column.md (4), (5), (6):
 ///
 ///     M (v+ - v-)/dt + C (v+ + v-)/2 = f - F(sigma') + G^T p                      momentum of the mixture at t_n
-///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L (v+ - v-)/dt = 0        water, second order backward (BDF2)
+///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L ((v+ - v-)/dt + a_base) = 0        water, backward (BDF2)
 ///     u_next = u + dt v+
 ///
 /// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is that of the
