@@ -40,13 +40,13 @@ NUMERICS = [  # family, label, what differs from the defaults; rates in 1/s, tim
     ("default", "default", {}),
     ("reference", "reference", SLOW),
     ("reference", "next slow", NEXT),
-    ("least", "least steps 1", {"min_steps": 1}),
-    ("least", "least steps 5", {"min_steps": 5}),
-    ("least", "least steps 10", {"min_steps": 10}),
-    ("least", "least steps 50", {"min_steps": 50}),
-    ("least", "least steps 100", {"min_steps": 100}),
-    ("recommended", "least steps 200", {"min_steps": 200}),
-    ("least", "least steps 400", {"min_steps": 400}),
+    ("min_steps", "min_steps 1", {"min_steps": 1}),
+    ("min_steps", "min_steps 5", {"min_steps": 5}),
+    ("min_steps", "min_steps 10", {"min_steps": 10}),
+    ("min_steps", "min_steps 50", {"min_steps": 50}),
+    ("min_steps", "min_steps 100", {"min_steps": 100}),
+    ("recommended", "min_steps 200", {"min_steps": 200}),
+    ("min_steps", "min_steps 400", {"min_steps": 400}),
     ("tolerance", "tolerance 0.003", {"quasi_static_tolerance": 0.003}),
     ("tolerance", "tolerance 0.03", {"quasi_static_tolerance": 0.03}),
     ("rate", "rates 0.02 to 2", {"rate_floor": 0.02}),
@@ -65,7 +65,7 @@ NUMERICS = [  # family, label, what differs from the defaults; rates in 1/s, tim
     ("same", "rates 0.02 to 2, own packings", {"rate_floor": 0.02, "own": True}),
     ("same", "reference, 1 ppm larger", {**SLOW, "factor": 1.000001}),
 ]
-WEAK_ONLY = ("least steps 100", "FE step 0.5 ms", "FE step 4 ms", "rates 0.02 to 0.1", "reference, 1 ppm larger")
+WEAK_ONLY = ("min_steps 100", "FE step 0.5 ms", "FE step 4 ms", "rates 0.02 to 0.1", "reference, 1 ppm larger")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,11 +98,11 @@ def plan(level):
     cases += [Case(level, "mean", "mean of 3", grains=250, seed=3 * k, realisations=3) for k in range(3)]
     if level == "weak":  # does the error of the rates fall with the size of a packing?
         cases += [Case(level, f, label, tuple(s.items()), grains=1000, seed=0) for f, label, s in NUMERICS
-                  if label in ("reference", "least steps 1", "least steps 5")]
+                  if label in ("reference", "min_steps 1", "min_steps 5")]
         cases += numerics[2]
     else:  # and the onset in larger packings?
         cases += [Case(level, f, label, tuple(s.items()), grains=1000, seed=seed) for seed in range(2)
-                  for f, label, s in NUMERICS if label == "least steps 200"]
+                  for f, label, s in NUMERICS if label == "min_steps 200"]
     return list(dict.fromkeys(cases))
 
 

@@ -20,7 +20,7 @@ LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
     "default": ("#1a1a1a", "*", "default: recommended for 1,000 grains"),
     "recommended": ("#0072b2", "*", "recommended for 250"),
     "reference": ("#7f7f7f", "P", "next slow"),
-    "least": ("#0072b2", "o", "least steps"),
+    "min_steps": ("#0072b2", "o", "min_steps"),
     "tolerance": ("#56b4e9", "o", "tolerance"),
     "rate": ("#d55e00", "s", "bounds of the rate, 1/s"),
     "step": ("#009e73", "^", "FE step"),
@@ -257,10 +257,10 @@ def size_table(runs, level):
 
 
 def onset_table(runs, grains):
-    """First r_u > 0.95 of each seed at the defaults and at 200 least steps."""
-    slow, own = (runs.of("strong", label, grains) for label in ("least steps 200", "default"))
+    """First r_u > 0.95 of each seed at the defaults and at min_steps 200."""
+    slow, own = (runs.of("strong", label, grains) for label in ("min_steps 200", "default"))
     if slow:
-        print("\n<!-- onset -->\n\n| seed | default, s | 10⁶ grain-steps | 200 least steps, s | 10⁶ grain-steps |")
+        print("\n<!-- onset -->\n\n| seed | default, s | 10⁶ grain-steps | min_steps 200, s | 10⁶ grain-steps |")
         print("|---|---|---|---|---|")
     for seed in sorted(set(slow) & set(own)):
         cells = [f"{quantities(f)['t95']:.3f} | {read(f)['steps'] * grains / 1e6:.0f}" for f in (own[seed], slow[seed])]

@@ -153,7 +153,7 @@ double energy_residual(const CsvTable &history)
 }
 std::string axial_text(const TestSummary &s)
 {
-  return fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, smallest p'    {:.2f} kPa, {:.3f} kPa",
+  return fmt::format("\n  largest |strain|         {:.4f} %\n  largest |q|, lowest p'   {:.2f} kPa, {:.3f} kPa",
                      100 * s.max_strain, s.max_q / 1e3, s.min_p / 1e3);
 }
 
@@ -164,7 +164,7 @@ std::string shear_text(const TestSummary &s)
   if (s.axial) // triaxial stages as well
     text = fmt::format("\n  largest |axial strain|   {:.4f} %\n  largest |q|              {:.2f} kPa",
                        100 * s.max_strain, s.max_q / 1e3);
-  text += fmt::format("\n  largest |gamma|          {:.4f} %\n  largest |tau|, smallest p'  {:.2f} kPa, {:.3f} kPa",
+  text += fmt::format("\n  largest |gamma|          {:.4f} %\n  largest |tau|, lowest p' {:.2f} kPa, {:.3f} kPa",
                       100 * shear.gamma, shear.tau / 1e3, s.min_p / 1e3);
   const std::string ratio =
       fmt::format("|tau| reached {:.4f} sigma'_v0, sigma'_v0 {:.2f} kPa", shear.max_ratio, shear.sigma_v0 / 1e3);

@@ -37,11 +37,11 @@ public:
   /// What a checkpoint has to keep.
   std::map<std::string, double> counters() const;
   /// Smallest redundancy index of any row of the profiles, and where and when.
-  struct Least
+  struct Minimum
   {
     double redundancy = 1e300, depth = 0, time = 0;
   };
-  const Least &minimum() const { return min_; }
+  const Minimum &minimum() const { return min_; }
 
 private:
   /// Micromechanics of some points, side by side.
@@ -69,6 +69,6 @@ private:
   std::size_t n_snapshots_, n_path_rows_; ///< the same on every rank
   std::vector<std::unique_ptr<PvdCollection>> pictures_;
   std::vector<std::unique_ptr<Recorder>> paths_;
-  Least min_;
+  Minimum min_;
 };
 } // namespace isostat

@@ -175,8 +175,8 @@ constexpr Key loading_keys[] = {
    .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.unit; }},
   {.path = "motion.baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
-   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that lets the displacement "
-           "drift smallest.",
+   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
+           "drift of the displacement.",
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.baseline; }},
   {.path = "motion.factor", .value = "1", .kinds = record, .group = "scale",
    .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
@@ -286,7 +286,7 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
   {.path = "output.profile_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth, rounded likewise; left out: none but largest values. A consolidation writes every step.",
+   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes every step.",
    .field = [](ColumnScene &s) -> Field { return &s.output.profile_interval; }},
   {.path = "output.paraview_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.5 s", .range = positive,

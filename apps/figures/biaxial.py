@@ -9,8 +9,8 @@ fig_rate_maps.png       shear strain between two of them: where the block deform
 fig_band.png            axial stress beside that of other runs, shear strain at the end, where it came last, void ratio
 fig_grain_maps.png      void ratio and redundancy index at the end, of packings
 
-Of fig_rate_maps the last map is asked for the inclination of a band: the direction of least spread of the points with
-the greatest shear strain, printed with their number. Compression is positive.
+Of fig_rate_maps the last map is asked for the inclination of a band: the direction of the smallest spread of the points
+with the largest shear strain, printed with their number. Compression is positive.
 """
 import h5py
 import numpy as np
@@ -72,7 +72,7 @@ def stress_strain(block):
     axes[1].plot(strain, 100 * block.history["volumetric_strain"], color=BLUE)
     axes[1].set_ylabel("Volumetric strain (%)")
     for name, label, color in (("shear_mean", "mean", BLACK), ("shear_quantile", "90 % quantile", BLUE),
-                               ("shear_max", "greatest", ORANGE)):
+                               ("shear_max", "largest", ORANGE)):
         axes[2].plot(strain, 100 * block.history[name], color=color, label=label)
     axes[2].set_ylabel("Shear strain of points (%)")
     axes[2].legend()

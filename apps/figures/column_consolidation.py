@@ -8,7 +8,7 @@ from .column_soil import TIMES, depth_axis, time_bar
 from .common import BLACK, BLUE, note, plt
 
 TIME_FACTORS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5)
-LEAST_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front
+MIN_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front
 
 
 def exact_solution(column):
@@ -56,12 +56,12 @@ def isochrones(column):
 
 def report(what, differences, time, exact, unit):
     """Largest difference from the time factor on at which it is fair to compare."""
-    late = exact.time_factor(time) >= LEAST_COMPARED
+    late = exact.time_factor(time) >= MIN_COMPARED
     if late.any():
         worst = np.where(late, differences, 0)
         at = int(np.argmax(worst))
         print(f"{what}: largest difference from Terzaghi's series {worst[at]:.2e} {unit}, at T = "
-              f"{exact.time_factor(time[at]):.3g} (T >= {LEAST_COMPARED})")
+              f"{exact.time_factor(time[at]):.3g} (T >= {MIN_COMPARED})")
 
 
 def settlement(column):

@@ -5,12 +5,12 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from .column_soil import (LEAST_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
+from .column_soil import (MIN_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
                                pore_pressure_ratio, time_bar, time_norm, times_of_motion)
 from .common import BLACK, BLUE, GREEN, ORANGE, RED, panel_letter, plt
 
 ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
-LEAST_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
+MIN_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
 YIELDING = (("f_S", "sliding (S)", BLUE), ("f_SR", "both (SR)", GREEN), ("f_R", "rolling (R)", ORANGE))
 
 
@@ -26,8 +26,8 @@ def grains_profiles(column):
         return None
     depth, time = grains["depth"], grains["time"]
     specs = [(grains["IR"], "Redundancy index $I_R$", ISOSTATIC), (grains["Z"], "Coordination number $Z$", None),
-             (np.where(grains["Z"] >= LEAST_Z, grains["F_yx"], np.nan),
-              rf"Fabric $F_{{[v-h]}}$, where $Z \geq {LEAST_Z}$", 0.0)]
+             (np.where(grains["Z"] >= MIN_Z, grains["F_yx"], np.nan),
+              rf"Fabric $F_{{[v-h]}}$, where $Z \geq {MIN_Z}$", 0.0)]
     figure, panels = plt.subplots(1, 3, figsize=(9.0, 4.3), sharey=True, layout="constrained")
     norm = time_norm(column)
     targets = [time[0], *times_of_motion(column, SHARES), time[-1]]
@@ -175,7 +175,7 @@ def grains_history(column):
     points = [(depth, prefix) for depth, prefix in grains.points if f"{prefix}_IR" in grains.columns]
     if not points or len(grains.columns["time"]) < 2:
         return None
-    wet = any(column.peak(f"{prefix}_ru") > LEAST_RU for _, prefix in points)
+    wet = any(column.peak(f"{prefix}_ru") > MIN_RU for _, prefix in points)
     n, shades = len(points), plt.get_cmap("plasma")(np.linspace(0.0, 0.85, len(points)))
     figure, panels = plt.subplots(1 + wet + n, 1, figsize=(7.2, 2.1 * (1 + wet) + 0.95 * n + 0.7), sharex=True,
                                   height_ratios=[2.1] * (1 + wet) + [0.95] * n, layout="constrained")

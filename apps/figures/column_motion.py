@@ -14,7 +14,7 @@ def input_name(column):
 
 
 def peak_mark(axes, t, a, colour):
-    """The greatest value, marked and written, away from the curve."""
+    """The largest value, marked and written, away from the curve."""
     at = int(np.argmax(np.abs(a)))
     axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
     side, up = (1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)

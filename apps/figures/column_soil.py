@@ -10,9 +10,9 @@ from .common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
 EARLY = 0.25  # of the motion: half of its squared acceleration by then is early
 SHARES = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9)  # of the squared acceleration: when profiles are drawn
-LEAST_RU = 1e-3  # below it water plays no part
+MIN_RU = 1e-3  # below it water plays no part
 LIQUEFIED_RU = 0.95
-LEAST_SHARE = 0.1  # of the greatest shear stress: a direction with less is not drawn (grains always stray a little)
+MIN_SHARE = 0.1  # of the largest shear stress: a direction with less is not drawn (grains always stray a little)
 
 
 def depth_axis(column, axes, depth):
@@ -69,11 +69,11 @@ def vertical_ratio(column, stress):
 
 def pore_pressure_ratio(column):
     ru = column.profile("ru")
-    return ru if ru is not None and np.nanmax(np.abs(ru)) > LEAST_RU else None
+    return ru if ru is not None and np.nanmax(np.abs(ru)) > MIN_RU else None
 
 
 def profiles(column):
-    """Greatest strain and stress ratio so far, and r_u at the moment, at several times."""
+    """Largest strain and stress ratio so far, and r_u at the moment, at several times."""
     if column.consolidation or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
@@ -170,7 +170,7 @@ def moving_shears(column):
     """Directions of the shear that some output depth feels, beside the strongest."""
     largest = {axis: max((column.peak(f"{prefix}_tau_{axis}z") for _, prefix in column.points), default=0.0)
                for axis in "xy"}
-    return [axis for axis in "xy" if largest[axis] > LEAST_SHARE * max(largest.values())]
+    return [axis for axis in "xy" if largest[axis] > MIN_SHARE * max(largest.values())]
 
 
 def coloured_path(axes, x, y, time, norm):
@@ -227,10 +227,10 @@ def loops(column):
 
 
 def histories(column):
-    """r_u at the output depths and its greatest value anywhere; settlement."""
+    """r_u at the output depths and its largest value anywhere; settlement."""
     if column.consolidation:
         return None
-    wet = column.peak("max_ru") > LEAST_RU or any(column.peak(f"{p}_ru") > LEAST_RU for _, p in column.points)
+    wet = column.peak("max_ru") > MIN_RU or any(column.peak(f"{p}_ru") > MIN_RU for _, p in column.points)
     sinks = column.peak("settlement") > 1e-6
     if not wet and not sinks:
         return None

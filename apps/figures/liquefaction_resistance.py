@@ -15,7 +15,7 @@ from matplotlib.transforms import ScaledTranslation
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, plt
 from .drawing import Drawing
 
-LEAST_CYCLES = 0.25  # liquefaction before the first reversal
+MIN_CYCLES = 0.25  # liquefaction before the first reversal
 REFERENCE = 15  # cycles that stand for an earthquake of magnitude 7.5
 RATIO_NAMES = {"simple shear": r"$\tau_{amp}/\sigma_{v0}^\prime$", "triaxial": r"$q_{amp}/(2\,p_0^\prime)$"}
 
@@ -36,7 +36,7 @@ def shift(axes, points):
 def draw_runs(axes, runs):
     """Dots, arrows for what did not liquefy; those that agree stand one above the other."""
     labels = {"liquefied": "realisation", "censored": "not liquefied", "strain": "strain limit before liquefaction"}
-    drawn = [(ratio, n or max(applied, LEAST_CYCLES), status) for ratio, n, applied, status in runs if status in labels]
+    drawn = [(ratio, n or max(applied, MIN_CYCLES), status) for ratio, n, applied, status in runs if status in labels]
     for ratio, n, status in sorted(set(drawn)):
         times = drawn.count((ratio, n, status))
         for k in range(times):
@@ -74,7 +74,7 @@ def resistance(campaign):
     runs, summary = campaign.runs, campaign.summary
     figure, axes = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
     axes.set_xscale("log")
-    cycles = [n or max(applied, LEAST_CYCLES) for _, n, applied, status in runs if status not in ("missing", "failed")]
+    cycles = [n or max(applied, MIN_CYCLES) for _, n, applied, status in runs if status not in ("missing", "failed")]
     low, high = 0.7 * min(cycles + [REFERENCE]), 1.6 * max(cycles + [REFERENCE])
     axes.set_xlim(low, high)
     axes.set_ylim(0, 1.2 * max(run[0] for run in runs))

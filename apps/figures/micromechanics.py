@@ -7,7 +7,7 @@ fig_force_distribution.png  probability density of fn/<fn> and |fs|/<fn>, first,
 fig_roses.png               contact normals in the x-y plane and about y: number (bars) and mean force (line)
 fig_anisotropies.png        a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain
 
-Onset is the first snapshot with p'/p0' < 0.01; without one, the snapshot of least p' stands in for it.
+Onset is the first snapshot with p'/p0' < 0.01; without one, the snapshot of the smallest p' stands in for it.
 """
 import csv
 import json
@@ -18,7 +18,7 @@ import numpy as np
 from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plt
 from .drawing import Drawing
 
-COLOURS = {"first": BLUE, "onset": RED, "least p'": RED, "last": ORANGE}
+COLOURS = {"first": BLUE, "onset": RED, "smallest p'": RED, "last": ORANGE}
 
 
 def read_table(path):
@@ -49,7 +49,7 @@ class Analysis:
         self.chosen = {"first": 0}
         if last > 0:
             if onset is None:
-                self.chosen["least p'"] = int(np.argmin(self.rows["p"]))
+                self.chosen["smallest p'"] = int(np.argmin(self.rows["p"]))
             else:
                 self.chosen["onset"] = onset
             self.chosen["last"] = last

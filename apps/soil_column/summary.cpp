@@ -67,7 +67,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
   if (s.grains && s.grains->has_profiles)
-    text += fmt::format("  smallest I_R                {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
+    text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
                         s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time);
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,

@@ -9,7 +9,7 @@ from . import packing as packings
 from .process import PeerError, execute, install, installed_version, last_lines
 
 HERE = pathlib.Path(__file__).resolve().parent
-LEAST_SECONDS, MOST_RUNS = 0.5, 20  # a block is repeated, from the same start, until its timed seconds reach this
+MIN_SECONDS, MAX_RUNS = 0.5, 20  # a block is repeated, from the same start, until its timed seconds reach this
 
 
 @dataclasses.dataclass
@@ -43,7 +43,7 @@ class Figures:
 def repeated(run, steps):
     """Runs again until enough seconds are timed; speeds are those of all runs together, the state that of the last."""
     done = [run()]
-    while sum(steps / f.steps_per_s for f in done) < LEAST_SECONDS and len(done) < MOST_RUNS:
+    while sum(steps / f.steps_per_s for f in done) < MIN_SECONDS and len(done) < MAX_RUNS:
         done.append(run())
     return together(done)
 

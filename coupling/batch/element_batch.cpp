@@ -21,7 +21,7 @@ ElementBatch::ElementBatch(const Realisations &points, const ElementSettings &se
 {
   const std::vector<double> equal_costs(all_.size(), 1.0);
   owners_ = longest_first(equal_costs, exchange_.size());
-  order_ = costliest_first(equal_costs, owners_, exchange_.rank());
+  order_ = by_falling_cost(equal_costs, owners_, exchange_.rank());
   std::iota(all_.begin(), all_.end(), std::size_t{0});
 }
 
@@ -181,7 +181,7 @@ std::size_t ElementBatch::place(const Owners &owners, std::span<const double> co
     if (!is_mine(id) && owners[id] == exchange_.rank())
       bytes_of[id] = std::move(arriving[next++]);
   owners_ = owners;
-  order_ = costliest_first(costs, owners_, exchange_.rank());
+  order_ = by_falling_cost(costs, owners_, exchange_.rank());
   for_each([&](std::size_t id) {
     if (const auto found = bytes_of.find(id); found != bytes_of.end())
       elements_[id] = std::make_unique<RveElement>(Rve::unpack(found->second, settings_.rve), settings_);

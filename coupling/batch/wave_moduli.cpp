@@ -10,7 +10,7 @@ namespace isostat
 {
 namespace
 {
-void look_along(const Eigen::Vector3d &n, const Stiffness &stiffness, WaveModuli &maximum)
+void update_maximum(const Eigen::Vector3d &n, const Stiffness &stiffness, WaveModuli &maximum)
 {
   Eigen::Matrix<double, 6, 3> b; // strain of a wave along n per displacement
   b << n[0], 0, 0, 0, n[1], 0, 0, 0, n[2], 0, n[2], n[1], n[2], 0, n[0], n[1], n[0], 0;
@@ -27,12 +27,12 @@ WaveModuli max_wave_moduli(const Stiffness &stiffness)
   constexpr int n = 200;
   WaveModuli maximum;
   for (int axis = 0; axis < 3; ++axis)
-    look_along(Eigen::Vector3d::Unit(axis), stiffness, maximum);
+    update_maximum(Eigen::Vector3d::Unit(axis), stiffness, maximum);
   for (int k = 0; k < n; ++k) // Fibonacci's spiral
     {
       const double z = (k + 0.5) / n, r = std::sqrt(1 - z * z);
       const double turn = 2 * std::numbers::pi * k / std::numbers::phi;
-      look_along({r * std::cos(turn), r * std::sin(turn), z}, stiffness, maximum);
+      update_maximum({r * std::cos(turn), r * std::sin(turn), z}, stiffness, maximum);
     }
   return maximum;
 }

@@ -20,7 +20,7 @@ Mat3 half_of(const Mat3 &h)
 }
 
 /// An element in the same state that has cost nothing yet.
-Rve newborn(const Rve &rve)
+Rve without_cost(const Rve &rve)
 {
   RveSettings plain; // bytes hold no settings
   Rve fresh(rve.assembly().snapshot(), plain);
@@ -105,6 +105,6 @@ void RveElement::keep_copy()
 
 std::vector<std::byte> RveElement::pack()
 {
-  return at_committed([](const Rve &rve) { return newborn(rve).pack(); });
+  return at_committed([](const Rve &rve) { return without_cost(rve).pack(); });
 }
 } // namespace isostat

@@ -103,7 +103,7 @@ Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ra
   return renamed_to_stay(parts, present, n_ranks);
 }
 
-std::vector<std::size_t> costliest_first(std::span<const double> costs, const Owners &owners, int rank)
+std::vector<std::size_t> by_falling_cost(std::span<const double> costs, const Owners &owners, int rank)
 {
   std::vector<std::size_t> order = by_falling_cost(costs);
   std::erase_if(order, [&](std::size_t i) { return owners[i] != rank; });

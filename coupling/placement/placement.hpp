@@ -13,9 +13,9 @@ namespace isostat
 /// tested: tests/coupling/placement/placement_test.cpp
 using Owners = std::vector<int>; ///< rank of each element
 
-/// Longest processing time first (Graham 1969, SIAM J. Appl. Math. 17): elements in order of falling cost, the lower
-/// number first where costs are equal, each to the rank with the smallest load so far, the lower one where loads are
-/// equal. The largest load is at most 4/3 - 1/(3 n_ranks) of the best possible one.
+/// Longest processing time first (Graham 1969, SIAM J. Appl. Math. 17, doi:10.1137/0117039): elements in order of
+/// falling cost, the lower number first where costs are equal, each to the rank with the smallest load so far, the
+/// lower one where loads are equal. The largest load is at most 4/3 - 1/(3 n_ranks) of the best possible one.
 /// @param n_ranks  > 0     cost O(n log n + n log n_ranks)
 Owners longest_first(std::span<const double> costs, int n_ranks);
 
@@ -46,7 +46,7 @@ struct BalanceRule
 Owners rebalanced(std::span<const double> costs, const Owners &present, int n_ranks, const BalanceRule &rule);
 
 /// Elements of one rank by falling cost: the order in which its threads take them.
-std::vector<std::size_t> costliest_first(std::span<const double> costs, const Owners &owners, int rank);
+std::vector<std::size_t> by_falling_cost(std::span<const double> costs, const Owners &owners, int rank);
 
 /// Running mean of what each element costs in a trial: the first trial counts whole, then each with a weight of 0.1,
 ///     mean <- 0.9 mean + 0.1 seconds.

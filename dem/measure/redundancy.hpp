@@ -46,7 +46,7 @@ struct ContactNetwork
 
   /// Sliding-only form: contact forces as constraints and no moments, three if the contact sticks, one if it slides,
   /// against the six degrees of freedom of a sphere that friction can turn: (3 (C_NSR + C_R) + C_S + C_SR)/(6 (N - N0))
-  /// = Z (3 - 2f)/12 with f the sliding fraction (in the manner of Gong, Thornton & Chan 2012, its ref. 6).
+  /// = Z (3 - 2f)/12 with f the sliding fraction (in the manner of Gong, Thornton & Chan 2012, docs/theory.md).
   /// Nothing slides: Z/4, isostatic at Z = 4 as known for frictional spheres. With three degrees of freedom in the
   /// denominator it would be twice as large and isostatic at Z = 2, which no packing of rough spheres is.
   double redundancy_index_sliding() const { return index(3, 1, 3, 1); }

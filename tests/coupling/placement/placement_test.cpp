@@ -107,7 +107,7 @@ TEST(Placement, MovesOnlyAboveTheThresholdAndForAGain)
 
 TEST(Placement, ThreadsTakeTheCostliestFirst)
 {
-  EXPECT_THAT(costliest_first(std::vector{1.0, 3.0, 2.0, 3.0, 9.0}, {0, 0, 0, 0, 1}, 0), ElementsAre(1, 3, 2, 0));
+  EXPECT_THAT(by_falling_cost(std::vector{1.0, 3.0, 2.0, 3.0, 9.0}, {0, 0, 0, 0, 1}, 0), ElementsAre(1, 3, 2, 0));
 }
 
 TEST(CostMeter, IsARunningMeanThatBeginsWithTheFirstTrial)

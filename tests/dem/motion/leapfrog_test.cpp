@@ -222,7 +222,7 @@ TEST_P(Leapfrog, ClearsForcesAndLeavesRadiusMassAndPaddingAlone)
     EXPECT_EQ(packing.position[at], before.position[at]);
 }
 
-TEST_P(Leapfrog, ReportsTheGreatestSpeedAsABound)
+TEST_P(Leapfrog, ReportsTheLargestSpeedAsABound)
 {
   Packing packing = moving_packing(40);
   Action action = resting_action(packing);
