@@ -59,8 +59,8 @@ void check_result_folder(const fs::path &folder, FolderUse use)
   if (use == FolderUse::resume)
     {
       if (!fs::is_directory(folder / "checkpoint", failure))
-        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it. Give the folder of an "
-                                     "interrupted run with --output, or start without --resume.",
+        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it. Give the folder of "
+                                     "an interrupted run with --output, or start without --resume.",
                                      folder.string()));
       return;
     }
@@ -69,10 +69,9 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
   const bool used = exists && !fs::is_empty(folder);
   if (used && use == FolderUse::fresh)
-    throw InputError(
-        fmt::format("{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.",
-                    folder.string(),
-                    fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
+    throw InputError(fmt::format(
+        "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
+        fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
   if (used && !fs::exists(folder / "scene.toml"))
     throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
                                  "Choose another --output.",

@@ -48,8 +48,9 @@ void open_existing(FileState &state, const fs::path &where, unsigned mode)
 {
   state.id = H5Fopen(where.c_str(), mode, H5P_DEFAULT);
   if (state.id < 0)
-    throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again, or delete it if it is a cache", state.path.string(),
-                                 library_reason()));
+    throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again, or delete it if it is "
+                                 "a cache",
+                                 state.path.string(), library_reason()));
 }
 
 void require_hdf5(const fs::path &path)

@@ -181,8 +181,8 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_regular_file(path, ignored))
       return path.string();
-  document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the scene "
-                                   "file or else from the working directory; correct it.",
+  document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the "
+                                   "scene file or else from the working directory; correct it.",
                                    beside_scene.string(), here.string()));
 }
 
