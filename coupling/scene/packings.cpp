@@ -47,8 +47,8 @@ constexpr Key specimens[] = {
 
 SceneFragment<RveMaterialSettings> packing_keys()
 {
-  static const KeyTable table{
-      packings, splice("", controlled_motion_keys(), 0, [](RveMaterialSettings &s) -> MotionSpec & { return s.motion; })};
+  const auto motion = [](RveMaterialSettings &s) -> MotionSpec & { return s.motion; };
+  static const KeyTable table{packings, splice("", controlled_motion_keys(), 0, motion)};
   return {table.keys()};
 }
 

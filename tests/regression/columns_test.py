@@ -4,11 +4,12 @@
 
     columns_test.py BIN_FOLDER [--regenerate]
 
-Packings of 120 grains and their states in situ are stored here, because a preparation of some 100,000 steps ends elsewhere with
-other rounding. The history must have the same bytes on any number of ranks. Against what is stored, rounding that
-differs (another instruction set) grows until single contacts open and close, so: the first two rows agree within 1e-6 of the
-largest value of their kind (all components of a vector are one kind), the others within 3 % (1.5 % was seen between SSE,
-AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ; read the diff.
+Packings of 120 grains and their states in situ are stored here, because a preparation of some 100,000 steps ends
+elsewhere with other rounding. The history must have the same bytes on any number of ranks. Against what is stored,
+rounding that differs (another instruction set) grows until single contacts open and close, so: the first two rows agree
+within 1e-6 of the largest value of their kind (all components of a vector are one kind), the others within 3 % (1.5 %
+was seen between SSE, AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ; read the
+diff.
 """
 import os
 import pathlib
@@ -27,7 +28,8 @@ RANKS = (1, 2, 3)
 
 
 def run(binary, scene, folder, n):
-    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMP_NUM_THREADS": "1"}
     results = pathlib.Path(folder) / f"on{n}"
     subprocess.run(["mpirun", "--oversubscribe", "-n", str(n), binary, scene, "-o", results, "--quiet", "--no-figures",
                     "--set", f"grains.cache={folder}/in_situ.h5"], cwd=HERE, check=True, stdout=subprocess.DEVNULL,
@@ -55,8 +57,8 @@ def compare(name, got, wanted):
         scale = scales[kind(column)] or 1.0
         errors = [abs(a - b) / scale for a, b in zip(got[column], values)]
         if max(errors[:EARLY_ROWS]) > EARLY or max(errors) > LATE:
-            problems.append(f"{name}: {column} differs by {max(errors[:EARLY_ROWS]):.2e} of the largest value in the first "
-                            f"{EARLY_ROWS} rows, by {max(errors):.2e} later")
+            problems.append(f"{name}: {column} differs by {max(errors[:EARLY_ROWS]):.2e} of the largest value in the "
+                            f"first {EARLY_ROWS} rows, by {max(errors):.2e} later")
     return problems
 
 
@@ -82,7 +84,8 @@ def main():
     for scene in scenes:
         with tempfile.TemporaryDirectory() as folder:
             problems += check(binary, scene, folder)
-    print("\n".join(problems) if problems else f"{len(scenes)} scene(s) agree with their expectations on 1, 2 and 3 ranks")
+    print("\n".join(problems) if problems
+          else f"{len(scenes)} scene(s) agree with their expectations on 1, 2 and 3 ranks")
     return 1 if problems else 0
 
 

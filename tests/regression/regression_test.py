@@ -4,10 +4,10 @@
 
     regression_test.py BIN_FOLDER [--regenerate]
 
-Rows must agree in number. Rounding that differs (another instruction set) grows by orders of magnitude within a thousand
-steps and then opens or closes single contacts, so: up to step 300 every column agrees within 1e-6 of its largest value, but
-for those that count yielding contacts (a few hardly loaded ones sit on the threshold), within 5e-3; later the stresses,
-strains and energies agree within 1e-3. --regenerate rewrites the expectations; read the diff.
+Rows must agree in number. Rounding that differs (another instruction set) grows by orders of magnitude within a
+thousand steps and then opens or closes single contacts, so: up to step 300 every column agrees within 1e-6 of its
+largest value, but for those that count yielding contacts (a few hardly loaded ones sit on the threshold), within 5e-3;
+later the stresses, strains and energies agree within 1e-3. --regenerate rewrites the expectations; read the diff.
 """
 import csv
 import pathlib
@@ -51,7 +51,8 @@ def compare(name, got, wanted):
         errors = [abs(a - b) / scale for a, b in zip(got[column], values)]
         worst_early = max(e for e, first in zip(errors, early) if first)
         if worst_early > (EARLY_COUNTED if counted else EARLY):
-            problems.append(f"{name}: {column} differs by {worst_early:.2e} of its largest value up to step {EARLY_STEPS}")
+            problems.append(f"{name}: {column} differs by {worst_early:.2e} of its largest value up to step "
+                            f"{EARLY_STEPS}")
         if max(errors) > LATE and (column.endswith(SMOOTH) or column.startswith("eps")):
             problems.append(f"{name}: {column} differs by {max(errors):.2e} of its largest value")
     return problems
