@@ -12,7 +12,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-column-checkpoint";
-constexpr std::uint64_t schema_version = 1;
+constexpr std::uint64_t schema_version = 2; // 1: other names, as greatest_energy and least_IR
 
 /// Numbers and vectors of a checkpoint or of the solver's state in it.
 template <class Part>
@@ -35,12 +35,23 @@ void get(const hdf5::Group &root, const std::string &prefix, Part &part)
     part.numbers[name] = numbers.attribute<double>(name);
 }
 
+template <class Fields>
+const auto &field(const ColumnCheckpoint &checkpoint, const Fields &fields, const std::string &name)
+{
+  const auto found = fields.find(name);
+  if (found == fields.end())
+    throw InputError(fmt::format("{}: holds no {}; a run cannot go on from it. Start anew with --overwrite.",
+                                 checkpoint.file, name));
+  return found->second;
+}
+
 ColumnCheckpoint read_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
   const hdf5::Group root = file.root();
   expect_format(root, format_name, schema_version);
   ColumnCheckpoint checkpoint;
+  checkpoint.file = path.string();
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
   checkpoint.state.material = hdf5::read_bytes(root, "material");
@@ -49,6 +60,13 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   return checkpoint;
 }
 } // namespace
+
+double ColumnCheckpoint::number(const std::string &name) const { return field(*this, numbers, name); }
+
+const std::vector<double> &ColumnCheckpoint::vector(const std::string &name) const
+{
+  return field(*this, vectors, name);
+}
 
 void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint)
 {

@@ -13,6 +13,7 @@ struct ColumnCheckpoint
   std::map<std::string, double> numbers;              ///< rows written, largest values ...
   std::map<std::string, std::vector<double>> vectors; ///< largest values over the depth
   std::string scene;                                  ///< the resolved scene; a resumed run must have the same
+  std::string file = {};                              ///< where it was read; not stored
 
   /// Stores and takes back what State::for_each(state, visit) visits with name and number.
   template <class State>
@@ -23,14 +24,18 @@ struct ColumnCheckpoint
   template <class State>
   void get(State &state) const
   {
-    State::for_each(state, [&](const char *name, double &value) { value = numbers.at(name); });
+    State::for_each(state, [&](const char *name, double &value) { value = number(name); });
   }
+
+  /// @throws InputError  the file lacks it
+  double number(const std::string &name) const;
+  const std::vector<double> &vector(const std::string &name) const;
 };
 
-/// A number of a checkpoint that counts; 0 without one.
+/// A number of a checkpoint that counts; 0 without one.   @throws InputError  the file lacks it
 inline std::size_t counter(const ColumnCheckpoint *checkpoint, const char *name)
 {
-  return checkpoint ? static_cast<std::size_t>(checkpoint->numbers.at(name)) : 0;
+  return checkpoint ? static_cast<std::size_t>(checkpoint->number(name)) : 0;
 }
 
 /// As folder/last.h5 with folder/previous.h5 (base/record/checkpoint_folder.hpp).

@@ -45,7 +45,7 @@ GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMate
       n_snapshots_(counter(resumed, "grain_snapshots")), n_path_rows_(counter(resumed, "grain_paths"))
 {
   if (resumed)
-    min_ = {resumed->numbers.at("min_IR"), resumed->numbers.at("min_IR_depth"), resumed->numbers.at("min_IR_time")};
+    min_ = {resumed->number("min_IR"), resumed->number("min_IR_depth"), resumed->number("min_IR_time")};
   for (std::size_t place : soil.grains_places)
     depths_.push_back(depths[place]);
   history_.columns = counted_to(Micromechanics::columns().size());

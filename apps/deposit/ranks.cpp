@@ -103,6 +103,8 @@ void together(const std::function<void()> &task)
 
 bool on_any_rank(bool here)
 {
+  if (ranks().size == 1)
+    return here;
   int flag = here;
   MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
   return flag != 0;

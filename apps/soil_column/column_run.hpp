@@ -43,23 +43,24 @@ public:
   RunResult go()
   {
     open_folder();
-    start();
-    while (!is_done())
+    std::uint64_t at = run_.n_steps();
+    try
       {
-        const std::uint64_t n = run_.n_steps();
-        try
+        start();
+        while (!is_done())
           {
             step();
+            at = run_.n_steps();
+            observe();
           }
-        catch (const RunFailure &failure)
-          {
-            fail(failure, n);
-          }
-        observe();
+        if (!scene_.mesh.distributed)
+          save();
+        write([&] { files_.finish(follower_.peaks); });
       }
-    if (!scene_.mesh.distributed)
-      save();
-    files_.finish(follower_.peaks);
+    catch (const RunFailure &failure)
+      {
+        fail(failure, at);
+      }
     return result();
   }
 
@@ -71,8 +72,8 @@ protected:
   virtual void step() = 0;
   /// When a step that failed began, s.
   virtual double time_of(std::uint64_t step) const = 0;
-  /// On every rank.   @param late  the last checkpoint is long ago, on this rank
-  virtual bool checkpoint_is_due(bool late) const = 0;
+  /// Whether a step is long enough to look at the clock, and to ask the other ranks, after each.
+  virtual bool has_long_steps() const = 0;
   /// Numbers that a resumed run needs besides.
   virtual std::map<std::string, double> more_numbers() = 0;
   virtual void add_results(ColumnSummary &summary) = 0;
@@ -130,7 +131,8 @@ private:
     });
   }
 
-  /// Progress, signals, checkpoints.
+  /// Progress, signals, checkpoints. A signal reaches one rank before the other, and their clocks differ: they ask each
+  /// other, all after the same steps.
   void observe()
   {
     if (progress_.due(run_.n_steps(), static_cast<double>(run_.n_steps()) / n_total()))
@@ -139,21 +141,22 @@ private:
         progress_.say(progress_.line(fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}",
                                                  now.time, now.surface_acceleration, now.max_ru, now.min_p_ratio)));
       }
-    stop_if_requested();
-    if (!scene_.mesh.distributed &&
-        checkpoint_is_due(since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes))
+    const bool now = has_long_steps() || run_.n_steps() % 256 == 0;
+    const bool asking_is_cheap = alone_ || space_.shared_out(); // next to the sums over all ranks in each step
+    if ((now || asking_is_cheap) && on_any_rank(stop_requested()))
+      stop();
+    if (now && !scene_.mesh.distributed &&
+        as_first_rank(since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes))
       save();
   }
 
   /// After a signal: leaves a checkpoint unless the run is distributed.   @throws Interrupted
-  void stop_if_requested()
+  [[noreturn]] void stop()
   {
     const bool distributed = scene_.mesh.distributed;
-    const bool together = distributed || scene_.has_grains() || scene_.analysis.kind == AnalysisKind::consolidation;
-    if (!(together ? on_any_rank(stop_requested()) : stop_requested()))
-      return;
-    files_.flush();
-    if (!distributed)
+    if (distributed)
+      write([&] { files_.flush(); });
+    else
       save();
     throw Interrupted(fmt::format("interrupted at step {}; {}", run_.n_steps(),
                                   distributed ? "a distributed run keeps no checkpoint" : "go on with --resume"));
@@ -162,15 +165,8 @@ private:
   /// Brings all files up to date, then writes a checkpoint.
   void save()
   {
-    try
-      {
-        SolverState state = run_.save();
-        write([&] { files_.save(std::move(state), follower_.peaks, more_numbers()); });
-      }
-    catch (const RunFailure &failure)
-      {
-        fail(failure, run_.n_steps());
-      }
+    SolverState state = run_.save();
+    write([&] { files_.save(std::move(state), follower_.peaks, more_numbers()); });
     since_checkpoint_.restart();
   }
 
@@ -216,6 +212,7 @@ private:
     return {summary, times_};
   }
 
+  const bool alone_ = ranks().size == 1;
   Stopwatch since_start_, since_checkpoint_;
 };
 } // namespace isostat

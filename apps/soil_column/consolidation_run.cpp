@@ -49,7 +49,7 @@ public:
   explicit ConsolidationRun(const ColumnRequest &request) : Run(request, {}, settings_of(request.scene.load, true))
   {
     if (resumed_)
-      immediate_settlement_ = resumed_->numbers.at("immediate_settlement");
+      immediate_settlement_ = resumed_->number("immediate_settlement");
   }
 
 private:
@@ -101,7 +101,7 @@ private:
   bool is_done() const override { return run_.n_steps() > 0 && n_done() >= ends_.size(); }
   double n_total() const override { return static_cast<double>(ends_.size()) + 1; }
   double time_of(std::uint64_t) const override { return run_.time(); } ///< of the last good sub-step
-  bool checkpoint_is_due(bool late) const override { return as_first_rank(late); }
+  bool has_long_steps() const override { return true; }
   std::map<std::string, double> more_numbers() override { return {{"immediate_settlement", immediate_settlement_}}; }
 
   void add_results(ColumnSummary &summary) override

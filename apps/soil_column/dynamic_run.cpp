@@ -109,12 +109,7 @@ private:
   double n_total() const override { return static_cast<double>(last_step_ + 1); }
   double time_of(std::uint64_t step) const override { return static_cast<double>(step) * run_.time_step(); }
 
-  /// Packings of one run live on all ranks, so these must agree when to store them; a step of theirs is long enough to
-  /// look at the clock after each.
-  bool checkpoint_is_due(bool late) const override
-  {
-    return soil_.grains ? as_first_rank(late) : run_.n_steps() % 256 == 0 && late;
-  }
+  bool has_long_steps() const override { return soil_.grains != nullptr; }
 
   std::map<std::string, double> more_numbers() override
   {
@@ -130,7 +125,6 @@ private:
     summary.time_step = run_.time_step();
     if (!grain_files_)
       return;
-    grain_files_->flush();
     const RveMaterialCost &cost = soil_.grains->cost();
     const auto n_packings = soil_.grains->owners().size();
     const auto &[redundancy, depth, time] = grain_files_->minimum();

@@ -33,8 +33,8 @@ void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(*this);
-  line_gamma = checkpoint.vectors.at("peak_gamma");
-  line_acceleration = checkpoint.vectors.at("peak_acceleration");
+  line_gamma = checkpoint.vector("peak_gamma");
+  line_acceleration = checkpoint.vector("peak_acceleration");
 }
 
 template <int dim>

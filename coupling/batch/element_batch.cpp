@@ -122,8 +122,7 @@ bool ElementBatch::commit()
 {
   if (!std::exchange(has_trial_, false))
     return false;
-  if (const auto failure = run_mine([&](std::size_t id) { elements_[id]->commit(); }))
-    throw RunFailure(failure->message);
+  for_each([&](std::size_t id) { elements_[id]->commit(); });
   std::swap(committed_, trial_);
   return true;
 }
@@ -163,6 +162,13 @@ void ElementBatch::check_owners(const Owners &owners) const
 std::size_t ElementBatch::place(const Owners &owners, std::span<const double> costs)
 {
   check_owners(owners);
+  std::vector<Bytes> packed(size());
+  for_each([&](std::size_t id) {
+    if (owners[id] == exchange_.rank() || !made_)
+      return;
+    elements_[id]->rollback();
+    packed[id] = elements_[id]->pack_to_move();
+  });
   std::size_t n_moves = 0;
   std::vector<Bytes> leaving;
   for (std::size_t id = 0; id < size(); ++id)
@@ -170,8 +176,7 @@ std::size_t ElementBatch::place(const Owners &owners, std::span<const double> co
       n_moves += owners[id] != owners_[id];
       if (is_mine(id) && owners[id] != exchange_.rank() && made_)
         {
-          elements_[id]->rollback();
-          leaving.push_back(elements_[id]->pack_to_move());
+          leaving.push_back(std::move(packed[id]));
           elements_[id].reset();
         }
     }

@@ -12,10 +12,9 @@ namespace isostat
 namespace
 {
 constexpr int tag = 6017;
-constexpr std::size_t longest_message = std::size_t{1} << 30; // MPI counts with int
 } // namespace
 
-Exchange::Exchange(MPI_Comm comm) : comm_(comm)
+Exchange::Exchange(MPI_Comm comm, std::size_t longest_message) : comm_(comm), longest_message_(longest_message)
 {
   MPI_Comm_rank(comm_, &rank_);
   MPI_Comm_size(comm_, &size_);
@@ -79,25 +78,32 @@ void Exchange::broadcast(Bytes &bytes, int root) const
   std::uint64_t n = bytes.size();
   MPI_Bcast(&n, 1, MPI_UINT64_T, root, comm_);
   bytes.resize(n);
-  for (std::size_t at = 0; at < n; at += longest_message)
-    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(longest_message, n - at)), MPI_BYTE, root, comm_);
+  for (std::size_t at = 0; at < n; at += longest_message_)
+    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(longest_message_, n - at)), MPI_BYTE, root, comm_);
 }
 
+/// In parts of the longest message and a shorter one, maybe empty, by which receive() knows the end.
 void Exchange::send(const Bytes &bytes, int to, std::vector<MPI_Request> &pending) const
 {
-  if (bytes.size() > longest_message)
-    throw RunFailure("an element of more than 1 GiB cannot go to another rank");
-  MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, comm_, &pending.emplace_back());
+  for (std::size_t at = 0; at <= bytes.size(); at += longest_message_)
+    MPI_Isend(bytes.data() + at, static_cast<int>(std::min(longest_message_, bytes.size() - at)), MPI_BYTE, to, tag,
+              comm_, &pending.emplace_back());
 }
 
 Bytes Exchange::receive(int from) const
 {
-  MPI_Status status;
-  MPI_Probe(from, tag, comm_, &status);
-  int n = 0;
-  MPI_Get_count(&status, MPI_BYTE, &n);
-  Bytes bytes(n);
-  MPI_Recv(bytes.data(), n, MPI_BYTE, from, tag, comm_, MPI_STATUS_IGNORE);
+  Bytes bytes;
+  std::size_t part = longest_message_;
+  while (part == longest_message_)
+    {
+      MPI_Status status;
+      MPI_Probe(from, tag, comm_, &status);
+      int n = 0;
+      MPI_Get_count(&status, MPI_BYTE, &n);
+      part = static_cast<std::size_t>(n);
+      bytes.resize(bytes.size() + part);
+      MPI_Recv(bytes.data() + bytes.size() - part, n, MPI_BYTE, from, tag, comm_, MPI_STATUS_IGNORE);
+    }
   return bytes;
 }
 

@@ -19,8 +19,9 @@ using Bytes = std::vector<std::byte>;
 class Exchange
 {
 public:
+  /// @param longest_message  bytes; more go in several messages, because MPI counts with int
   /// @pre MPI is initialised; `comm` stays valid as long as this
-  explicit Exchange(MPI_Comm comm);
+  explicit Exchange(MPI_Comm comm, std::size_t longest_message = std::size_t{1} << 30);
 
   int rank() const { return rank_; }
   int size() const { return size_; }
@@ -60,6 +61,7 @@ private:
   Bytes receive(int from) const;
 
   MPI_Comm comm_;
+  std::size_t longest_message_;
   int rank_ = 0, size_ = 1;
 };
 } // namespace isostat

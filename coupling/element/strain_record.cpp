@@ -13,7 +13,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-strain-record";
-constexpr std::uint64_t schema_version = 1;
+constexpr std::uint64_t schema_version = 2; // 1: least_steps for min_steps, fewer settings of the motion
 constexpr const char *gradient_names[] = {"H_xx", "H_xy", "H_xz", "H_yx", "H_yy", "H_yz", "H_zx", "H_zy", "H_zz"};
 constexpr const char *stress_names[] = {"sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy"};
 
@@ -104,7 +104,8 @@ StrainRecord read_strain_record(const std::filesystem::path &folder)
   {
     const hdf5::File file = hdf5::File::open(folder / "packing.h5");
     const hdf5::Group root = file.root();
-    expect_format(root, format_name, schema_version);
+    expect_format(root, format_name, schema_version, "strain record",
+                  "Repeat it with the version that wrote it, or run the column anew.");
     record.depth = root.attribute<double>("depth");
     record.settings.undrained = root.attribute<std::uint64_t>("undrained") != 0;
     record.settings.halvings = static_cast<unsigned>(root.attribute<std::uint64_t>("halvings"));

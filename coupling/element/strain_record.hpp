@@ -10,7 +10,7 @@ namespace isostat
 {
 /// Strain history of one element at its Gauss point, and what is needed to repeat it with the element alone.
 /// In a folder: packing.h5 (its initial state, and how it is run), and history.csv and .h5 (a row for each increment).
-/// tested: tests/apps/grain_column_test.py
+/// tested: tests/coupling/element/strain_record_test.cpp, tests/apps/grain_column_test.py
 struct StrainRecord
 {
   double depth = 0;               ///< of the point below the surface, m

@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A column that is killed and resumed, or run on several ranks, leaves the same files."""
+import contextlib
 import os
 import random
 import re
+import shlex
 import shutil
 import signal
+import subprocess
+import time
 
+import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, history, settings
-from support import main
+from support import PATIENCE, main
 
 
 class Resume(ColumnTest):
@@ -48,6 +53,25 @@ class Resume(ColumnTest):
                 (checkpoints / name).write_bytes((checkpoints / name).read_bytes()[:3000])
         self.finish(arguments)
 
+    def refuse(self, change, *parts):
+        """A finished run cannot be resumed after `change` of its checkpoints."""
+        arguments = [self.scene, "-o", "out"]
+        if not (self.folder / "out").exists():
+            self.assert_done(self.run_column(*arguments))
+        for path in (self.folder / "out/checkpoint").iterdir():
+            with h5py.File(path, "r+") as file:
+                change(file)
+        self.assert_refused(self.run_column(*arguments, "--resume"), *parts)
+
+    def test_an_older_schema_is_refused(self):
+        self.refuse(lambda file: file.attrs.modify("schema_version", np.uint64(1)), "out/checkpoint/last.h5",
+                    "schema 1 was written by another version; this one reads 2", "Finish the run with the version")
+
+    def test_a_number_or_vector_that_is_missing(self):
+        self.refuse(lambda file: file["vectors"].move("peak_gamma", "peak_strain"), "out/checkpoint/last.h5",
+                    "holds no peak_gamma", "--overwrite")
+        self.refuse(lambda file: file["numbers"].attrs.pop("peak_ru"), "out/checkpoint/last.h5",
+                    "holds no peak_ru", "--overwrite")
 
     def test_consolidation(self):
         options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]
@@ -59,6 +83,57 @@ class Resume(ColumnTest):
 
 
 class MPIRanks(ColumnTest):
+    DISTRIBUTED = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=3)
+
+    def start_ranks(self, n, *more):
+        """A run into out/. Each rank leaves its process number in pid0, pid1 ..."""
+        program = shlex.join(self.command("soil_column", self.scene, "-o", "out", "--no-figures", *more))
+        process = subprocess.Popen(
+            ["mpirun", "--oversubscribe", "-n", str(n), "sh", "-c",
+             f"echo $$ > pid$OMPI_COMM_WORLD_RANK; exec {program}"],
+            cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.terminate)
+        return process
+
+    def pid(self, rank):
+        """Of a rank whose run has begun."""
+        end = time.time() + 60 * PATIENCE
+        while not (self.folder / "out/history.csv").exists() and time.time() < end:
+            time.sleep(0.005)
+        return int((self.folder / f"pid{rank}").read_text(encoding="utf-8"))
+
+    def message_of(self, process):
+        message = process.communicate(timeout=30 * PATIENCE)[1]  # a hang is a failure
+        self.assertNotEqual(process.returncode, 0)
+        for name in ("out", "away"):
+            shutil.rmtree(self.folder / name, ignore_errors=True)
+        return message
+
+    def test_signals_at_different_times(self):
+        for more, remedy in (settings(output__checkpoint="1e-9 min"), "go on with --resume"), \
+                            (self.DISTRIBUTED, "keeps no checkpoint"):
+            with self.subTest(remedy):
+                process = self.start_ranks(2, *settings(analysis__duration="100000 s"), *more)
+                for rank in (1, 0):
+                    with contextlib.suppress(ProcessLookupError):  # all have stopped already
+                        os.kill(self.pid(rank), signal.SIGINT)
+                    time.sleep(0.3)
+                message = self.message_of(process)
+                self.assertIn("interrupted at step", message)
+                self.assertIn(remedy, message)
+
+    def test_first_rank_cannot_write_its_last_rows(self):
+        for more in (settings(analysis__duration="200 s", output__history_interval="5 s"),
+                     self.DISTRIBUTED + settings(analysis__duration="1 s", output__history_interval="0.1 s")):
+            with self.subTest(more):
+                process = self.start_ranks(2, *more)
+                self.pid(0)
+                time.sleep(0.3)  # its files are open
+                (self.folder / "out").rename(self.folder / "away")
+                self.assertRegex(self.message_of(process), r"failed: step \d+ \(t = [\d.]+ s\): out/history")
+
     def test_replicated_to_the_bit(self):
         options = settings(output__profile_interval="0.05 s", output__paraview_interval="0.5 s")
         results = [self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options) for n in (1, 2, 3)]
@@ -69,8 +144,7 @@ class MPIRanks(ColumnTest):
             self.assertEqual(len(re.findall("time step .* stable up to", result.stderr)), 1)
 
     def test_distributed(self):
-        options = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=3,
-                           analysis__duration="0.5 s")
+        options = self.DISTRIBUTED + settings(analysis__duration="0.5 s")
         rows = {}
         for n in (1, 2, 3):
             self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))

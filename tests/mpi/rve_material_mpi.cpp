@@ -102,6 +102,38 @@ void run_and_move(const RveMaterialSettings &settings)
   expect(common_hash(run(still, 24, 30)) == common_hash(run(resumed, 24, 30)), "unpacked elements go another way");
 }
 
+Bytes numbered(std::size_t n, int seed)
+{
+  Bytes bytes(n);
+  for (std::size_t i = 0; i < n; ++i)
+    bytes[i] = static_cast<std::byte>(i * 7 + static_cast<std::size_t>(seed));
+  return bytes;
+}
+
+/// Bytes longer than a message, as long as some, and none at all.
+void exchange_in_parts()
+{
+  const Exchange exchange(MPI_COMM_WORLD, 100);
+  for (std::size_t n : {0, 99, 100, 101, 200, 1234})
+    {
+      const std::vector<Bytes> all = exchange.gather(numbered(n, rank));
+      bool right = all.size() == static_cast<std::size_t>(rank == 0 ? size : 0);
+      for (std::size_t r = 0; r < all.size(); ++r)
+        right &= all[r] == numbered(n, static_cast<int>(r));
+      expect(right, "bytes are not gathered");
+      Bytes told = rank == size - 1 ? numbered(n, 5) : Bytes{};
+      exchange.broadcast(told, size - 1);
+      expect(told == numbered(n, 5), "bytes are not broadcast");
+      const Owners from = {0, 0, size - 1}, to = {size - 1, size - 1, 0};
+      std::vector<Bytes> sent, due;
+      if (size > 1 && rank == 0)
+        sent = {numbered(n, 1), numbered(2 * n, 2)}, due = {numbered(300, 3)};
+      else if (size > 1 && rank == size - 1)
+        sent = {numbered(300, 3)}, due = {numbered(n, 1), numbered(2 * n, 2)};
+      expect(exchange.move(sent, from, to) == due, "bytes are not moved");
+    }
+}
+
 /// One element fails on its rank: all ranks stop with one message, and can go on.
 void fail_on_purpose(const RveMaterialSettings &settings)
 {
@@ -170,6 +202,7 @@ int main(int argc, char **argv)
     return 2;
   RveMaterialSettings settings;
   settings.threads = std::atoi(argv[1]);
+  exchange_in_parts();
   run_and_move(settings);
   fail_on_purpose(settings);
   start_in_situ(settings, argv[2]);
