@@ -128,8 +128,12 @@ class OutputFolder(AppTest):
     def test_existing_results(self):
         self.assert_done(self.run_test(self.scene, "-o", "out"))
         before = contents(self.folder / "out")
-        self.assert_refused(self.run_test(self.scene, "-o", "out"), "out", "exists", "--overwrite", "--resume")
+        refused = self.run_test(self.scene, "-o", "out")
+        self.assert_refused(refused, "out", "exists", "--overwrite")
+        self.assertNotIn("--resume", refused.stderr)  # there is no checkpoint
         self.assertEqual(contents(self.folder / "out"), before)
+        (self.folder / "out/checkpoint").mkdir()
+        self.assert_refused(self.run_test(self.scene, "-o", "out"), "out", "exists", "--overwrite", "--resume")
         self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
         self.assertEqual(contents(self.folder / "out")["history.csv"], before["history.csv"])
 
