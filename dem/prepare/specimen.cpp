@@ -73,7 +73,7 @@ Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &
       prepared = find_preparation_friction(cloud, scene.contact, aim, tolerance, how);
       compressions += prepared.compressions;
       prepared.compressions = compressions;
-      const Snapshot state = rebalance(prepared.state, scene.contact, how);
+      Snapshot state = rebalance(prepared.state, scene.contact, how);
       e = void_ratio(state.volume(), state.grains.solid_volume());
       if (missed_density(spec, e) <= spec.density_tolerance)
         return state;

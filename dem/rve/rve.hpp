@@ -130,7 +130,7 @@ public:
   /// The element as bytes for another process on the same type of machine, and back to the same bits.
   std::vector<std::byte> pack() const;
   /// @throws InputError  bytes of another version, cut short or damaged
-  static Rve unpack(std::span<const std::byte> bytes, const RveSettings &settings);
+  static Rve unpack(std::span<const std::byte> packed, const RveSettings &settings);
 
   const Assembly &assembly() const { return assembly_; }
 

@@ -233,8 +233,8 @@ struct WholeSchema
                  .field = [](Scene &s) -> Field { return EnumField(&s.contact, law_number, set_law); }}};
     std::vector<KeyRun> runs{first_keys, {law_keys, "", 0, {}}};
     for (std::size_t i = 0; i < laws.size(); ++i)
-      runs.push_back({laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
-                      [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); }});
+      runs.emplace_back(laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
+                        [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); });
     const auto kinds = stage_kind_names();
     kind_key = {{.path = "stage.kind",
                  .kind = Kind::choice,
@@ -245,12 +245,12 @@ struct WholeSchema
                  .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain "
                          "periodic-cell.",
                  .field = [](Scene &, Stage &stage) -> Field { return EnumField(&stage); }}};
-    runs.push_back(specimen_keys);
+    runs.emplace_back(specimen_keys);
     runs.push_back(splice("motion", motion_keys(), 0, [](Scene &s) -> MotionSpec & { return s.motion; }));
     runs.push_back({kind_key, "", 0, {}});
     runs.push_back(
         splice("stage", stage_keys(), 0, [](Scene &, Stage &stage) -> StageBehaviour & { return behaviour(stage); }));
-    runs.push_back(output_keys);
+    runs.emplace_back(output_keys);
     table.emplace(std::span<const KeyRun>(runs));
     for (Section &section : sections)
       if (laws.size() > 1 && std::string_view(section.name) == "contact")
