@@ -62,6 +62,7 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
       all.max_speed = std::max(all.max_speed, part.max_speed);
       all.exploded |= part.exploded;
       all.damping_loss += part.damping_loss;
+      all.free_loss += part.free_loss;
     }
   return all;
 }
@@ -136,11 +137,12 @@ void Assembly::measure_energy()
 }
 
 /// Leapfrog of all grains, each chunk when its forces are there.   @return bound on what a grain has moved, m
-double Assembly::move_grains(const AffineStep *affine)
+double Assembly::move_grains(const FreeGrainDamping &free, const AffineStep *affine)
 {
   const double dt = settings.time_step, speed_limit = max_grain_step * min_radius_ / dt;
   const Partition &partition = forces_.list().partition();
-  const LeapfrogStep how{dt, settings.damping, speed_limit, settings.measure_energy, affine};
+  const LeapfrogStep how{
+      dt, settings.damping, speed_limit, settings.measure_energy, affine, free.share > 0 ? &free : nullptr};
   forces_known_ = false;
   motion_reports_.resize(partition.n_chunks);
   forces_.finish_step(force_input(), [&](std::size_t chunk) {
@@ -150,7 +152,7 @@ double Assembly::move_grains(const AffineStep *affine)
   const MotionReport report = sum_of(motion_reports_);
   if (report.exploded)
     report_explosion(packing_, step_, dt, speed_limit);
-  meter_.add_damping(report.damping_loss);
+  meter_.add_damping(report.damping_loss, report.free_loss);
   ++step_;
   time_ += dt;
   return report.max_speed * dt;
@@ -158,7 +160,8 @@ double Assembly::move_grains(const AffineStep *affine)
 
 void Assembly::move(const RigidBox &next_box)
 {
-  const double grain_step = move_grains();
+  const double grain_step =
+      move_grains(FreeGrainDamping::of_walls(settings.free_grain_damping, domain_.box, next_box, settings.time_step));
   RigidBox &box = domain_.box;
   std::array<double, 6> outward;
   double wall_step = 0;
@@ -183,7 +186,7 @@ void Assembly::deform(const Mat3 &displacement_gradient)
                     step_, size, max_strain_step));
   PeriodicCell next = *domain_.cell; // forces that are pending belong to the cell as it still is
   const AffineStep affine(next.deform(displacement_gradient));
-  max_step_ = move_grains(&affine) + size * max_diameter_;
+  max_step_ = move_grains({settings.free_grain_damping}, &affine) + size * max_diameter_;
   domain_.cell = next;
   turn_upright();
   forces_.list().set_cell(domain_.cell->edges);

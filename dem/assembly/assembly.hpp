@@ -126,7 +126,7 @@ private:
   void update_list(double max_step);
   void add_gravity();
   void measure_energy();
-  double move_grains(const AffineStep *affine = nullptr);
+  double move_grains(const FreeGrainDamping &free, const AffineStep *affine = nullptr);
   void turn_upright();
   Snapshot without_contacts() const;
 

@@ -54,7 +54,11 @@ public:
   void add_work_of_walls(const std::array<double, 6> &force);
   void add_work_of_cell(const Mat3 &virial, const Mat3 &strain_step);
   /// Motion after it.
-  void add_damping(double loss) { memory_.tally.damping += loss; }
+  void add_damping(double local, double of_free_grains)
+  {
+    memory_.tally.damping += local;
+    memory_.tally.free_grains += of_free_grains;
+  }
   void walls_moved(const std::array<double, 6> &outward) { memory_.wall_displacement = outward; }
 
   bool started() const { return memory_.started; }

@@ -14,6 +14,10 @@ constexpr Key controlled[] = {
   {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
    .text = "Local (non-viscous) damping coefficient.",
    .field = [](MotionSpec &m) -> Field { return &m.damping; }},
+  {.path = "free_grain_damping", .value = "0", .range = {0, 1}, .reason = "because it is a share",
+   .text = "Share of its velocity that a grain on which nothing acts loses in each step, e.g. 0.1; 0: it flies on until "
+           "it hits another one.",
+   .field = [](MotionSpec &m) -> Field { return &m.free_grain_damping; }},
   {.path = "quasi_static_tolerance", .value = "0.01", .range = ranges::fraction, .group = "rate",
    .text = "Error that inertia may add to the stresses; the rate of loading is chosen to keep it.",
    .field = [](MotionSpec &m) -> Field { return &m.quasi_static_tolerance; }},

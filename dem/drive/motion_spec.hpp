@@ -9,8 +9,9 @@ namespace isostat
 /// are made from it.
 struct MotionSpec
 {
-  double damping = 0.2;                       ///< local (non-viscous) damping coefficient [-]
-  std::optional<double> strain_rate = {};     ///< fixed axial rate, 1/s; instead of the tolerance
+  double damping = 0.2;                   ///< local (non-viscous) damping coefficient [-]
+  double free_grain_damping = 0;        ///< share of its velocity that a grain without any force loses in a step [-]
+  std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the tolerance
   std::optional<double> inertial_number = {}; ///< fixed I, the rate follows p'; instead of the tolerance
   double quasi_static_tolerance = 0.01;       ///< error indicator to be kept, see dem/drive/rate_control.hpp
   double rate_floor = 0.2, rate_ceiling = 2;  ///< 1/s, bounds of the controlled rate
@@ -19,8 +20,8 @@ struct MotionSpec
 
   bool operator==(const MotionSpec &) const = default;
 
-  ISOSTAT_FIELDS(damping, strain_rate, inertial_number, quasi_static_tolerance, rate_floor, rate_ceiling,
-                 time_step_safety, time_step)
+  ISOSTAT_FIELDS(damping, free_grain_damping, strain_rate, inertial_number, quasi_static_tolerance, rate_floor,
+                 rate_ceiling, time_step_safety, time_step)
 };
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)

@@ -109,6 +109,7 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
   while (state.place.stage < programme.stages.size())
     {
       assembly.settings.damping = programme.motion.damping;
+      assembly.settings.free_grain_damping = programme.motion.free_grain_damping;
       StageRun run(programme, behaviour(programme.stages[state.place.stage]), assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)
         return RunOutcome::interrupted;

@@ -10,7 +10,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-checkpoint";
-constexpr std::uint64_t schema_version = 2; // 1: every number as double, those of the energy balance without names
+constexpr std::uint64_t schema_version = 3; // 2: no energy of free grains; 1: every number as double
 
 Checkpoint read_file(const std::filesystem::path &path)
 {

@@ -98,11 +98,31 @@ MotionReport integrate_range(Packing &packing, std::size_t begin, std::size_t en
   return report;
 }
 
+/// Damps the grains on which neither force nor torque acts.   @return J that they lose
+double damp_free_grains(Packing &packing, std::size_t begin, std::size_t end, const double *action,
+                        const FreeGrainDamping &free)
+{
+  const D4 d;
+  double loss = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    {
+      V4 largest = hn::Zero(d);
+      for (std::size_t k = 0; k < 8; k += hn::MaxLanes(d))
+        largest = hn::Max(largest, hn::Abs(hn::Load(d, action + 8 * i + k)));
+      if (hn::AllTrue(d, hn::Eq(largest, hn::Zero(d))))
+        loss += free.damp(&packing.position[4 * i], &packing.velocity[4 * i], &packing.spin[4 * i]);
+    }
+  return loss;
+}
+
 MotionReport leapfrog(Packing &packing, std::size_t begin, std::size_t end, double *action, const LeapfrogStep &how)
 {
   const auto run = how.affine ? (how.measure_damping ? integrate_range<true, true> : integrate_range<false, true>)
                               : (how.measure_damping ? integrate_range<true, false> : integrate_range<false, false>);
-  return run(packing, begin, end, action, how);
+  const double free_loss = how.free ? damp_free_grains(packing, begin, end, action, *how.free) : 0;
+  MotionReport report = run(packing, begin, end, action, how);
+  report.free_loss = free_loss;
+  return report;
 }
 } // namespace HWY_NAMESPACE
 } // namespace isostat

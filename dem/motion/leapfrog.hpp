@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/motion/free_grains.hpp"
 #include "dem/state/packing.hpp"
 
 namespace isostat
@@ -10,6 +11,7 @@ struct MotionReport
   double max_speed = 0;    ///< m/s
   bool exploded = false;   ///< a grain moves or spins at no number, or faster than the limit
   double damping_loss = 0; ///< J, only where asked for
+  double free_loss = 0;    ///< J that free grains have lost; negative where they were taken along
 };
 
 /// Homogeneous strain of one step in a periodic cell: x <- x + (A - I) x besides the motion of the grains.
@@ -33,6 +35,7 @@ struct LeapfrogStep
   bool measure_damping = false;       ///< also sum the energy that damping takes, exact: d |F| |v_mid| dt
   const AffineStep *affine = nullptr; ///< of a periodic cell, whose velocities are fluctuations: damping acts on these
                                       ///< alone; nullptr in a box
+  const FreeGrainDamping *free = nullptr; ///< nullptr: free grains keep their velocity
 };
 
 /// Leapfrog with local (non-viscous) damping for the grains [begin, end), and the clearing of their forces:

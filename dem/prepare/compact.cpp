@@ -14,11 +14,13 @@ constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
 constexpr int rest_attempts = 5; // a packing on the verge can collapse while its walls are held
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
-/// Runs a stage on a state and returns what it ends with.
+/// Runs a stage on a state and returns what it ends with. Free grains are not damped: a cloud consists of them.
 Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const Preparation &how)
 {
-  const Programme programme{
-      .motion = {.damping = damping}, .servo = how.specimen, .record = {.snapshots = "none"}, .stages = {stage}};
+  const Programme programme{.motion = {.damping = damping, .free_grain_damping = 0},
+                            .servo = how.specimen,
+                            .record = {.snapshots = "none"},
+                            .stages = {stage}};
   Assembly assembly(initial, {.threads = how.threads});
   DriveState state;
   if (run_programme(programme, assembly, state, how.observer) == RunOutcome::interrupted)
