@@ -26,7 +26,7 @@ TEST(MotionSpec, EveryFieldHasItsKey)
 TEST(MotionSpec, RecipeTellsEveryFieldApart)
 {
   const MotionSpec usual;
-  EXPECT_EQ(recipe_text(usual), "0.20000000000000001 no no 0.01 0.20000000000000001 2 0.80000000000000004 no");
+  EXPECT_EQ(recipe_text(usual), "0.20000000000000001 0 no no 0.01 0.20000000000000001 2 0.80000000000000004 no");
   for (int changed = 0; changed < 9; ++changed)
     {
       MotionSpec motion;
