@@ -154,16 +154,16 @@ TEST(FreeGrainsInAPacking, ComeToRestWithIt)
       double unbalanced[2];
       for (const bool damped : {false, true})
         {
-          Assembly a(test::specimen(500, 10.0, domain), {.free_grain_damping = damped ? 0.1 : 0.0});
-          a.settings.time_step = 5e-8;
+          Assembly a(test::specimen(500, 5.0, domain),
+                     {.time_step = 5e-8, .free_grain_damping = damped ? 0.1 : 0.0});
           const RigidBox start = a.box();
-          const double rate = 20;
+          const double strain_step = 20 * a.settings.time_step; // 20 1/s, to 0.1 %
           Mat3 gradient = Mat3::Zero();
-          gradient.diagonal() << 0.5 * rate * dt, -rate * dt, 0.5 * rate * dt;
-          for (int step = 0; step < 12'000; ++step)
+          gradient.diagonal() << 0.5 * strain_step, -strain_step, 0.5 * strain_step;
+          for (int step = 0; step < 11'000; ++step)
             {
               a.compute_forces();
-              const bool shearing = step < 2000;
+              const bool shearing = step < 1000;
               if (in_cell)
                 a.deform(shearing ? gradient : Mat3::Zero());
               else
@@ -171,6 +171,7 @@ TEST(FreeGrainsInAPacking, ComeToRestWithIt)
             }
           a.compute_forces();
           unbalanced[damped] = a.unbalanced_force_ratio();
+          EXPECT_LT(a.stress().trace() / 3, -100e3) << "it carries load";
         }
       std::printf("%s held for 10,000 steps: unbalanced %.1e, with free grains damped %.1e\n", domain, unbalanced[0],
                   unbalanced[1]);
