@@ -10,7 +10,7 @@ namespace isostat
 struct MotionSpec
 {
   double damping = 0.2;                   ///< local (non-viscous) damping coefficient [-]
-  double free_grain_damping = 0;        ///< share of its velocity that a grain without any force loses in a step [-]
+  double free_grain_damping = 0;          ///< share of its velocity that a grain without any force loses in a step [-]
   std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the tolerance
   std::optional<double> inertial_number = {}; ///< fixed I, the rate follows p'; instead of the tolerance
   double quasi_static_tolerance = 0.01;       ///< error indicator to be kept, see dem/drive/rate_control.hpp

@@ -154,8 +154,7 @@ TEST(FreeGrainsInAPacking, ComeToRestWithIt)
       double unbalanced[2];
       for (const bool damped : {false, true})
         {
-          Assembly a(test::specimen(500, 5.0, domain),
-                     {.time_step = 5e-8, .free_grain_damping = damped ? 0.1 : 0.0});
+          Assembly a(test::specimen(500, 5.0, domain), {.time_step = 5e-8, .free_grain_damping = damped ? 0.1 : 0.0});
           const RigidBox start = a.box();
           const double strain_step = 20 * a.settings.time_step; // 20 1/s, to 0.1 %
           Mat3 gradient = Mat3::Zero();
