@@ -160,8 +160,9 @@ double Assembly::move_grains(const FreeGrainDamping &free, const AffineStep *aff
 
 void Assembly::move(const RigidBox &next_box)
 {
-  const double grain_step =
-      move_grains(FreeGrainDamping::of_walls(settings.free_grain_damping, domain_.box, next_box, settings.time_step));
+  const double share = settings.free_grain_damping;
+  const double grain_step = move_grains(
+      share > 0 ? FreeGrainDamping::of_walls(share, domain_.box, next_box, settings.time_step) : FreeGrainDamping{});
   RigidBox &box = domain_.box;
   std::array<double, 6> outward;
   double wall_step = 0;

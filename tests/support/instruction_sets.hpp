@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <gtest/gtest.h>
 #include <hwy/targets.h>
 #include <vector>
 
@@ -14,4 +15,12 @@ inline std::vector<std::int64_t> instruction_sets()
     sets.push_back(left & -left);
   return sets;
 }
+
+/// Tests that run once on each of them.
+class OnInstructionSet : public testing::TestWithParam<std::int64_t>
+{
+protected:
+  void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
 } // namespace isostat::test

@@ -181,16 +181,14 @@ std::pair<double, double> worst_misfit(const LinearRolling &law, const CloudInCe
 bool same_bits(const Mat3 &a, const Mat3 &b) { return (a.array() == b.array()).all(); }
 } // namespace
 
-/// Runs once for each instruction set that both the machine and the compiler have.
-class CellKernel : public testing::TestWithParam<std::int64_t>
+class CellKernel : public test::OnInstructionSet
 {
 protected:
   void SetUp() override
   {
-    hwy::SetSupportedTargetsForTest(GetParam());
+    OnInstructionSet::SetUp();
     ASSERT_EQ(instruction_set(), hwy::TargetName(GetParam()));
   }
-  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
 TEST_P(CellKernel, EqualsTheScalarLawAtTheImage)

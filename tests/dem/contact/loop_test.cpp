@@ -50,16 +50,14 @@ Outcome simd_outcome(const LinearRolling &law, const Cloud &cloud, bool with_ene
 
 } // namespace
 
-/// Runs once for each instruction set that both the machine and the compiler have.
-class ContactKernel : public testing::TestWithParam<std::int64_t>
+class ContactKernel : public test::OnInstructionSet
 {
 protected:
   void SetUp() override
   {
-    hwy::SetSupportedTargetsForTest(GetParam());
+    OnInstructionSet::SetUp();
     ASSERT_EQ(instruction_set(), hwy::TargetName(GetParam()));
   }
-  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
 TEST_P(ContactKernel, EqualsTheScalarLaw)

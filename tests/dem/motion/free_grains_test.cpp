@@ -10,7 +10,6 @@
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 namespace isostat
 {
@@ -51,13 +50,8 @@ double kinetic_energy(const Packing &p, std::size_t i)
 const FreeGrainDamping moving_walls{0.25, {10, -20, 30}, {0.1, 0.2, -0.3}};
 } // namespace
 
-/// Runs once for each instruction set that both the machine and the compiler have.
-class FreeGrains : public testing::TestWithParam<std::int64_t>
-{
-protected:
-  void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
-  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-};
+class FreeGrains : public test::OnInstructionSet
+{};
 
 TEST_P(FreeGrains, LoseTheirShareOfWhatTheyDoNotShareWithTheWalls)
 {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <hwy/targets.h>
 #include <limits>
 
 namespace isostat
@@ -84,13 +83,8 @@ double work(const Packing &before, const Packing &after, const Action &action, d
 }
 } // namespace
 
-/// Runs once for each instruction set that both the machine and the compiler have.
-class Leapfrog : public testing::TestWithParam<std::int64_t>
-{
-protected:
-  void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
-  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-};
+class Leapfrog : public test::OnInstructionSet
+{};
 
 TEST_P(Leapfrog, FreeFlightIsStraight)
 {
