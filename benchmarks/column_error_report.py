@@ -17,19 +17,19 @@ from speed_error.figures import STYLE, front, spread_labels  # noqa: E402
 
 LIQUEFIED = 0.95
 LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
-    "default": ("#1a1a1a", "*", "default: recommended for 1,000 grains"),
-    "recommended": ("#0072b2", "*", "recommended for 250"),
-    "reference": ("#7f7f7f", "P", "next slow"),
+    "default": ("#1a1a1a", "*", "default"),
+    "reference": ("#7f7f7f", "P", "I and min_steps"),
     "min_steps": ("#0072b2", "o", "min_steps"),
-    "tolerance": ("#56b4e9", "o", "tolerance"),
-    "rate": ("#d55e00", "s", "bounds of the rate, 1/s"),
+    "damping": ("#56b4e9", "o", "damping"),
+    "free": ("#f0e442", "v", "free grains left alone"),
+    "rate": ("#d55e00", "s", "inertial number I"),
     "step": ("#009e73", "^", "FE step"),
-    "fast": ("#e69f00", "D", "tolerance 0.03, 0.2 to 10 1/s, 10"),
+    "fast": ("#e69f00", "D", "I 1e-3, min_steps 10"),
     "size": ("#cc79a7", "h", "scatter of seeds: N grains"),
     "same": ("#000000", "x", "motion 1 ppm larger"),
 }
-QUANTITIES = {  # of the strong motion
-    "t95": ("first r_u > 0.95", "s", 1, "{:.3f}"),
+QUANTITIES = {  # of the motions that liquefy levels
+    "onset": ("onset", "s", 1, "{:.3f}"),
     "thick": ("liquefied", "m", 1, "{:.1f}"),
     "peak": ("peak surface acceleration", "m/s2", 1, "{:.2f}"),
     "arias": ("integral of its square", "m2/s3", 1, "{:.2f}"),
@@ -88,8 +88,7 @@ def scatter(folders):
 
 def drift(folders, largest):
     """As differences(), of the means of two ensembles."""
-    base = read(largest[0])
-    result = []
+    base, result = read(largest[0]), []
     for look, axes in ((motion, (base["t"],)), (pressures, (base["time"], base["depth"]))):
         ours, theirs = (np.mean([look(f, *axes) for f in group], axis=0) for group in (folders, largest))
         result.append(rms(ours - theirs) / rms(theirs))
@@ -98,18 +97,16 @@ def drift(folders, largest):
 
 def quantities(folder):
     data = read(folder)
-    over = np.flatnonzero(data["top"] > LIQUEFIED)
+    over = np.flatnonzero(data["top"] > LIQUEFIED)  # from this row on, or else that of the largest r_u, is the onset
     height = np.gradient(data["depth"]).mean()
-    return {"t95": data["t"][over[0]] if over.size else np.nan,
+    return {"onset": data["t"][over[0] if over.size else np.argmax(data["top"])],
             "thick": height * np.count_nonzero(data["ru"].max(axis=0) > LIQUEFIED), "peak": np.abs(data["a"]).max(),
             "arias": float(np.sum(0.5 * (data["a"][1:] ** 2 + data["a"][:-1] ** 2) * np.diff(data["t"]))),
             "ru": data["ru"][-1].mean()}
 
 
 def mean_and_error(values):
-    values = np.array([v for v in values if np.isfinite(v)])
-    if not values.size:
-        return np.nan, np.nan
+    values = np.array([v for v in values if np.isfinite(v)] or [np.nan])
     return values.mean(), values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
 
 
@@ -138,20 +135,20 @@ class Runs:
         keys = sorted({getattr(c, of) for c, _ in self.all if c.level == level and c.label == "default"})
         return {key: list(self.of(level, **{of: key}).values()) for key in keys}
 
-    def deviations(self):
-        """Standard deviation of each strong quantity between seeds of 250 grains."""
-        values = [quantities(f) for f in self.of("strong").values()]
+    def deviations(self, level):
+        """Standard deviation of each quantity between seeds of 250 grains."""
+        values = [quantities(f) for f in self.of(level).values()]
         return {q: np.nanstd([v[q] for v in values], ddof=1) if len(values) > 2 else np.nan for q in QUANTITIES}
 
-    def distance(self, one, other):
-        """Mean over the strong quantities of the difference over the standard deviation between seeds."""
-        a, b, s = quantities(one), quantities(other), self.deviations()
+    def distance(self, level, one, other):
+        """Mean over the quantities of the difference over the standard deviation between seeds."""
+        a, b, s = quantities(one), quantities(other), self.deviations(level)
         parts = [abs(a[q] - b[q]) / s[q] for q in QUANTITIES if s[q] > 0]
         return float(np.nanmean(parts)) if parts else np.nan
 
-    def between_seeds(self):
-        runs = list(self.of("strong").values())
-        return float(np.mean([self.distance(a, b) for a, b in itertools.combinations(runs, 2)]))
+    def between_seeds(self, level):
+        runs = list(self.of(level).values())
+        return float(np.mean([self.distance(level, a, b) for a, b in itertools.combinations(runs, 2)]))
 
     def seeds(self, level, grains=250):
         """Seeds of the references: those to compare; and those of the weak motion in which a level liquefies."""
@@ -167,16 +164,17 @@ class Runs:
             data, (v, r) = read(own[seed]), differences(own[seed], slow[seed])
             ours, theirs = (quantities(f[seed]) for f in (own, slow))
             rows.append({"v": v, "r": r, "bias": ours["ru"] / theirs["ru"] - 1,
-                         "late": ours["t95"] - theirs["t95"], "cost": data["steps"] * grains,
+                         "onset": ours["onset"], "late": ours["onset"] - theirs["onset"],
+                         "peak": ours["peak"] / theirs["peak"] - 1, "cost": data["steps"] * grains,
                          "per_call": data["per_call"], "seconds": data["seconds"],
-                         "distance": self.distance(own[seed], slow[seed]) if level == "strong" else np.nan})
+                         "distance": self.distance(level, own[seed], slow[seed]) if level != "weak" else np.nan})
         return rows
 
 
 def numerics_table(runs, level, seeds, grains=250):
     if not seeds:
         return
-    strong = level == "strong"
+    strong = level != "weak"
     head = ["setting", "steps a call", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
     if strong:
         head += ["quantities, over their scatter"]
@@ -207,7 +205,7 @@ def twins(runs, level):
     """How far runs part that nothing but a millionth of the motion, or their packings in situ, sets apart."""
     pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
              "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
-             "packings in situ at a floor of 0.02 1/s": ("rates 0.02 to 2, own packings", "rates 0.02 to 2")}
+             "packings in situ with I = 1e-4": ("I 1e-4, own packings", "I 1e-4")}
     print(f"\n<!-- twins, {level} -->\n\n"
           "| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
           "|---|---|---|---|---|")
@@ -216,13 +214,12 @@ def twins(runs, level):
         both = sorted(set(one) & set(other))
         if both:
             v, r = np.transpose([differences(one[s], other[s]) for s in both])
-            apart = f"{np.mean([runs.distance(one[s], other[s]) for s in both]):.2f}" if level == "strong" else "–"
+            apart = "–" if level == "weak" else f"{np.mean([runs.distance(level, one[s], other[s]) for s in both]):.2f}"
             print(f"| {text} | {len(both)} | {percent(*mean_and_error(v))} | {percent(*mean_and_error(r))} | {apart} |")
 
 
 def quantity_cells(folders, spread=True):
-    cells = []
-    values = [quantities(f) for f in folders]
+    cells, values = [], [quantities(f) for f in folders]
     for q, (_, _, _, form) in QUANTITIES.items():
         x = [v[q] for v in values if np.isfinite(v[q])]
         cells.append(form.format(np.mean(x)) if x else "none")
@@ -249,22 +246,31 @@ def size_table(runs, level):
         cells = [f"{key:,}" if isinstance(key, int) else key, str(len(folders)), f"{cost:.0f}",
                  f"{np.mean([read(f)['seconds'] for f in folders]):.1f}"]
         cells += [percent(x) for x in (scatter(folders) if len(folders) > 1 else (np.nan, np.nan))]
-        if level == "strong":
+        if level != "weak":
             cells += quantity_cells(folders)
         else:
             cells += ["–"] * 2 if folders is largest else [percent(x) for x in drift(folders, largest)]
         print("| " + " | ".join(cells) + " |")
 
 
-def onset_table(runs, grains):
-    """First r_u > 0.95 of each seed at the defaults and at min_steps 200."""
-    slow, own = (runs.of("strong", label, grains) for label in ("min_steps 200", "default"))
+def onset_table(runs, level, grains):
+    """How much later than in the reference of the same seed a level liquefies, by setting."""
+    slow = runs.of(level, "reference", grains)
+    head = ["setting", "seeds", "steps a call", "10⁶ grain-steps", "onset, s", "later than in the reference, s",
+            "largest, s", "surface peak, %"]
     if slow:
-        print("\n<!-- onset -->\n\n| seed | default, s | 10⁶ grain-steps | min_steps 200, s | 10⁶ grain-steps |")
-        print("|---|---|---|---|---|")
-    for seed in sorted(set(slow) & set(own)):
-        cells = [f"{quantities(f)['t95']:.3f} | {read(f)['steps'] * grains / 1e6:.0f}" for f in (own[seed], slow[seed])]
-        print(f"| {seed} | {' | '.join(cells)} |")
+        print(f"\n<!-- onset, {level}, {grains} grains -->\n\n| {' | '.join(head)} |\n|" + "---|" * len(head))
+    for _, label in runs.labels(level, grains) if slow else []:
+        rows = runs.errors(level, label, grains)
+        if not rows:
+            continue
+        late, peak, onset, calls, cost = ([r[k] for r in rows] for k in ("late", "peak", "onset", "per_call", "cost"))
+        value, error = mean_and_error(late)
+        cells = [label, str(len(rows)), f"{np.mean(calls):.0f}", f"{np.mean(cost) / 1e6:.0f}", f"{np.mean(onset):.3f}"]
+        cells += ["–"] * 3 if label == "reference" else [
+            f"{value:+.3f}" + (f" ± {error:.3f}" if np.isfinite(error) else ""), f"{max(late, key=abs):+.3f}",
+            percent(*mean_and_error(peak))]
+        print("| " + " | ".join(cells) + " |")
 
 
 def mesh_table(runs, level):
@@ -274,7 +280,7 @@ def mesh_table(runs, level):
     if len(meshes) < 2:
         return
     head = ["levels", "seeds", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
-    head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()] if level == "strong" else []
+    head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()] if level != "weak" else []
     print(f"\n<!-- mesh, {level} -->\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
     for mesh in meshes:
         own = runs.of(level, cells=mesh)
@@ -285,7 +291,7 @@ def mesh_table(runs, level):
         cells = [str(mesh), str(len(both)), f"{np.mean([read(own[s])['steps'] for s in both]) * 250 / 1e6:.0f}",
                  f"{np.mean([read(own[s])['seconds'] for s in both]):.1f}"]
         cells += ["–"] * 2 if mesh == meshes[-1] else [percent(*mean_and_error(v)), percent(*mean_and_error(r))]
-        cells += quantity_cells([own[s] for s in both]) if level == "strong" else []
+        cells += quantity_cells([own[s] for s in both]) if level != "weak" else []
         print("| " + " | ".join(cells) + " |")
 
 
@@ -299,7 +305,7 @@ def grouped(points, wide):
 
 
 def panel(axes, runs, level, key, factor, title, label):
-    points = []
+    points, lines = [], {}
     for family, name in runs.labels(level):
         rows = runs.errors(level, name)
         if name.startswith("reference") or not rows or name.endswith("own packings"):
@@ -309,7 +315,7 @@ def panel(axes, runs, level, key, factor, title, label):
             continue
         colour, marker, _ = LOOK[family]
         axes.plot(x, factor * y, marker, color=colour, ms=11 if marker == "*" else 5,
-                  zorder=3 + (family in ("default", "recommended")))
+                  zorder=3 + (family == "default"))
         points.append((x, factor * y, name, colour))
     settings = list(points)
     points = grouped(points, 0.05 if level == "weak" else 0.6)
@@ -320,10 +326,9 @@ def panel(axes, runs, level, key, factor, title, label):
             y = 100 * scatter(folders)[0]
             axes.plot(x, y, LOOK["size"][1], color=LOOK["size"][0], ms=6)
             points.append((x, y, f"N = {grains:,}" if grains != 750 else "3 × N = 250", LOOK["size"][0]))
-    lines = {}
-    if level == "strong":
+    if level != "weak":
         for grains, folders in runs.groups(level, "grains").items():
-            onset = [quantities(f)["t95"] for f in folders]
+            onset = [quantities(f)["onset"] for f in folders]
             lines[grains] = np.nanstd(onset, ddof=1) if len(onset) > 2 else np.nan
             axes.axhline(lines[grains], color=LOOK["size"][0], lw=1)
             axes.text(0.99, lines[grains] * 1.02, f"seeds, N = {grains:,}", color=LOOK["size"][0], fontsize=7.5,
@@ -354,7 +359,7 @@ def draw(runs, path):
         figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
         panel(left, runs, "weak", "v", 100, "(a) weak motion, N = 250, far from liquefaction: surface velocity",
               "rms error, % of the rms")
-        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: first r_u > 0.95",
+        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: onset of liquefaction",
               "later than in the reference, s")
         handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
                    for c, m, text in LOOK.values()]
@@ -379,15 +384,16 @@ def write_csv(runs, path):
 def write(there, table, figure):
     runs = Runs(there)
     write_csv(runs, table)
-    for level in ("weak", "strong"):
+    for level in ("weak", "moderate", "strong"):
         for grains in (250, 1000):
             for seeds in runs.seeds(level, grains):
                 numerics_table(runs, level, seeds, grains)
+            if level != "weak":
+                onset_table(runs, level, grains)
         twins(runs, level)
         size_table(runs, level)
         mesh_table(runs, level)
-    onset_table(runs, 1000)
-    if len(runs.of("strong")) > 2:
-        print(f"\n<!-- two seeds differ by {runs.between_seeds():.2f} standard deviations -->")
+        if level != "weak" and len(runs.of(level)) > 2:
+            print(f"\n<!-- two seeds differ by {runs.between_seeds(level):.2f} standard deviations -->")
     if runs.of("weak", "reference") and runs.of("strong", "reference"):
         draw(runs, figure)

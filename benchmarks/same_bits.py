@@ -120,7 +120,7 @@ cells_up = 2
 material = "grains"
 library = "{columns}/specimens.h5"
 relative_density = 0.5
-rate_ceiling = "20 1/s"
+inertial_number = 1e-3
 [test]
 confinement = "50 kPa"
 axial_strain = 0.002

@@ -9,7 +9,7 @@
 //    |_______|  y axial
 //
 //   element_test apps/scenes/quick_cyclic_liquefies.toml
-//   element_test apps/scenes/cyclic_dr64.toml --set motion.quasi_static_tolerance=0.02 --output results/coarse
+//   element_test apps/scenes/cyclic_dr64.toml --set motion.inertial_number=1e-4 --output results/slow
 //   element_test apps/scenes/cyclic_dr64.toml --resume
 #include "apps/common/interrupt.hpp"
 #include "apps/common/run_output.hpp"

@@ -8,7 +8,7 @@
 //                                                              figures/, summary.json
 //
 //   rve_replay results/quick_grains_10m/paths/d0
-//   rve_replay results/quick_grains_10m/paths/d0 --rate-floor 0.02 --tolerance 0.002 --output slow
+//   rve_replay results/quick_grains_10m/paths/d0 --inertial-number 4e-5 --min-steps 60 --output slow
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
@@ -33,12 +33,12 @@ constexpr int xz = 4; ///< of a Stress; of a Gradient it is 2
 struct Options
 {
   std::string record, output, command_line;
-  std::optional<double> tolerance, rate_floor, rate_ceiling, damping; ///< run otherwise than in the record
-  std::optional<std::uint64_t> min_steps;                             ///< likewise
+  std::optional<double> inertial_number, damping; ///< run otherwise than in the record
+  std::optional<std::uint64_t> min_steps;         ///< likewise
   std::size_t every = 10;
   bool overwrite = false, quiet = false, no_figures = false;
 
-  bool change_nothing() const { return !(tolerance || rate_floor || rate_ceiling || damping || min_steps); }
+  bool change_nothing() const { return !(inertial_number || damping || min_steps); }
 };
 
 /// How the stress of the packing alone compares with what the finite elements were given.
@@ -74,18 +74,12 @@ struct Squares
   double relative() const { return difference == 0 ? 0 : std::sqrt(difference / value); }
 };
 
-/// @throws InputError  a floor above the ceiling
 RveSettings changed(RveSettings settings, const Options &options)
 {
   MotionSpec &motion = settings.motion;
-  motion.quasi_static_tolerance = options.tolerance.value_or(motion.quasi_static_tolerance);
-  motion.rate_floor = options.rate_floor.value_or(motion.rate_floor);
-  motion.rate_ceiling = options.rate_ceiling.value_or(motion.rate_ceiling);
+  motion.inertial_number = options.inertial_number.value_or(motion.inertial_number);
   motion.damping = options.damping.value_or(motion.damping);
   settings.min_steps = options.min_steps.value_or(settings.min_steps);
-  if (motion.rate_floor > motion.rate_ceiling)
-    throw InputError(fmt::format("--rate-floor {:g} 1/s is above the ceiling, {:g} 1/s. Correct one of them.",
-                                 motion.rate_floor, motion.rate_ceiling));
   return settings;
 }
 
@@ -232,10 +226,8 @@ int main(int argc, char **argv)
   Options options;
   line.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
   line.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
-  line.add_option("--tolerance", options.tolerance, "another quasi-static tolerance")->check(CLI::Range(1e-9, 1.0));
-  line.add_option("--rate-floor", options.rate_floor, "another smallest strain rate, 1/s")->check(CLI::PositiveNumber);
-  line.add_option("--rate-ceiling", options.rate_ceiling, "another largest strain rate, 1/s")
-      ->check(CLI::PositiveNumber);
+  line.add_option("--inertial-number", options.inertial_number, "another inertial number, which gives the strain rate")
+      ->check(CLI::Range(1e-9, 1.0));
   line.add_option("--min-steps", options.min_steps, "time steps of an increment, at least")
       ->check(CLI::Range(1, 1000000));
   line.add_option("--damping", options.damping, "other local damping")->check(CLI::Range(0.0, 0.99));

@@ -83,32 +83,17 @@ def deviation(path, reference):
 
 def cyclic_figures(history):
     """Cost and what happened in a cyclic test, as plain numbers."""
-    figures = {"steps": float(history.step[-1] - history.step[0]), "reversals": float(history.reversals[-1]),
-               "cycles": None}
+    figures = {"steps": float(history.step[-1] - history.step[0])}
     onset = history.onset
     if onset is None:
         return figures
-    after = slice(onset + 1, None)
-    travelled = np.concatenate(([0], np.cumsum(np.abs(np.diff(history.eps_y)))))
-    ends = [row for row in history.reversal_rows if row > onset]
     figures.update(
         cycles=history.reversals[onset] / 2, redundancy=history.IR[onset],
         steps_before=float(history.step[onset] - history.step[0]),
         steps_after=float(history.step[-1] - history.step[onset]),
-        strain_before=float(travelled[onset]), strain_after=float(travelled[-1] - travelled[onset]),
-        reversals_after=float(history.reversals[-1] - history.reversals[onset]),
-        strain_first=float(abs(history.eps_y[ends[0]])) if ends else None)
-    if history.step[-1] > history.step[onset] + 1000:
-        weight = np.diff(history.step)[onset:]
-        figures["indicator_after"] = weighted_quantile(history.indicator[after], weight, 0.5)
+        strain_after=float(np.abs(np.diff(history.eps_y[onset:])).sum()),
+        reversals_after=float(history.reversals[-1] - history.reversals[onset]))
     return figures
-
-
-def weighted_quantile(values, weights, share):
-    """The value below which lies `share` of the weights: here of the time steps."""
-    order = np.argsort(values)
-    sums = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(sums, share * sums[-1])])
 
 
 def ensemble(values):

@@ -59,7 +59,5 @@ void check_packings(const SceneDocument &document, const std::string &section, c
   if (packings.library.empty())
     document.refuse(section + ".library", "is missing; soil of grains is made of its specimens. Give library = "
                                           "\"library.h5\", made by specimen_library.");
-  if (packings.motion.rate_floor > packings.motion.rate_ceiling)
-    document.refuse(section + ".rate_floor", "must not exceed rate_ceiling. Correct one of them.");
 }
 } // namespace isostat

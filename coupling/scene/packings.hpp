@@ -9,13 +9,13 @@ namespace isostat
 {
 class SceneDocument;
 
-/// What users choose of how packings run: library, cache, in_situ, realisations, quasi_static_tolerance, rate_floor,
-/// rate_ceiling, min_steps, damping. Drainage and threads are set by the program.
+/// What users choose of how packings run: library, cache, in_situ, realisations, min_steps, damping,
+/// free_grain_damping, inertial_number. Drainage and threads are set by the program.
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
 SceneFragment<SpecimenRequest> specimen_keys();
 
-/// What binds several of these keys.
+/// What the table of keys cannot say: soil of grains needs a library.
 /// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
 /// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/biaxial_test.py
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);

@@ -63,6 +63,7 @@ MotionReport sum_of(const std::vector<MotionReport> &parts)
       all.exploded |= part.exploded;
       all.damping_loss += part.damping_loss;
       all.free_loss += part.free_loss;
+      all.carried_work += part.carried_work;
     }
   return all;
 }
@@ -72,7 +73,8 @@ Assembly::Assembly(const Snapshot &initial, const StepSettings &how)
     : settings(how), packing_(initial.grains), domain_(initial.box, initial.cell), law_(initial.law),
       forces_(initial.law->history(), initial.grains.n_grains()), solid_volume_(initial.grains.solid_volume()),
       d50_(initial.grains.d50()), min_radius_(initial.grains.min_radius()),
-      max_diameter_(2 * initial.grains.max_radius()), step_(initial.step), time_(initial.time)
+      max_diameter_(2 * initial.grains.max_radius()), wall_motion_(initial.wall_motion), step_(initial.step),
+      time_(initial.time)
 {
   verlet_.update(packing_, domain_, 0.0, forces_.list());
   take_history(initial.contacts, forces_.list());
@@ -136,13 +138,20 @@ void Assembly::measure_energy()
     meter_.add_work_of_walls(walls_.forces());
 }
 
-/// Leapfrog of all grains, each chunk when its forces are there.   @return bound on what a grain has moved, m
-double Assembly::move_grains(const FreeGrainDamping &free, const AffineStep *affine)
+LeapfrogStep Assembly::leapfrog_step() const
 {
-  const double dt = settings.time_step, speed_limit = max_grain_step * min_radius_ / dt;
+  const double dt = settings.time_step;
+  return {.dt = dt,
+          .damping = settings.damping,
+          .speed_limit = max_grain_step * min_radius_ / dt,
+          .measure_damping = settings.measure_energy,
+          .free = {settings.free_grain_damping}};
+}
+
+/// Leapfrog of all grains, each chunk when its forces are there.   @return bound on what a grain has moved, m
+double Assembly::move_grains(const LeapfrogStep &how)
+{
   const Partition &partition = forces_.list().partition();
-  const LeapfrogStep how{
-      dt, settings.damping, speed_limit, settings.measure_energy, affine, free.share > 0 ? &free : nullptr};
   forces_known_ = false;
   motion_reports_.resize(partition.n_chunks);
   forces_.finish_step(force_input(), [&](std::size_t chunk) {
@@ -151,18 +160,23 @@ double Assembly::move_grains(const FreeGrainDamping &free, const AffineStep *aff
   });
   const MotionReport report = sum_of(motion_reports_);
   if (report.exploded)
-    report_explosion(packing_, step_, dt, speed_limit);
-  meter_.add_damping(report.damping_loss, report.free_loss);
+    report_explosion(packing_, step_, how.dt, how.speed_limit);
+  meter_.add_motion(report);
   ++step_;
-  time_ += dt;
-  return report.max_speed * dt;
+  time_ += how.dt;
+  return report.max_speed * how.dt;
 }
 
 void Assembly::move(const RigidBox &next_box)
 {
-  const double share = settings.free_grain_damping;
-  const double grain_step = move_grains(
-      share > 0 ? FreeGrainDamping::of_walls(share, domain_.box, next_box, settings.time_step) : FreeGrainDamping{});
+  LeapfrogStep how = leapfrog_step();
+  CarriedStep carried{wall_motion_, {}};
+  if (settings.carry_grains)
+    {
+      wall_motion_ = carried.now = HomogeneousMotion::of_walls(domain_.box, next_box, settings.time_step);
+      how.carried = &carried;
+    }
+  const double grain_step = move_grains(how);
   RigidBox &box = domain_.box;
   std::array<double, 6> outward;
   double wall_step = 0;
@@ -187,7 +201,9 @@ void Assembly::deform(const Mat3 &displacement_gradient)
                     step_, size, max_strain_step));
   PeriodicCell next = *domain_.cell; // forces that are pending belong to the cell as it still is
   const AffineStep affine(next.deform(displacement_gradient));
-  max_step_ = move_grains({settings.free_grain_damping}, &affine) + size * max_diameter_;
+  LeapfrogStep how = leapfrog_step();
+  how.affine = &affine;
+  max_step_ = move_grains(how) + size * max_diameter_;
   domain_.cell = next;
   turn_upright();
   forces_.list().set_cell(domain_.cell->edges);

@@ -126,7 +126,8 @@ private:
   void update_list(double max_step);
   void add_gravity();
   void measure_energy();
-  double move_grains(const FreeGrainDamping &free, const AffineStep *affine = nullptr);
+  LeapfrogStep leapfrog_step() const; ///< as the settings say, in a box whose walls push
+  double move_grains(const LeapfrogStep &how);
   void turn_upright();
   Snapshot without_contacts() const;
 
@@ -140,7 +141,8 @@ private:
   std::vector<MotionReport> motion_reports_; ///< per chunk
   bool forces_known_ = false;                ///< compute_forces() has been called in this step: again is for free
   double solid_volume_ = 0, d50_ = 0, min_radius_ = 0, max_diameter_ = 0;
-  double max_step_ = 0; ///< bound on what a grain or wall has moved in the last step, m
+  double max_step_ = 0;           ///< bound on what a grain or wall has moved in the last step, m
+  HomogeneousMotion wall_motion_; ///< that carried grains have shared in the last step
   std::uint64_t step_ = 0;
   double time_ = 0;
 };

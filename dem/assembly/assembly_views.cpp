@@ -33,6 +33,7 @@ Snapshot Assembly::without_contacts() const
   s.grains = packing_;
   s.box = domain_.box;
   s.cell = domain_.cell;
+  s.wall_motion = wall_motion_;
   s.law = law_;
   s.time = time_;
   s.step = step_;

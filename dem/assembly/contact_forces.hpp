@@ -13,6 +13,7 @@ struct StepSettings
   double time_step = 0;          ///< s; must be positive when grains are moved
   double damping = 0.2;          ///< local damping [-], [0, 1)
   double free_grain_damping = 0; ///< share of their velocity that free grains lose, see FreeGrainDamping [-], [0, 1]
+  bool carry_grains = false;     ///< in a box: they share the homogeneous motion of its walls, see CarriedStep
   Vec3 gravity = Vec3::Zero();   ///< m/s2
   bool measure_energy = false;   ///< from the next force evaluation on, keep the sums of Assembly::energy()
   /// Threads that share a step, or 0 for as many as the process may use and the packing can feed. Changes no bit of any

@@ -2,6 +2,7 @@
 #pragma once
 #include "dem/contact/loop.hpp"
 #include "dem/measure/energy.hpp"
+#include "dem/motion/leapfrog.hpp"
 
 #include <array>
 #include <string>
@@ -54,10 +55,11 @@ public:
   void add_work_of_walls(const std::array<double, 6> &force);
   void add_work_of_cell(const Mat3 &virial, const Mat3 &strain_step);
   /// Motion after it.
-  void add_damping(double local, double of_free_grains)
+  void add_motion(const MotionReport &report)
   {
-    memory_.tally.damping += local;
-    memory_.tally.free_grains += of_free_grains;
+    memory_.tally.damping += report.damping_loss;
+    memory_.tally.free_grains += report.free_loss;
+    memory_.tally.boundary_work += report.carried_work;
   }
   void walls_moved(const std::array<double, 6> &outward) { memory_.wall_displacement = outward; }
 

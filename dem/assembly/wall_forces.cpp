@@ -6,17 +6,25 @@ namespace isostat
 void WallForces::add_chunk(std::size_t chunk, const ContactLaw &law, const Packing &packing, const RigidBox &box,
                            const VerletList &near, double *action)
 {
+  std::array<WallOverlap, 64> block;
+  std::array<WallResponse, 64> responses;
   Sums sums{};
   for (int wall = 0; wall < 6; ++wall)
     {
       const double inward = wall % 2 ? -1.0 : 1.0;
-      for (std::uint32_t i : near.near_wall(wall, chunk))
+      const std::span<const std::uint32_t> grains = near.near_wall(wall, chunk);
+      for (std::size_t first = 0; first < grains.size(); first += block.size())
         {
-          const double overlap = -wall_gap(packing, box, i, wall);
-          const WallResponse response = overlap > 0 ? law.wall(packing.radius(i), overlap) : WallResponse{};
-          action[8 * i + wall / 2] += inward * response.force;
-          sums.force[wall] += response.force;
-          sums.stiffness[wall] += response.stiffness;
+          const auto part = grains.subspan(first, std::min(block.size(), grains.size() - first));
+          for (std::size_t k = 0; k < part.size(); ++k)
+            block[k] = {packing.radius(part[k]), -wall_gap(packing, box, part[k], wall)};
+          law.walls(std::span(block).first(part.size()), responses);
+          for (std::size_t k = 0; k < part.size(); ++k)
+            {
+              action[8 * part[k] + wall / 2] += inward * responses[k].force;
+              sums.force[wall] += responses[k].force;
+              sums.stiffness[wall] += responses[k].stiffness;
+            }
         }
     }
   chunks_[chunk] = sums;

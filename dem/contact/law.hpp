@@ -20,6 +20,13 @@ struct ContactStiffness
   double normal, shear, rolling, twisting;
 };
 
+/// A grain near a rigid wall.
+struct WallOverlap
+{
+  double radius;  ///< m
+  double overlap; ///< m; at most 0 where they do not touch
+};
+
 /// A rigid wall against a grain.
 struct WallResponse
 {
@@ -78,6 +85,9 @@ struct ContactLaw
 
   // A grain against a rigid wall without friction.
   virtual WallResponse wall(double radius, double overlap) const = 0;
+  /// All grains near a wall at once, 0 for those that do not touch it. In the loop: a law that answers without a branch
+  /// per grain overrides it.   @pre one response per grain
+  virtual void walls(std::span<const WallOverlap> near, std::span<WallResponse> responses) const;
   virtual double wall_energy(double radius, double overlap, double normal_force) const = 0; ///< J
 
 protected:

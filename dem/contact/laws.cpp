@@ -16,6 +16,12 @@ std::vector<Law> &laws()
 }
 } // namespace
 
+void ContactLaw::walls(std::span<const WallOverlap> near, std::span<WallResponse> responses) const
+{
+  for (std::size_t i = 0; i < near.size(); ++i)
+    responses[i] = near[i].overlap > 0 ? wall(near[i].radius, near[i].overlap) : WallResponse{};
+}
+
 Law::Law() : Law(LinearRolling{}) {}
 
 std::span<const Law> registered_laws() { return laws(); }

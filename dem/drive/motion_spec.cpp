@@ -14,32 +14,26 @@ constexpr Key controlled[] = {
   {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
    .text = "Local (non-viscous) damping coefficient.",
    .field = [](MotionSpec &m) -> Field { return &m.damping; }},
-  {.path = "free_grain_damping", .value = "0", .range = {0, 1}, .reason = "because it is a share",
-   .text = "Share of its velocity that a grain on which nothing acts loses in each step, e.g. 0.1; 0: it flies on until "
-           "it hits another one.",
+  {.path = "free_grain_damping", .value = "0.1", .range = {0, 1}, .reason = "because it is a share",
+   .text = "Share of its velocity that a grain on which nothing acts loses in each step; 0: it flies on until it hits "
+           "another one, and knocks at the packing as long as the test lasts.",
    .field = [](MotionSpec &m) -> Field { return &m.free_grain_damping; }},
-  {.path = "quasi_static_tolerance", .value = "0.01", .range = ranges::fraction, .group = "rate",
-   .text = "Error that inertia may add to the stresses; the rate of loading is chosen to keep it.",
-   .field = [](MotionSpec &m) -> Field { return &m.quasi_static_tolerance; }},
-  {.path = "rate_floor", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "0.2 1/s", .range = ranges::positive, .text = "Lowest rate the tolerance may lead to.",
-   .field = [](MotionSpec &m) -> Field { return &m.rate_floor; }},
-  {.path = "rate_ceiling", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "2 1/s", .range = ranges::positive, .text = "Highest rate the tolerance may lead to.",
-   .field = [](MotionSpec &m) -> Field { return &m.rate_ceiling; }},
+  {.path = "inertial_number", .value = "4e-4", .range = ranges::fraction,
+   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
+   .text = "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
+           "simple shear that of gamma_xy) is I sqrt(p0'/density)/d50 throughout.",
+   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
 };
 
 constexpr Key chosen[] = {
+  {.path = "carry_grains", .kind = Kind::boolean, .value = "true",
+   .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "
+           "which start or turn round send no waves; false: walls push.",
+   .field = [](MotionSpec &m) -> Field { return &m.carry_grains; }},
   {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",
-   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the tolerance.",
+   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number.",
    .field = [](MotionSpec &m) -> Field { return &m.strain_rate; }},
-  {.path = "inertial_number", .presence = Presence::optional, .value = "1e-4", .range = ranges::fraction,
-   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
-   .text = "Fixed inertial number I instead of the tolerance: the axial strain rate (in simple shear that of "
-           "gamma_xy) is I sqrt(p_r / density) / d50 with p_r = max(p', 0.05 p0'), renewed every 50 steps, without "
-           "floor or ceiling.",
-   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
   {.path = "time_step_safety", .value = "0.8", .range = ranges::to_one,
    .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",
    .field = [](MotionSpec &m) -> Field { return &m.time_step_safety; }},

@@ -10,23 +10,21 @@ namespace isostat
 struct MotionSpec
 {
   double damping = 0.2;                   ///< local (non-viscous) damping coefficient [-]
-  double free_grain_damping = 0;          ///< share of its velocity that a grain without any force loses in a step [-]
-  std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the tolerance
-  std::optional<double> inertial_number = {}; ///< fixed I, the rate follows p'; instead of the tolerance
-  double quasi_static_tolerance = 0.01;       ///< error indicator to be kept, see dem/drive/rate_control.hpp
-  double rate_floor = 0.2, rate_ceiling = 2;  ///< 1/s, bounds of the controlled rate
-  double time_step_safety = 0.8;              ///< fraction of the critical step
-  std::optional<double> time_step = {};       ///< fixed, s; checked against the critical step
+  double free_grain_damping = 0.1;        ///< share of its velocity that a grain without any force loses in a step [-]
+  bool carry_grains = true;               ///< grains of a box share the homogeneous motion of its walls
+  double inertial_number = 4e-4;          ///< I at p0': the strain rate is I sqrt(p0'/density)/d50 [-]
+  std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the inertial number
+  double time_step_safety = 0.8;          ///< fraction of the critical step
+  std::optional<double> time_step = {};   ///< fixed, s; checked against the critical step
 
   bool operator==(const MotionSpec &) const = default;
 
-  ISOSTAT_FIELDS(damping, free_grain_damping, strain_rate, inertial_number, quasi_static_tolerance, rate_floor,
-                 rate_ceiling, time_step_safety, time_step)
+  ISOSTAT_FIELDS(damping, free_grain_damping, carry_grains, inertial_number, strain_rate, time_step_safety, time_step)
 };
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
 SceneFragment<MotionSpec> motion_keys();
-/// Those of packings whose strain somebody else gives: damping, and how the rate is chosen from the tolerance.
+/// Those of packings whose strain somebody else gives: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();
 
 /// All settings as text, to the bit: part of the recipe of whatever they shape.

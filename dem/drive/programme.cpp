@@ -49,7 +49,7 @@ private:
     state_.loading = {};
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
-    state_.pace.rate = initial_rate(programme_.motion);
+    state_.pace.rate = 0; // of a shear stage: when it begins to shear
     stage_.begin(context_);
   }
 
@@ -110,6 +110,7 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
     {
       assembly.settings.damping = programme.motion.damping;
       assembly.settings.free_grain_damping = programme.motion.free_grain_damping;
+      assembly.settings.carry_grains = programme.motion.carry_grains;
       StageRun run(programme, behaviour(programme.stages[state.place.stage]), assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)
         return RunOutcome::interrupted;

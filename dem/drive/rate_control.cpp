@@ -1,48 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/rate_control.hpp"
 
+#include "base/error.hpp"
 #include "dem/measure/unbalanced.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace isostat
 {
-double initial_rate(const MotionSpec &motion, const std::optional<double> &stage_rate)
+double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
+                   double p0)
 {
-  return stage_rate.value_or(motion.strain_rate.value_or(motion.rate_floor));
-}
-
-double reference_stress(double mean_stress, double p0) { return std::max(mean_stress, 0.05 * p0); }
-
-double rate_of(double inertial_number, double d50, double density, double p_r)
-{
-  return inertial_number * std::sqrt(p_r / density) / d50;
+  if (stage_rate)
+    return *stage_rate;
+  if (motion.strain_rate)
+    return *motion.strain_rate;
+  if (!(p0 > 0))
+    throw RunFailure(
+        fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
+                    "number goes with its root. Consolidate it first, or give motion.strain_rate.",
+                    p0));
+  return motion.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }
 
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
 {
-  const double p_r = reference_stress(mean_stress, p0);
+  const double p_r = std::max(mean_stress, 0.05 * p0);
   const double inertia = 10 * inertial_number(rate, assembly.d50(), assembly.packing().density, p_r);
   const double difference =
       assembly.walls() ? (assembly.wall_stress() - assembly.contact_stress()).cwiseAbs().maxCoeff() : 0.0;
   return std::max({inertia, difference / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
-}
-
-void update_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
-                 double mean_stress, double p0, Pace &pace)
-{
-  pace.indicator = quasi_static_indicator(assembly, mean_stress, p0, pace.rate);
-  if (stage_rate || motion.strain_rate)
-    pace.rate = initial_rate(motion, stage_rate);
-  else if (motion.inertial_number)
-    pace.rate =
-        rate_of(*motion.inertial_number, assembly.d50(), assembly.packing().density, reference_stress(mean_stress, p0));
-  else
-    {
-      const double factor =
-          std::clamp(std::sqrt(motion.quasi_static_tolerance / std::max(pace.indicator, 1e-12)), 0.7, 1.2);
-      pace.rate = std::clamp(pace.rate * factor, motion.rate_floor, motion.rate_ceiling);
-    }
 }
 
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step)
@@ -58,10 +46,10 @@ double next_rate(const Loading &loading, double rate, double load, double limit,
   return direction * std::min(std::abs(next), braked);
 }
 
-double ramp_steps(const Assembly &assembly)
+double ramp_time(const Assembly &assembly)
 {
   const double edge = assembly.walls() ? assembly.box().edges().maxCoeff() : std::cbrt(assembly.volume());
-  return 10 * edge / assembly.d50();
+  return 3 * edge * std::sqrt(assembly.packing().density / assembly.law()->young);
 }
 
 void update_slope(Loading &loading, double load, std::uint64_t step_number)

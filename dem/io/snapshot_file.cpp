@@ -203,6 +203,11 @@ void write_snapshot(Group group, const Snapshot &snapshot)
   Eigen::Matrix<double, 6, 1> box;
   box << snapshot.box.lower, snapshot.box.upper;
   group.write("box", std::span(box.data(), 6), "m", 3);
+  if (const HomogeneousMotion &u = snapshot.wall_motion; u != HomogeneousMotion{})
+    {
+      group.write("wall_motion_rate", std::span(u.rate, 3), "1/s");
+      group.write("wall_motion_shift", std::span(u.shift, 3), "m/s");
+    }
   group.write("strain", std::span(snapshot.strain.data(), 3), "-");
   write_law(group.create_group("law"), snapshot.law);
   write_grains(group.create_group("grains"), snapshot.grains);
@@ -219,6 +224,11 @@ Snapshot read_snapshot(const Group &group)
   snapshot.step = group.attribute<std::uint64_t>("step");
   const std::vector<double> box = group.read<double>("box", {2, 3});
   snapshot.box = {Vec3(&box[0]), Vec3(&box[3])};
+  if (group.has("wall_motion_rate"))
+    {
+      std::ranges::copy(group.read<double>("wall_motion_rate", {3}), snapshot.wall_motion.rate);
+      std::ranges::copy(group.read<double>("wall_motion_shift", {3}), snapshot.wall_motion.shift);
+    }
   snapshot.strain = Vec3(group.read<double>("strain", {3}).data());
   snapshot.law = read_law(group.group("law"));
   snapshot.grains = read_grains(group.group("grains"), group.attribute<double>("density"));

@@ -160,14 +160,16 @@ std::optional<Specimen> from_cache(const std::filesystem::path &path, const std:
 
 std::string specimen_recipe(const Scene &scene)
 {
-  Scene recipe; // only what preparation reads; everything else at its default
+  Scene recipe; // only what preparation reads
   recipe.title = "specimen";
   recipe.grading = scene.grading;
   recipe.contact = scene.contact;
   recipe.specimen = scene.specimen;
   recipe.specimen.cache = SpecimenSpec{}.cache;
   const int version = scene.specimen.domain == "periodic-cell" ? cell_recipe_version : recipe_version;
-  return fmt::format("# recipe {}\n{}", version, to_toml(recipe));
+  const std::string text = to_toml(recipe);
+  // the sections behind those of the specimen stand at their defaults: a key more there is no other specimen
+  return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
 }
 
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)

@@ -16,7 +16,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t rate_interval = 50, servo_interval = 20;
+constexpr std::uint64_t indicator_interval = 50, servo_interval = 20;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
 constexpr int settled = 3;                          ///< checks in a row with stresses on target
 constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
@@ -60,10 +60,10 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
                                                           .free_grain_damping = settings.motion.free_grain_damping})
 {
   settings_.check();
-  drive_.pace.rate = initial_rate(settings_.motion);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
+  drive_.pace.rate = strain_rate(settings_.motion, {}, assembly_, drive_.p0);
   keep_safe();
 }
 
@@ -91,8 +91,8 @@ double Rve::saturated_density(double water) const
 
 void Rve::review()
 {
-  if (drive_.steps % rate_interval == 0)
-    update_rate(settings_.motion, {}, assembly_, mean_stress(), drive_.p0, drive_.pace);
+  if (drive_.steps % indicator_interval == 0)
+    drive_.pace.indicator = quasi_static_indicator(assembly_, mean_stress(), drive_.p0, drive_.pace.rate);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
 }
 

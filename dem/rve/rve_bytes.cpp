@@ -9,6 +9,7 @@
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "dem/contact/law_parameters.hpp"
+#include "dem/drive/rate_control.hpp"
 
 #include <fmt/format.h>
 #include <type_traits>
@@ -107,6 +108,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   body(cost);
   start.cell = state.grains.cell;
   Rve rve(start, settings);
+  state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
   rve.restore(state);
   rve.cost_ = cost;
   return rve;

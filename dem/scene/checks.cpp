@@ -57,14 +57,6 @@ void check_stages(const SceneDocument &document, const Scene &scene)
       need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
 }
 
-void check_motion(const SceneDocument &document, const MotionSpec &motion)
-{
-  if (motion.rate_floor > motion.rate_ceiling)
-    document.refuse(document.find("motion.rate_floor") ? "motion.rate_floor" : "motion.rate_ceiling",
-                    fmt::format("rate_floor must not exceed rate_ceiling, but they are {} 1/s and {} 1/s. Correct one "
-                                "of them.",
-                                number_text(motion.rate_floor), number_text(motion.rate_ceiling)));
-}
 } // namespace
 
 void check_scene(const SceneDocument &document, Scene &scene)
@@ -73,6 +65,5 @@ void check_scene(const SceneDocument &document, Scene &scene)
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_stages(document, scene);
-  check_motion(document, scene.motion);
 }
 } // namespace isostat

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/contact/law.hpp"
+#include "dem/domain/homogeneous_motion.hpp"
 #include "dem/domain/periodic_cell.hpp"
 #include "dem/domain/rigid_box.hpp"
 #include "dem/state/packing.hpp"
@@ -34,6 +35,7 @@ struct Snapshot
   Packing grains;
   RigidBox box;                     ///< without meaning where there is a cell
   std::optional<PeriodicCell> cell; ///< bounds the grains instead of the box
+  HomogeneousMotion wall_motion;    ///< of a box whose grains are carried, in the half step before; else 0
   Law law;
   std::vector<Contact> contacts;          ///< sorted by (first, second)
   std::vector<WallContact> wall_contacts; ///< sorted by (wall, grain)

@@ -32,7 +32,7 @@ cells_up = 2
 [soil]
 material = "grains"
 library = "library.h5"
-rate_ceiling = "20 1/s"
+inertial_number = 1e-3
 [test]
 confinement = "50 kPa"
 axial_strain = 0.002
@@ -118,7 +118,7 @@ class Biaxial(AppTest):
         self.assert_done(self.run_app("biaxial", "--print-defaults"))
         self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")
         self.assert_refused(self.run_block(GRAINS), "soil.library", "is not there")
-        self.assert_refused(self.run_block(GRAINS, "--set", "soil.rate_floor=30 1/s"), "soil.rate_floor")
+        self.assert_refused(self.run_block(GRAINS, "--set", "soil.inertial_number=2"), "soil.inertial_number")
         shown = self.run_app("biaxial", "--print-defaults").stdout
         for key in ("in_situ", "min_steps", "realisations", "fabric_rate"):
             self.assertIn(key + " = ", shown)

@@ -265,8 +265,7 @@ class Alone(GrainColumnTest):
         self.assertTrue((self.folder / "alone/figures/fig_path.png").exists())
 
     def test_other_rates_give_other_stress(self):
-        text, summary = self.replay("-o", "fast", "--no-figures", "--rate-floor", 5, "--rate-ceiling", 5,
-                                    "--min-steps", 1)
+        text, summary = self.replay("-o", "fast", "--no-figures", "--inertial-number", 4e-3, "--min-steps", 1)
         self.assertIn("of tau", text)
         self.assertLess(summary["equal"], summary["increments"])
         self.assertGreater(summary["shear_error"], 1e-4)
@@ -275,10 +274,10 @@ class Alone(GrainColumnTest):
         def refuse(parts, *arguments):
             self.assert_refused(self.run_app("rve_replay", *arguments, "-q"), *parts)
         refuse(["whole", "packing.h5", "grains.path_depths"], "whole")
-        refuse(["--rate-floor 3", "above the ceiling, 2"], "whole/paths/d0", "--rate-floor", 3)
-        wrong = self.run_app("rve_replay", "whole/paths/d0", "--min-steps", 0)
-        self.assertEqual(wrong.returncode, 2)
-        self.assertIn("min-steps", wrong.stderr)
+        for option, value in (("--min-steps", 0), ("--inertial-number", 2)):
+            wrong = self.run_app("rve_replay", "whole/paths/d0", option, value)
+            self.assertEqual(wrong.returncode, 2)
+            self.assertIn(option[2:], wrong.stderr)
         packing = self.folder / "whole/paths/d0/packing.h5"
         data = bytearray(packing.read_bytes())
         data[len(data) // 2] ^= 1

@@ -17,7 +17,7 @@ EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
 
 class Resume(AppTest):
     def scene_text(self):
-        return tiny_scene(stages=STAGES, output="energy = true", motion="rate_floor = \"0.5 1/s\"")
+        return tiny_scene(stages=STAGES, output="energy = true", motion="inertial_number = 1e-4")
 
     def setUp(self):
         super().setUp()
@@ -88,7 +88,7 @@ class ResumeInACell(Resume):
         stages = (REBALANCE.format(steps=2500) + stage.format("undrained-simple-shear") + "strain = 0.02\n" +
                   stage.format("undrained-cyclic-simple-shear") + "stress_ratio = 0.1\n")
         return tiny_scene(specimen='domain = "periodic-cell"\npreparation_friction = "8 deg"', stages=stages,
-                          output="energy = true", motion="rate_floor = \"0.5 1/s\"")
+                          output="energy = true", motion="inertial_number = 1e-4")
 
 
 class Output(AppTest):

@@ -68,6 +68,12 @@ WallResponse LinearRolling::wall(double radius, double overlap) const
   return {kn * overlap, kn};
 }
 
+void LinearRolling::walls(std::span<const WallOverlap> near, std::span<WallResponse> responses) const
+{
+  for (std::size_t i = 0; i < near.size(); ++i) // a grain without radius has no stiffness: no branch
+    responses[i] = wall(near[i].overlap > 0 ? near[i].radius : 0.0, near[i].overlap);
+}
+
 double LinearRolling::wall_energy(double radius, double, double normal_force) const
 {
   return spring_energy(normal_force * normal_force, young * radius);

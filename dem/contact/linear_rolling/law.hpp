@@ -73,6 +73,7 @@ struct LinearRolling final : ContactLaw
   YieldState yield(const ClosedContact &contact) const override;
   ContactEnergy energy(const ClosedContact &contact) const override;
   WallResponse wall(double radius, double overlap) const override;
+  void walls(std::span<const WallOverlap> near, std::span<WallResponse> responses) const override;
   double wall_energy(double radius, double overlap, double normal_force) const override;
 };
 

@@ -12,7 +12,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t rate_interval = 50;
+constexpr std::uint64_t indicator_interval = 50;
 constexpr double servo_rate_factor = 4; ///< the sides may move so much faster than the top
 } // namespace
 
@@ -44,11 +44,7 @@ const ShearMode simple_shear_mode{
     },
 };
 
-void ShearStage::begin(const StageContext &c) const
-{
-  c.state.loading.direction = direction;
-  c.state.pace.rate = initial_rate(c.motion, strain_rate);
-}
+void ShearStage::begin(const StageContext &c) const { c.state.loading.direction = direction; }
 
 void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
 {
@@ -60,6 +56,7 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
       path.cell_strain.setZero();
       path.gamma = 0;
     }
+  c.state.pace.rate = isostat::strain_rate(c.motion, strain_rate, c.assembly, path.p0());
   path.lateral_target = -stress.diagonal();
   c.state.loading.window_load = load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)});
 }
@@ -67,13 +64,12 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {
   DriveState &state = c.state;
-  if (state.place.steps % rate_interval == 0)
-    update_rate(c.motion, strain_rate, c.assembly, seen.p, state.path.p0(), state.pace);
+  if (state.place.steps % indicator_interval == 0)
+    state.pace.indicator = quasi_static_indicator(c.assembly, seen.p, state.path.p0(), state.pace.rate);
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step;
   update_slope(loading, present, state.place.steps);
-  loading.signed_rate =
-      next_rate(loading, state.pace.rate, present, load_limit(state), ramp_steps(c.assembly) * dt, dt);
+  loading.signed_rate = next_rate(loading, state.pace.rate, present, load_limit(state), ramp_time(c.assembly), dt);
   loading.strain += loading.signed_rate * dt;
   return loading.signed_rate * dt;
 }

@@ -25,7 +25,7 @@ Mat3 shear(double size)
 TEST(RveElement, EachTrialStartsFromTheCommittedState)
 {
   RveElement tried = element(true), straight = element(true);
-  for (int k = 0; k < 60; ++k) // beyond the 500 steps after which the way back is shortened
+  for (int k = 0; k < 80; ++k) // beyond the 500 steps after which the way back is shortened
     {
       const Mat3 h = shear(2e-5 * std::sin(0.9 * k));
       tried.trial(shear(1e-4));

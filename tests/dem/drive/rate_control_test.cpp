@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/rate_control.hpp"
 
+#include "base/error.hpp"
 #include "dem/measure/unbalanced.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"
@@ -52,71 +53,23 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
     }
 }
 
-TEST(RateControl, FixedRateStays)
+TEST(StrainRate, IsThatOfTheStageOfTheMotionOrOfTheInertialNumber)
 {
-  Assembly assembly(test::specimen(500, 10));
-  assembly.settings.time_step = dt;
-  assembly.compute_forces();
+  const Assembly assembly(test::specimen(500, 10));
   MotionSpec motion;
+  for (const double wanted : {5e-4, 1e-6})
+    for (const double p0 : {200e3, 5e3})
+      {
+        motion.inertial_number = wanted;
+        const double rate = strain_rate(motion, {}, assembly, p0);
+        EXPECT_CLOSE_BECAUSE(inertial_number(rate, assembly.d50(), assembly.packing().density, p0), wanted, 1e-14,
+                             "round-off of a root and its square");
+      }
+  EXPECT_THROW(strain_rate(motion, {}, assembly, 0), RunFailure);
   motion.strain_rate = 0.7;
-  Pace pace;
-  pace.rate = initial_rate(motion);
-  EXPECT_EQ(pace.rate, 0.7);
-  update_rate(motion, {}, assembly, 200e3, 200e3, pace);
-  EXPECT_EQ(pace.rate, 0.7);
-  EXPECT_GT(pace.indicator, 0);
-  EXPECT_EQ(initial_rate(motion, 0.3), 0.3); // the stage's own rate goes before
-}
-
-TEST(RateControl, FollowsTheToleranceWithinFloorAndCeiling)
-{
-  Assembly assembly(test::specimen(500, 10));
-  assembly.settings.time_step = dt;
-  assembly.compute_forces(); // at rest: the indicator is far below any tolerance
-  MotionSpec motion;
-  motion.rate_floor = 0.1;
-  motion.rate_ceiling = 1.0;
-  Pace pace;
-  pace.rate = initial_rate(motion);
-  EXPECT_EQ(pace.rate, 0.1);
-  for (int k = 0; k < 50; ++k)
-    update_rate(motion, {}, assembly, 200e3, 200e3, pace);
-  EXPECT_EQ(pace.rate, 1.0);
-  motion.quasi_static_tolerance = 1e-9;
-  for (int k = 0; k < 50; ++k)
-    update_rate(motion, {}, assembly, 200e3, 200e3, pace);
-  EXPECT_EQ(pace.rate, 0.1);
-}
-
-TEST(RateControl, KeepsAnInertialNumberAtAnyStress)
-{
-  Assembly assembly(test::specimen(500, 10));
-  assembly.settings.time_step = dt;
-  assembly.compute_forces();
-  const double d50 = assembly.d50(), density = assembly.packing().density, p0 = 200e3;
-  MotionSpec motion;
-  motion.inertial_number = 1e-4;
-  Pace pace;
-  pace.rate = initial_rate(motion);
-  for (const double p : {200e3, 350e3, 20e3, 10e3, 200e3}) // up and down, at once: no memory, no floor or ceiling
-    {
-      update_rate(motion, {}, assembly, p, p0, pace);
-      EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, p), 1e-4, 1e-16,
-                          "round-off of a root and its square");
-      EXPECT_GT(pace.indicator, 0);
-    }
-  for (const double p : {5e3, 100.0, 0.0, -1e3}) // below 5 % of p0 the rate is that of 5 %
-    {
-      update_rate(motion, {}, assembly, p, p0, pace);
-      EXPECT_NEAR_BECAUSE(inertial_number(pace.rate, d50, density, 0.05 * p0), 1e-4, 1e-16,
-                          "round-off of a root and its square");
-    }
-  motion.inertial_number = 1e-2;
-  update_rate(motion, {}, assembly, p0, p0, pace);
-  EXPECT_GT(pace.rate, motion.rate_ceiling);
-  EXPECT_CLOSE_BECAUSE(pace.rate, 1e-2 * std::sqrt(p0 / density) / d50, 1e-9, "round-off of a root");
-  update_rate(motion, 0.3, assembly, p0, p0, pace);
-  EXPECT_EQ(pace.rate, 0.3);
+  EXPECT_EQ(strain_rate(motion, {}, assembly, 0), 0.7);
+  EXPECT_EQ(strain_rate(motion, {}, assembly, 200e3), 0.7);
+  EXPECT_EQ(strain_rate(motion, 0.3, assembly, 200e3), 0.3);
 }
 
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)

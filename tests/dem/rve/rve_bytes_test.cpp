@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements as bytes: the same bits go on, in this process and in another.
 #include "base/error.hpp"
+#include "tests/support/near.hpp"
 #include "tests/support/rve_paths.hpp"
 
 #include <cstdlib>
@@ -13,7 +14,7 @@ namespace isostat
 namespace
 {
 namespace fs = std::filesystem;
-using test::expect_same_bits, test::run;
+using test::expect_same_bits, test::run, test::simple_shear;
 
 const Snapshot &specimen() { return test::rve_specimen(); }
 } // namespace
@@ -68,6 +69,17 @@ TEST(RveProcess, BytesGoOnInAnotherProcess)
   EXPECT_EQ(there, here.grains.grains);
   fs::remove(path);
   fs::remove(path.string() + ".out");
+}
+
+TEST(Rve, BytesGoOnAtTheRateThatTheyAreGiven)
+{
+  const std::vector<std::byte> bytes = Rve(specimen(), {}).pack();
+  RveSettings slow;
+  slow.motion.inertial_number /= 10;
+  Rve usual = Rve::unpack(bytes, {}), slower = Rve::unpack(bytes, slow);
+  const std::uint64_t steps = usual.advance(simple_shear(1e-4)).steps;
+  EXPECT_NEAR_BECAUSE(static_cast<double>(slower.advance(simple_shear(1e-4)).steps) / static_cast<double>(steps), 10.0,
+                      0.1, "whole numbers of some 200 and 2,000 steps");
 }
 
 TEST(Rve, DamagedBytesAreRefused)

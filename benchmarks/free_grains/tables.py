@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gathers the runs that are done: one table for each question, written as CSV."""
+import csv
+
+import numpy as np
+
+from free_grains import plan
+from speed_error import paths
+
+REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
+# two-sided 95 % by number of values
+STUDENT = {2: 12.7, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 8: 2.36, 10: 2.26, 12: 2.20, 15: 2.14, 20: 2.09}
+
+
+def mean_and_interval(values):
+    """Mean, and half the width of its 95 % interval."""
+    values = np.asarray([v for v in values if np.isfinite(v)], dtype=float)
+    if len(values) < 2:
+        return (values.mean() if len(values) else np.nan), np.nan
+    t = STUDENT[max(n for n in STUDENT if n <= len(values))]
+    return values.mean(), t * values.std(ddof=1) / np.sqrt(len(values))
+
+
+def standard_error(values):
+    values = np.asarray(values, dtype=float)
+    return values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+
+
+class Cyclic:
+    """What one cyclic test says."""
+
+    def __init__(self, history):
+        onset = history.onset
+        rows = history.reversal_rows
+        self.cycles = history.reversals[onset] / 2 if onset is not None else np.nan
+        self.redundancy = history.IR[onset] if onset is not None else np.nan
+        self.steps = history.step[onset if onset is not None else -1] - history.step[0]
+        self.p = np.array([history.p[rows[k - 1]] / 1e3 if len(rows) >= k else np.nan for k in REVERSALS])
+        self.path = paths.cyclic_path(history, 10)
+
+
+class Results:
+    def __init__(self, store, runs):
+        self.store = store
+        self.runs = [run for run in runs if run.kind != "prepare" and store.is_done(run)]
+        self.cyclic = {}
+        for run in self.runs:
+            if run.kind == "cyclic":
+                self.cyclic.setdefault((run.domain, run.friction, run.setting), {})[run.seed] = Cyclic(
+                    paths.History(store.folder(run)))
+
+    def of(self, kind):
+        return [run for run in self.runs if run.kind == kind]
+
+    def tables(self):
+        return {"cycles": self.cycles_table(), "path": self.path_table(), "hold": self.hold_table(),
+                "liquefied": self.liquefied_table()}
+
+    def differences(self, key, reference, value):
+        """value(test) less that of the reference, seed by seed where both are there."""
+        tests, others = self.cyclic[key], self.cyclic.get(reference, {})
+        return [value(tests[s]) - value(others[s]) for s in tests if s in others]
+
+    def cycles_table(self):
+        header = ["domain", "preparation", "setting", "seeds", "liquefied", "cycles", "standard error",
+                  "cycles less those of the default", "half 95 % interval", "steps to the onset", "I_R at onset"]
+        header += [f"p' at reversal {k} less that of the default (kPa)" for k in REVERSALS]
+        rows = []
+        for key, tests in self.cyclic.items():
+            domain, friction, setting = key
+            reference = domain, friction, plan.DEFAULT
+            cycles = [t.cycles for t in tests.values() if np.isfinite(t.cycles)]
+            stress = np.array([d for d in self.differences(key, reference, lambda t: t.p)])
+            rows.append([domain, friction, setting.label, len(tests), len(cycles), np.mean(cycles),
+                         standard_error(cycles),
+                         *mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
+                         np.mean([t.steps for t in tests.values()]),
+                         np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0)])
+        return header, rows
+
+    def path_table(self):
+        """Largest distance in the p'-q plane over p0': of the cyclic path to reversal 10, of the monotonic one."""
+        rows = []
+        for domain, friction, setting in self.cyclic:
+            for reference in (plan.SLOW, plan.SLOWEST):
+                others = self.cyclic.get((domain, friction, reference), {})
+                tests = self.cyclic[domain, friction, setting]
+                found = [paths.deviation(tests[s].path, others[s].path) for s in tests if s in others]
+                found = [100 * d[1] for d in found if d]
+                if found and setting is not reference:
+                    rows.append(["cyclic to reversal 10", domain, friction, setting.label, reference.label, len(found),
+                                 np.mean(found), standard_error(found)])
+        histories = {(run.setting, run.seed): paths.History(self.store.folder(run)) for run in self.of("monotonic")}
+        for setting, reference in ((plan.DEFAULT, plan.SLOW), (plan.DEFAULT, plan.SLOWEST), (plan.SLOW, plan.SLOWEST)):
+            for strain in (0.001, 0.002, 0.005):
+                found = [paths.deviation(paths.monotonic_path(histories[setting, s], strain),
+                                         paths.monotonic_path(histories[reference, s], strain))
+                         for (some, s) in histories if some == setting and (reference, s) in histories]
+                found = [100 * d[1] for d in found if d]
+                if found:
+                    rows.append([f"monotonic to {100 * strain:g} %", "rigid-box", plan.LOOSE, setting.label,
+                                 reference.label, len(found), np.mean(found), standard_error(found)])
+        return ["path", "domain", "preparation", "setting", "reference", "seeds",
+                "largest distance (% of p0')", "standard error"], rows
+
+    def held(self, run):
+        """Steps since loading stopped, p' lost (kPa), kinetic energy (J), unbalanced-force ratio; p' at first (kPa)."""
+        h = paths.History(self.store.folder(run))
+        rows = np.flatnonzero(h.stage == h.stage[-1])
+        return (h.step[rows] - h.step[rows[0]], (h.p[rows[0]] - h.p[rows]) / 1e3, h.E_kin[rows], h.unbalanced[rows],
+                h.p[rows[0]] / 1e3)
+
+    def hold_table(self):
+        rows = []
+        for run in self.of("hold") + self.of("hold-late"):
+            steps, lost, energy, unbalanced, p = self.held(run)
+            late = min(np.searchsorted(steps, 10_000), len(steps) - 1)  # a hold ends when all is at rest
+            rows.append(["after liquefaction" if run.kind == "hold-late" else "after 5 cycles", run.domain,
+                         run.setting.label, run.seed, p, lost[late], unbalanced[late], lost[-1], unbalanced[-1],
+                         energy[-1]])
+        return ["held", "domain", "setting", "seed", "p' when loading stopped (kPa)", "p' lost in 1e4 steps (kPa)",
+                "unbalanced force after 1e4 steps", "p' lost in 1e5 steps (kPa)", "unbalanced force after 1e5 steps",
+                "kinetic energy after 1e5 steps (J)"], rows
+
+    def liquefied_table(self):
+        """Means over specimens; what lies between the onset and the last reversal counts by the strain travelled."""
+        header = ["setting", "seeds", "steps per 1 % of strain", "I_R, least of a half cycle", "I_R", "Z", "Z_m",
+                  "share of sliding contacts", "share of rolling contacts", "strain travelled (%)"]
+        rows = []
+        for setting in (plan.DEFAULT, plan.SLOW):
+            found = [liquefied(paths.History(self.store.folder(run))) for run in self.of("liquefied")
+                     if run.setting == setting]
+            found = [f for f in found if f]
+            if found:
+                rows.append([setting.label, len(found), *np.mean(found, axis=0)])
+        return header, rows
+
+
+def liquefied(history):
+    onset = history.onset
+    if onset is None:
+        return None
+    after = slice(onset, None)
+    travelled = np.abs(np.gradient(history.eps_y[after])) + 1e-15
+    strain = np.abs(np.diff(history.eps_y[after])).sum()
+    ends = [row for row in history.reversal_rows if row >= onset]
+    least = [history.IR[a:b].min() for a, b in zip(ends, ends[1:])]
+
+    def mean(column):
+        return np.average(column[after], weights=travelled)
+
+    return [(history.step[-1] - history.step[onset]) / strain / 100, np.mean(least), mean(history.IR), mean(history.Z),
+            mean(history.Zm), mean(history.f_S), mean(history.f_R), 100 * strain]
+
+
+def write_csv(path, header, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(header)
+        out.writerows([[f"{v:.4g}" if isinstance(v, float) else v for v in row] for row in rows])
