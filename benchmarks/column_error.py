@@ -36,8 +36,10 @@ LEVELS = {  # name: amplitude, duration, ramp
     "moderate": ("0.06 g", "4 s", "0.5 s"),
     "strong": ("0.15 g", "2 s", "0.5 s"),
 }
-MOTION = {"damping": 0.2, "free_grain_damping": 0.1, "inertial_number": 4e-4}  # the defaults of the schema
-PLACES = {"damping": -7, "free_grain_damping": -6, "inertial_number": -4}  # in the words of a recipe
+MOTION = {"contact_damping": 0.05, "damping": 0.1, "free_grain_damping": 0.1,
+          "inertial_number": 4e-4}  # the defaults of the schema
+PLACES = {"contact_damping": -8, "damping": -7, "free_grain_damping": -6,
+          "inertial_number": -4}  # in the words of a recipe
 SLOW = {"inertial_number": 4e-5, "min_steps": 60}
 NUMERICS = [  # family, label, what differs from the defaults; time step in ms
     ("default", "default", {}),
@@ -46,7 +48,7 @@ NUMERICS = [  # family, label, what differs from the defaults; time step in ms
     ("rate", "I 1e-3", {"inertial_number": 1e-3}),
     ("min_steps", "min_steps 10", {"min_steps": 10}),
     ("min_steps", "min_steps 40", {"min_steps": 40}),
-    ("damping", "damping 0.1", {"damping": 0.1}),
+    ("damping", "damping 0.2, no dashpots", {"damping": 0.2, "contact_damping": 0.0}),
     ("damping", "damping 0.01", {"damping": 0.01}),
     ("free", "free grains left alone", {"free_grain_damping": 0.0}),
     ("same", "motion 1 ppm larger", {"factor": 1.000001}),

@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 struct Options
 {
   std::string packing, exported, times;
-  double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2, free_grain_damping = 0;
+  double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2, contact_damping = 0,
+         free_grain_damping = 0;
   std::size_t copies = 1;
   bool carry_grains = false;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
@@ -85,6 +86,7 @@ void measure(const Options &options)
   assembly.settings.time_step = options.time_step;
   assembly.settings.threads = options.threads;
   assembly.settings.damping = options.damping;
+  assembly.settings.contact_damping = options.contact_damping;
   assembly.settings.free_grain_damping = options.free_grain_damping;
   assembly.settings.carry_grains = options.carry_grains;
   const RigidBox reference = assembly.box();
@@ -146,6 +148,7 @@ int main(int argc, char **argv)
   line.add_option("--time-step", options.time_step, "s");
   line.add_option("--friction", options.friction_degrees, "degrees");
   line.add_option("--damping", options.damping, "local damping");
+  line.add_option("--contact-damping", options.contact_damping, "share of critical damping of dashpots in contacts");
   line.add_option("--free-grain-damping", options.free_grain_damping, "share that free grains lose");
   line.add_flag("--carry-grains", options.carry_grains, "grains share the homogeneous motion of the walls");
   line.add_option("--steps", options.steps, "timed steps per repeat");

@@ -27,7 +27,7 @@ TOP = {
 
 # Library -> its parts, each with the parts it may include besides itself. A part is a folder or a file (without ending)
 # below the library; a file belongs to the longest name that fits.
-LAW = {"contact/history", "contact/law"}  # what a contact remembers; the interface of laws
+LAW = {"contact/history", "contact/law", "contact/dashpot"}  # what a contact remembers; the interface of laws
 BY_NAME = LAW | {"contact/law_parameters"}
 GRAINS = LAW | {"domain", "state"}
 STEP = GRAINS | {"contact", "neighbours", "motion", "measure", "assembly"}
@@ -45,6 +45,7 @@ INNER = {
     "dem": {
         "domain": set(),
         "contact/history": set(),
+        "contact/dashpot": set(),
         "contact/law": {"contact/history"},
         "contact/law_parameters": LAW,
         "state": LAW | {"domain"},

@@ -37,8 +37,8 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
                                    {"sigma_z", "Pa"},
                                    {"sigma1_angle", "deg"}});
   if (scene.output.energy)
-    for (const char *name :
-         {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "D_free_grains", "created", "residual"})
+    for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "D_contact_damping",
+                             "D_free_grains", "created", "residual"})
       columns.push_back({name, "J"});
   return columns;
 }
@@ -71,8 +71,8 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
   if (scene.output.energy)
     {
       const EnergyBalance e = assembly.energy();
-      row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.free_grains, e.created,
-                             e.residual()});
+      row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.contact_damping,
+                             e.free_grains, e.created, e.residual()});
     }
   return row;
 }

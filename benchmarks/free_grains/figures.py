@@ -11,13 +11,11 @@ from free_grains import plan, tables  # noqa: E402
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False}
 SERIES = (  # label, colour, marker, settings
-    ("default: carried, free grains damped", "#0072b2", "o", (plan.NUMERICS[0], plan.DEFAULT, plan.SLOW, plan.SLOWEST)),
+    ("default", "#0072b2", "o", (plan.NUMERICS[0], plan.DEFAULT, plan.SLOW, plan.SLOWEST)),
+    ("local damping 0.2 instead of dashpots", "#cc79a7", "v", plan.LOCAL_SETTINGS),
     ("walls push", "#009e73", "^", plan.PUSHED),
     ("free grains left alone", "#e69f00", "D", plan.ALONE_SETTINGS),
-    ("walls push, free grains left alone", "#d55e00", "s", plan.OLD_SETTINGS))
-DAMPINGS = (("I = 4e-4", "#0072b2", "o", {0.01: "damping 0.01", 0.1: "damping / 2", 0.2: "default", 0.4: "damping x 2",
-                                          0.7: "damping 0.7"}),
-            ("I = 4e-5", "#d55e00", "s", {0.01: "damping 0.01, I / 10", 0.2: "I / 10", 0.7: "damping 0.7, I / 10"}))
+    ("all three", "#d55e00", "s", plan.OLD_SETTINGS))
 
 
 def panels(n, **more):
@@ -46,12 +44,12 @@ def draw_cycles(results, path):
     """Cycles against the time steps of a test: mean of the default plus the mean of the paired differences."""
     figure, axes = panels(len(plan.DOMAINS), sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
-        reference = domain, plan.LOOSE, plan.DEFAULT
+        reference = domain, plan.GRAINS, plan.DEFAULT
         if reference not in results.cyclic:
             continue
         base = np.nanmean([t.cycles for t in results.cyclic[reference].values()])
         for label, colour, marker, settings in SERIES:
-            keys = [(domain, plan.LOOSE, setting) for setting in settings]
+            keys = [(domain, plan.GRAINS, setting) for setting in settings]
             keys = [key for key in keys if len(results.cyclic.get(key, {})) > 1]
             steps = [np.mean([t.steps for t in results.cyclic[key].values()]) for key in keys]
             found = [tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
@@ -67,15 +65,15 @@ def draw_cycles(results, path):
 
 
 def draw_damping(results, path):
-    """Cycles less those of the default on the same specimens, against local damping."""
-    labels = {setting.label: setting for setting in (*plan.DAMPING, plan.DEFAULT, plan.SLOW)}
+    """Cycles less those of the default on the same specimens, against local damping beside the dashpots."""
+    both = {**plan.DAMPING, 0.1: [plan.DEFAULT, plan.SLOW]}
     figure, axes = panels(len(plan.DOMAINS), sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
-        reference = domain, plan.LOOSE, plan.DEFAULT
-        for label, colour, marker, of in DAMPINGS:
-            rows = [(d, *tables.mean_and_interval(results.differences((domain, plan.LOOSE, labels[name]), reference,
-                                                                      lambda t: t.cycles)))
-                    for d, name in of.items() if (domain, plan.LOOSE, labels[name]) in results.cyclic]
+        reference = domain, plan.GRAINS, plan.DEFAULT
+        for rate, (label, colour, marker) in enumerate((("I = 4e-4", "#0072b2", "o"), ("I = 4e-5", "#d55e00", "s"))):
+            keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
+            rows = [(damping, *tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)))
+                    for damping, key in keys.items() if key in results.cyclic]
             if rows:
                 damping, mean, half = np.array(rows).T
                 panel.errorbar(damping, mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)

@@ -4,9 +4,8 @@ import dataclasses
 
 from speed_error import plan as speed_plan
 
-GRAINS = 2000
+GRAINS, MANY = 2000, 10_000
 DOMAINS = ("rigid-box", "periodic-cell")
-LOOSE, DENSE = "10 deg", "9 deg"  # friction during compression
 HELD_STEPS = 100_000
 
 
@@ -30,22 +29,21 @@ def of(label, steps=2.5e4, **motion):
 DEFAULT = of("default")
 SLOW = of("I / 10", 2e5, inertial_number=4e-5)
 SLOWEST = of("I / 100", 2e6, inertial_number=4e-6)
-ALONE = {"free_grain_damping": 0}
-OLD = {"free_grain_damping": 0, "carry_grains": "false"}
-ALONE_SETTINGS = [of("free grains left alone", **ALONE),
-                  of("free grains left alone, I / 10", 2e5, inertial_number=4e-5, **ALONE),
-                  of("free grains left alone, I / 40", 6e5, inertial_number=1e-5, **ALONE)]
-PUSHED = [of("walls push", carry_grains="false"),
-          of("walls push, I / 10", 2e5, inertial_number=4e-5, carry_grains="false")]
-OLD_SETTINGS = [of("left alone, walls push", **OLD),
-                of("left alone, walls push, I / 10", 2e5, inertial_number=4e-5, **OLD),
-                of("left alone, walls push, I / 40", 6e5, inertial_number=1e-5, **OLD)]
+LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": "false"}
+
+
+def at_two_rates(label, **motion):
+    return [of(label, **motion), of(f"{label}, I / 10", 2e5, inertial_number=4e-5, **motion)]
+
+
+LOCAL_SETTINGS = at_two_rates("local damping alone", **LOCAL)
+ALONE_SETTINGS = at_two_rates("free grains left alone", **ALONE)
+PUSHED = at_two_rates("walls push", **PUSHING)
+OLD_SETTINGS = at_two_rates("all three", **LOCAL, **ALONE, **PUSHING)
 NUMERICS = [of("I x 2.5", inertial_number=1e-3), of("time step / 2", 5e4, time_step_safety=0.4),
-            of("time step / 4", 1e5, time_step_safety=0.2),
-            of("c / 2", free_grain_damping=0.05), of("c x 2", free_grain_damping=0.2)]
-DAMPING = [of("damping / 2", damping=0.1), of("damping x 2", damping=0.4), of("damping 0.01", damping=0.01),
-           of("damping 0.7", damping=0.7), of("damping 0.01, I / 10", 2e5, damping=0.01, inertial_number=4e-5),
-           of("damping 0.7, I / 10", 2e5, damping=0.7, inertial_number=4e-5)]
+            of("c / 2", free_grain_damping=0.05), of("c x 2", free_grain_damping=0.2),
+            of("beta / 2", contact_damping=0.025), of("beta x 2", contact_damping=0.1)]
+DAMPING = {value: at_two_rates(f"local damping {value:g}", damping=value) for value in (0, 0.05, 0.2, 0.4)}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,22 +54,23 @@ class Run:
     seed: int
     domain: str
     setting: Setting = DEFAULT
-    friction: str = LOOSE
+    grains: int = GRAINS
 
     @property
     def name(self):
         what = "specimen" if self.kind == "prepare" else f"{self.kind}_{self.setting.name}"
-        return f"{what}_{self.domain}_{self.friction[:-4]}deg_s{self.seed}"
+        return f"{what}_{self.domain}_n{self.grains}_s{self.seed}"
 
     @property
     def specimen(self):
-        return self.domain, self.friction, self.seed
+        return self.domain, self.grains, self.seed
 
     def scene(self):
-        text = speed_plan.SCENE.format(title=self.name, grains=GRAINS, seed=self.seed,
-                                       edge=10 * (GRAINS / 10000) ** (1 / 3), stage=self.stages(), record_strain="1e-4",
+        text = speed_plan.SCENE.format(title=self.name, grains=self.grains, seed=self.seed,
+                                       edge=10 * (self.grains / 10000) ** (1 / 3), stage=self.stages(),
+                                       record_strain="1e-4",
                                        motion="\n".join(f"{key} = {value}" for key, value in self.setting.motion))
-        text = text.replace("rigid-box", self.domain).replace('"10 deg"', f'"{self.friction}"')
+        text = text.replace("rigid-box", self.domain)
         return text + "record_steps = 500\n" if self.kind.startswith("hold") else text
 
     def stages(self):
@@ -87,13 +86,15 @@ class Run:
     def estimated_seconds(self):
         of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.5 * self.setting.steps,
                    "liquefied": 18 * self.setting.steps, "hold": HELD_STEPS, "hold-late": 4e5}
-        return 4.5e-5 * of_kind[self.kind]
+        return 4.5e-5 * of_kind[self.kind] * self.grains / GRAINS
 
 
 def runs(n_seeds):
     """Specimens first, then what the limit needs, so that a campaign cut short has it."""
-    seeds, few = range(1, n_seeds + 1), range(1, min(n_seeds, 6) + 1)
+    seeds, half, few, three = (range(1, min(n_seeds, n) + 1) for n in (n_seeds, 10, 6, 3))
+    box = DOMAINS[:1]
     result = [Run("prepare", s, domain) for domain in DOMAINS for s in seeds]
+    result += [Run("prepare", s, "rigid-box", grains=MANY) for s in three]
 
     def cyclic(settings, some=seeds, domains=DOMAINS, **more):
         result.extend(Run("cyclic", s, domain, setting, **more)
@@ -101,16 +102,15 @@ def runs(n_seeds):
 
     cyclic([DEFAULT, SLOW])
     cyclic(NUMERICS)
+    cyclic([DEFAULT, SLOW, *LOCAL_SETTINGS], three, box, grains=MANY)
     cyclic([SLOWEST], few)
-    result += [Run("liquefied", s, "rigid-box", setting) for s in few[:4] for setting in (DEFAULT, SLOW)]
-    cyclic([setting for setting in DAMPING if "I / 10" not in setting.label])
-    cyclic(ALONE_SETTINGS[:2] + OLD_SETTINGS[:2])
-    cyclic(PUSHED, domains=DOMAINS[:1])
-    result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in few[:3] for domain in DOMAINS
-               for setting in (DEFAULT, ALONE_SETTINGS[0])]
+    cyclic(LOCAL_SETTINGS + OLD_SETTINGS, half)
     result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in (DEFAULT, SLOW, SLOWEST)]
-    cyclic([setting for setting in DAMPING if "I / 10" in setting.label], few)
-    result += [Run("prepare", s, domain, friction=DENSE) for domain in DOMAINS for s in seeds]
-    cyclic([DEFAULT, SLOW, OLD_SETTINGS[0]], friction=DENSE)
-    cyclic([ALONE_SETTINGS[2], OLD_SETTINGS[2]], few[:3])
+    result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
+               for setting in (DEFAULT, ALONE_SETTINGS[0])]
+    result += [Run("liquefied", s, "rigid-box", setting) for s in three for setting in (DEFAULT, SLOW)]
+    cyclic([fast for fast, _ in DAMPING.values()], half)
+    cyclic(ALONE_SETTINGS, half)
+    cyclic(PUSHED, half, box)
+    cyclic([slow for _, slow in DAMPING.values()], few)
     return result

@@ -46,7 +46,7 @@ class Results:
         self.cyclic = {}
         for run in self.runs:
             if run.kind == "cyclic":
-                self.cyclic.setdefault((run.domain, run.friction, run.setting), {})[run.seed] = Cyclic(
+                self.cyclic.setdefault((run.domain, run.grains, run.setting), {})[run.seed] = Cyclic(
                     paths.History(store.folder(run)))
 
     def of(self, kind):
@@ -62,16 +62,16 @@ class Results:
         return [value(tests[s]) - value(others[s]) for s in tests if s in others]
 
     def cycles_table(self):
-        header = ["domain", "preparation", "setting", "seeds", "liquefied", "cycles", "standard error",
+        header = ["domain", "grains", "setting", "seeds", "liquefied", "cycles", "standard error",
                   "cycles less those of the default", "half 95 % interval", "steps to the onset", "I_R at onset"]
         header += [f"p' at reversal {k} less that of the default (kPa)" for k in REVERSALS]
         rows = []
         for key, tests in self.cyclic.items():
-            domain, friction, setting = key
-            reference = domain, friction, plan.DEFAULT
+            domain, grains, setting = key
+            reference = domain, grains, plan.DEFAULT
             cycles = [t.cycles for t in tests.values() if np.isfinite(t.cycles)]
             stress = np.array([d for d in self.differences(key, reference, lambda t: t.p)])
-            rows.append([domain, friction, setting.label, len(tests), len(cycles), np.mean(cycles),
+            rows.append([domain, grains, setting.label, len(tests), len(cycles), np.mean(cycles),
                          standard_error(cycles),
                          *mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
                          np.mean([t.steps for t in tests.values()]),
@@ -81,14 +81,14 @@ class Results:
     def path_table(self):
         """Largest distance in the p'-q plane over p0': of the cyclic path to reversal 10, of the monotonic one."""
         rows = []
-        for domain, friction, setting in self.cyclic:
+        for domain, grains, setting in self.cyclic:
             for reference in (plan.SLOW, plan.SLOWEST):
-                others = self.cyclic.get((domain, friction, reference), {})
-                tests = self.cyclic[domain, friction, setting]
+                others = self.cyclic.get((domain, grains, reference), {})
+                tests = self.cyclic[domain, grains, setting]
                 found = [paths.deviation(tests[s].path, others[s].path) for s in tests if s in others]
                 found = [100 * d[1] for d in found if d]
                 if found and setting is not reference:
-                    rows.append(["cyclic to reversal 10", domain, friction, setting.label, reference.label, len(found),
+                    rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
                                  np.mean(found), standard_error(found)])
         histories = {(run.setting, run.seed): paths.History(self.store.folder(run)) for run in self.of("monotonic")}
         for setting, reference in ((plan.DEFAULT, plan.SLOW), (plan.DEFAULT, plan.SLOWEST), (plan.SLOW, plan.SLOWEST)):
@@ -98,9 +98,9 @@ class Results:
                          for (some, s) in histories if some == setting and (reference, s) in histories]
                 found = [100 * d[1] for d in found if d]
                 if found:
-                    rows.append([f"monotonic to {100 * strain:g} %", "rigid-box", plan.LOOSE, setting.label,
+                    rows.append([f"monotonic to {100 * strain:g} %", "rigid-box", plan.GRAINS, setting.label,
                                  reference.label, len(found), np.mean(found), standard_error(found)])
-        return ["path", "domain", "preparation", "setting", "reference", "seeds",
+        return ["path", "domain", "grains", "setting", "reference", "seeds",
                 "largest distance (% of p0')", "standard error"], rows
 
     def held(self, run):

@@ -124,9 +124,9 @@ bring. Written by `benchmarks/speed_error.py`; how to run it is in
 
 Undrained tests on Karlsruhe fine sand, prepared at 10 deg and 200 kPa: cyclic with q_amp = 60 kPa to {after} reversals
 after liquefaction (or a strain of 3 %), monotonic compression to {strain:g} %. One factor at a time around the default:
-inertial number 4e-4 (some 8 1/s), time step 0.8 of the critical one, damping 0.2, damping of free grains 0.1, grains
-carried with the walls, N = {base:,}. Slow settings end with the onset and at a strain of {longer_strain:g} %. The
-default was run on {specimens}, the other settings on as many of the same as the tables say.
+inertial number 4e-4 (some 8 1/s), time step 0.8 of the critical one, dashpots 0.05, local damping 0.1, damping of free
+grains 0.1, grains carried with the walls, N = {base:,}. Slow settings end with the onset and at a strain of
+{longer_strain:g} %. The default was run on {specimens}, the other settings on as many of the same as the tables say.
 
 **Errors** are distances in the p'-q plane over p0', against a run of the same specimen with I = {slow_number} and half
 the time step, {reference_step} of the critical one: cyclic at equal q, point by point (1 kPa apart, and at the

@@ -27,7 +27,7 @@ void ContactForces::evaluate_pairs(std::size_t chunk, const Input &in)
 {
   const CellMotion motion{in.domain.cell ? in.domain.cell->strain_step : Mat3::Zero(), &virial_};
   add_contact_forces(in.law, in.packing, in.settings.time_step, list_, chunk, action_.data(),
-                     in.settings.measure_energy ? &dissipation_ : nullptr, &motion);
+                     in.settings.measure_energy ? &dissipation_ : nullptr, &motion, in.settings.contact_damping);
 }
 
 void ContactForces::evaluate(const Input &in)

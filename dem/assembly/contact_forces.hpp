@@ -11,6 +11,7 @@ namespace isostat
 struct StepSettings
 {
   double time_step = 0;          ///< s; must be positive when grains are moved
+  double contact_damping = 0;    ///< beta of dashpots in contacts, dem/contact/dashpot.hpp [-], [0, 1]
   double damping = 0.2;          ///< local damping [-], [0, 1)
   double free_grain_damping = 0; ///< share of their velocity that free grains lose, see FreeGrainDamping [-], [0, 1]
   bool carry_grains = false;     ///< in a box: they share the homogeneous motion of its walls, see CarriedStep

@@ -24,6 +24,7 @@ void EnergyMeter::add_dissipation(const DissipationPerPair &dissipation)
       tally.rolling += dissipation.rolling[p];
       tally.released += dissipation.released[p];
       tally.created += dissipation.created[p];
+      tally.contact_damping += dissipation.viscous[p];
     }
 }
 

@@ -79,10 +79,10 @@ HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Tripl
 ///
 ///     Numbers                    its parameters as the lanes use them: plain doubles
 ///     n_components               of its history; 0: no memory. With memory its first three are n', kept by the law
-///     is_central                 only a normal force: velocities and spins are not read, Energy is not asked for
-///     normal_force(numbers, pairs) -> V                                        of a central law
+///     is_central                 only a normal force, without history; Energy asks for what the dashpot takes alone
+///     normal_stiffness(numbers, pairs) -> V, normal_force(numbers, pairs) -> V          of a central law
 ///     Contact                    of any other: the pairs, made as Contact(numbers, pairs, history), with
-///         fn                     normal force
+///         kn, fn                 normal stiffness and force
 ///         shear_force<Energy>(history, view, pair)   fs on the second grain; then history holds n and what else is new
 ///         moment<Energy>(history, view, pair)        M on it, both acting at the contact point; with Energy they store
 ///                                what they dissipate in view.sliding, .rolling, .created at `pair`
@@ -90,7 +90,8 @@ HWY_INLINE V plastic_work(const Triple &before, const Triple &trial, const Tripl
 ///
 /// all HWY_INLINE: the loop and its law become one function. A struct of several triples as a result would go through
 /// memory, which is why a Contact is asked for one after the other.
-template <typename Law, bool Energy, bool Periodic>
+/// Viscous: with a dashpot in each contact (dem/contact/dashpot.hpp).
+template <typename Law, bool Energy, bool Periodic, bool Viscous>
 struct Loop
 {
   using Numbers = typename Law::Numbers;
@@ -135,6 +136,49 @@ struct Loop
     add(5, force.x, b.y), add(5, force.y, b.x);
   }
 
+  /// 1/moment of inertia of both grains.
+  struct Inertia
+  {
+    V first, second;
+  };
+
+  /// Sets radii, relative velocity and spins of the pairs, as far as they are needed.   @return set where Viscous
+  static HWY_INLINE Inertia load_motion(const LoopView &k, std::size_t pair, const Records &x1, const Triple &branch,
+                                        Pairs &p)
+  {
+    if constexpr (Law::is_central && !Viscous)
+      {
+        p.r1 = transposed(x1).w;
+        p.r2 = hn::Sub(p.reach, p.r1);
+        return {p.r1, p.r2}; // not looked at
+      }
+    const Quad moving = transposed(
+        differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
+    p.dv = moving.xyz;
+    if constexpr (Periodic)
+      p.dv = with_strain(k, p.dv, branch);
+    p.r1 = moving.w;
+    p.r2 = hn::Sub(p.reach, p.r1);
+    const Quad spin1 = transposed(load_records(k.spin, k.first + pair)),
+               spin2 = transposed(load_records(k.spin, k.second + pair));
+    p.w1 = spin1.xyz, p.w2 = spin2.xyz;
+    return {spin1.w, spin2.w};
+  }
+
+  /// fn less dashpot_force(); 0 where nothing touches.
+  static HWY_INLINE V damped(const LoopView &k, const Pairs &p, const Inertia &inverse, V kn, V fn, std::size_t pair)
+  {
+    const D d;
+    const V squares1 = hn::Mul(p.r1, p.r1), squares2 = hn::Mul(p.r2, p.r2);
+    const V inverse_mass = // of m*, from I = 2/5 m R^2
+        hn::Mul(hn::Set(d, 0.4), hn::MulAdd(squares1, inverse.first, hn::Mul(squares2, inverse.second)));
+    const V c = hn::Mul(hn::Set(d, 2 * k.contact_damping), hn::Mul(kn, inverse_root(hn::Mul(kn, inverse_mass))));
+    const V speed = dot(p.dv, p.n), drag = hn::Min(closed(p, hn::Mul(c, speed)), fn);
+    if constexpr (Energy)
+      hn::StoreU(hn::Mul(hn::Mul(drag, speed), hn::Set(d, k.dt)), d, k.viscous + pair);
+    return hn::Sub(fn, drag);
+  }
+
   static HWY_INLINE void sub_block(const LoopView &k, const Numbers &law, std::size_t pair, std::size_t lane, double *h,
                                    bool occupied, std::uint8_t &touched)
   {
@@ -157,36 +201,31 @@ struct Loop
     // lanes that do not touch get n = 0, no stiffness and an empty history: all they add is an exact 0
     p.n = {closed(p, hn::Mul(branch.x, p.inv_distance)), closed(p, hn::Mul(branch.y, p.inv_distance)),
            closed(p, hn::Mul(branch.z, p.inv_distance))};
+    const Inertia inverse = load_motion(k, pair, x1, branch, p);
     if constexpr (Law::is_central)
       {
-        p.r1 = transposed(x1).w;
-        p.r2 = hn::Sub(p.reach, p.r1);
-        const Triple force = scaled(p.n, Law::normal_force(law, p));
+        V fn = Law::normal_force(law, p);
+        if constexpr (Viscous)
+          fn = damped(k, p, inverse, Law::normal_stiffness(law, p), fn, pair);
+        const Triple force = scaled(p.n, fn);
         if constexpr (Periodic)
           add_virial(k, lane, force, branch);
         add_forces(k.action, k.first + pair, k.target + pair, force);
-        return;
       }
     else
       {
-        const Quad moving = transposed(
-            differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));
-        p.dv = moving.xyz;
-        if constexpr (Periodic)
-          p.dv = with_strain(k, p.dv, branch);
-        p.r1 = moving.w;
-        p.w1 = transposed(load_records(k.spin, k.first + pair)).xyz;
-        p.w2 = transposed(load_records(k.spin, k.second + pair)).xyz;
-        p.r2 = hn::Sub(p.reach, p.r1);
         if constexpr (Energy)
           store_released(k, law, pair, h, p.touching, hn::Mul(p.r1, p.r2), p.reach);
         const typename Law::Contact contact(law, p, h);
+        V fn = contact.fn;
+        if constexpr (Viscous)
+          fn = damped(k, p, inverse, contact.kn, fn, pair);
         const Triple fs = contact.template shear_force<Energy>(h, k, pair);
         const Triple moment = contact.template moment<Energy>(h, k, pair);
 
         // F at the contact point: T1 = -(R1-u/2) n x fs - M,  T2 = -(R2-u/2) n x fs + M
         const V half = hn::Set(d, 0.5);
-        const Triple force = madd(p.n, contact.fn, fs), couple = cross(p.n, fs);
+        const Triple force = madd(p.n, fn, fs), couple = cross(p.n, fs);
         if constexpr (Periodic)
           add_virial(k, lane, force, branch);
         add_actions(k.action, k.first + pair, k.target + pair, force,
@@ -235,10 +274,15 @@ struct Loop
 template <typename Law>
 void run_loop(const LoopView &view, const typename Law::Numbers &numbers)
 {
-  if constexpr (!Law::is_central)
-    if (view.sliding)
-      return view.image ? Loop<Law, true, true>::run(view, numbers) : Loop<Law, true, false>::run(view, numbers);
-  view.image ? Loop<Law, false, true>::run(view, numbers) : Loop<Law, false, false>::run(view, numbers);
+  const auto run = [&]<bool Energy, bool Viscous>() {
+    view.image ? Loop<Law, Energy, true, Viscous>::run(view, numbers)
+               : Loop<Law, Energy, false, Viscous>::run(view, numbers);
+  };
+  const bool viscous = view.contact_damping > 0, energy = view.sliding && (viscous || !Law::is_central);
+  if (viscous)
+    energy ? run.template operator()<true, true>() : run.template operator()<false, true>();
+  else
+    energy ? run.template operator()<true, false>() : run.template operator()<false, false>();
 }
 } // namespace HWY_NAMESPACE
 } // namespace isostat

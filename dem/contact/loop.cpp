@@ -4,7 +4,7 @@
 namespace isostat
 {
 void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, std::size_t chunk,
-                        double *action, DissipationPerPair *dissipation, const CellMotion *cell)
+                        double *action, DissipationPerPair *dissipation, const CellMotion *cell, double contact_damping)
 {
   LoopView view{.position = packing.position.data(),
                 .velocity = packing.velocity.data(),
@@ -17,7 +17,8 @@ void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt
                 .occupied = list.occupied(),
                 .begin = list.first_block(chunk),
                 .end = list.first_block(chunk + 1),
-                .dt = dt};
+                .dt = dt,
+                .contact_damping = contact_damping};
   if (list.image())
     {
       const Mat3 &e = cell->strain_step;
@@ -36,17 +37,18 @@ void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt
       view.rolling = dissipation->rolling.data();
       view.released = dissipation->released.data();
       view.created = dissipation->created.data();
+      view.viscous = dissipation->viscous.data();
     }
   law.add_forces(view);
 }
 
 void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, double *action,
-                        DissipationPerPair *dissipation, const CellMotion *cell)
+                        DissipationPerPair *dissipation, const CellMotion *cell, double contact_damping)
 {
   if (dissipation)
     dissipation->resize(list.n_lanes());
   for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
-    add_contact_forces(law, packing, dt, list, chunk, action, dissipation, cell);
+    add_contact_forces(law, packing, dt, list, chunk, action, dissipation, cell, contact_damping);
   for (std::size_t chunk = 0; chunk < list.partition().n_chunks; ++chunk)
     add_ghosts(list, chunk, action);
 }

@@ -9,7 +9,8 @@ namespace isostat
 /// are made from it.
 struct MotionSpec
 {
-  double damping = 0.2;                   ///< local (non-viscous) damping coefficient [-]
+  double contact_damping = 0.05;          ///< beta of dashpots in contacts, dem/contact/dashpot.hpp [-]
+  double damping = 0.1;                   ///< local (non-viscous) damping coefficient [-]
   double free_grain_damping = 0.1;        ///< share of its velocity that a grain without any force loses in a step [-]
   bool carry_grains = true;               ///< grains of a box share the homogeneous motion of its walls
   double inertial_number = 4e-4;          ///< I at p0': the strain rate is I sqrt(p0'/density)/d50 [-]
@@ -19,7 +20,8 @@ struct MotionSpec
 
   bool operator==(const MotionSpec &) const = default;
 
-  ISOSTAT_FIELDS(damping, free_grain_damping, carry_grains, inertial_number, strain_rate, time_step_safety, time_step)
+  ISOSTAT_FIELDS(contact_damping, damping, free_grain_damping, carry_grains, inertial_number, strain_rate,
+                 time_step_safety, time_step)
 };
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)

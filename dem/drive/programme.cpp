@@ -108,6 +108,7 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
 {
   while (state.place.stage < programme.stages.size())
     {
+      assembly.settings.contact_damping = programme.motion.contact_damping;
       assembly.settings.damping = programme.motion.damping;
       assembly.settings.free_grain_damping = programme.motion.free_grain_damping;
       assembly.settings.carry_grains = programme.motion.carry_grains;

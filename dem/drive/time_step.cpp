@@ -21,10 +21,11 @@ void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t ste
   if (pace.time_step > 0 && step_number % interval != 0)
     return;
   const ContactLaw &law = assembly.law();
-  const double bound = critical_step_bound(law, assembly.packing(), assembly.walls(), assembly.contacts());
+  const double dashpots = assembly.settings.contact_damping;
+  const double bound = critical_step_bound(law, assembly.packing(), assembly.walls(), assembly.contacts(), dashpots);
   if (motion.time_step.value_or(0) > bound)
     if (const double critical = critical_step_by_power_iteration(law, assembly.packing(), assembly.walls(),
-                                                                 assembly.contacts(), power_iterations);
+                                                                 assembly.contacts(), power_iterations, dashpots);
         *motion.time_step > critical)
       throw RunFailure(
           fmt::format("step {}: unstable: motion.time_step = {:.4g} s exceeds the critical step {:.4g} s of "

@@ -32,18 +32,20 @@ StoredEnergy stored_energy(const Snapshot &snapshot);
 /// increments; nothing here can be found from one snapshot but kinetic and elastic.
 struct EnergyBalance
 {
-  double boundary_work = 0; ///< done by the walls on the grains; > 0 when they compress
-  double kinetic = 0;       ///< change of StoredEnergy::kinetic()
-  double elastic = 0;       ///< change of StoredEnergy::elastic()
-  double sliding = 0;       ///< dissipated by the return of fs, >= 0
-  double rolling = 0;       ///< dissipated by the return of mb, >= 0
-  double released = 0;      ///< elastic energy of fs, mb, mt forgotten when contacts open, >= 0
-  double damping = 0;       ///< taken out by local damping, >= 0
-  double free_grains = 0;   ///< taken out by the damping of free grains
-  double created = 0;       ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
+  double boundary_work = 0;   ///< done by the walls on the grains; > 0 when they compress
+  double kinetic = 0;         ///< change of StoredEnergy::kinetic()
+  double elastic = 0;         ///< change of StoredEnergy::elastic()
+  double sliding = 0;         ///< dissipated by the return of fs, >= 0
+  double rolling = 0;         ///< dissipated by the return of mb, >= 0
+  double released = 0;        ///< elastic energy of fs, mb, mt forgotten when contacts open, >= 0
+  double damping = 0;         ///< taken out by local damping, >= 0
+  double contact_damping = 0; ///< taken out by dashpots in contacts, >= 0
+  double free_grains = 0;     ///< taken out by the damping of free grains
+  double created = 0;         ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
 
-  ISOSTAT_FIELDS(boundary_work, kinetic, elastic, sliding, rolling, released, damping, free_grains, created)
-  double dissipated() const { return sliding + rolling + released + damping + free_grains; }
+  ISOSTAT_FIELDS(boundary_work, kinetic, elastic, sliding, rolling, released, damping, contact_damping, free_grains,
+                 created)
+  double dissipated() const { return sliding + rolling + released + damping + contact_damping + free_grains; }
   /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the
   /// time step.
   double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/motion/critical_step.hpp"
 
+#include "dem/contact/dashpot.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -99,6 +101,14 @@ double min_eigenvalue(const ContactLaw &law, const Packing &packing)
   return 2 * std::max((2 * k.normal + 2 * k.shear) / mass, (2 * (k.shear * r * r + k.rolling) + k.twisting) / inertia);
 }
 
+/// The same of their dashpots.
+double min_damping(const ContactLaw &law, const Packing &packing, double contact_damping)
+{
+  const double r = packing.min_radius(), mass = 4.0 / 3.0 * M_PI * r * r * r * packing.density;
+  const double kn = law.stiffness(r, r, overlap_expected * r).normal;
+  return 4 * dashpot_coefficient(contact_damping, kn, mass, mass) / mass;
+}
+
 /// y = M^-1/2 K M^-1/2 x on 6 components per grain.
 struct ScaledStiffness
 {
@@ -142,21 +152,18 @@ struct ScaledStiffness
       y[i] = scaled(i, y[i]);
   }
 };
-} // namespace
 
-double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
-                           const ContactList &contacts)
+/// Upper bound of the largest eigenvalue of M^-1/2 K M^-1/2, K of these elements and of what holds single grains.
+/// @param minimum  the bound is never below it
+double largest_eigenvalue(const Packing &packing, const std::vector<Element> &elements, const Blocks &held,
+                          double minimum)
 {
-  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
-  Blocks held(packing.n_grains(), Mat6::Zero());
-  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i](axis, axis) += k; });
   Blocks alone = held;
   for (const Element &e : elements)
     {
       alone[e.first] += body_block(e, e.radius1, -1);
       alone[e.second] += body_block(e, e.radius2, +1);
     }
-  const double minimum = min_eigenvalue(law, packing);
   std::vector<double> lambda(packing.n_grains());
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     lambda[i] = std::max(0.1 * minimum, eigenvalue_bound(scaled_block(packing, i, alone[i])));
@@ -182,16 +189,14 @@ double critical_step_bound(const ContactLaw &law, const Packing &packing, const 
   for (std::size_t i = 0; i < packing.n_grains(); ++i)
     if (matters(i))
       maximum = std::max(maximum, eigenvalue_bound(scaled_block(packing, i, weighted[i])));
-  return 2 / std::sqrt(maximum);
+  return maximum;
 }
 
-double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
-                                        const ContactList &contacts, int iterations)
+/// Rayleigh quotient of M^-1/2 K M^-1/2 after so many power iterations: its largest eigenvalue, from below.
+double power_iteration(const Packing &packing, const std::vector<Element> &elements, const std::vector<Vec3> &held,
+                       int iterations)
 {
   const std::size_t n = packing.n_grains();
-  std::vector<Vec3> held(n, Vec3::Zero());
-  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i][axis] += k; });
-  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
   const ScaledStiffness stiffness{packing, elements, held};
   std::vector<Vec6> x(n), y(n);
   for (std::size_t i = 0; i < n; ++i)
@@ -208,10 +213,49 @@ double critical_step_by_power_iteration(const ContactLaw &law, const Packing &pa
           xy += x[i].dot(y[i]);
           yy += y[i].squaredNorm();
         }
-      eigenvalue = xy / xx; // Rayleigh quotient
+      eigenvalue = xy / xx;
       for (std::size_t i = 0; i < n; ++i)
         x[i] = y[i] / std::sqrt(yy);
     }
-  return 2 / std::sqrt(eigenvalue);
+  return eigenvalue;
+}
+
+/// The same contacts with dashpots in place of their springs.
+std::vector<Element> dashpots(const Packing &packing, std::vector<Element> elements, double contact_damping)
+{
+  for (Element &e : elements)
+    e.k = {dashpot_coefficient(contact_damping, e.k.normal, packing.mass(e.first), packing.mass(e.second)), 0, 0, 0};
+  return elements;
+}
+
+/// dt with dt^2 omega2/4 + dt gamma/2 = 1
+double stable_step(double omega2, double gamma) { return (std::sqrt(gamma * gamma + 4 * omega2) - gamma) / omega2; }
+} // namespace
+
+double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
+                           const ContactList &contacts, double contact_damping)
+{
+  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  Blocks held(packing.n_grains(), Mat6::Zero());
+  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i](axis, axis) += k; });
+  const double omega2 = largest_eigenvalue(packing, elements, held, min_eigenvalue(law, packing));
+  if (contact_damping <= 0)
+    return 2 / std::sqrt(omega2);
+  std::fill(held.begin(), held.end(), Mat6::Zero());
+  return stable_step(omega2, largest_eigenvalue(packing, dashpots(packing, elements, contact_damping), held,
+                                                min_damping(law, packing, contact_damping)));
+}
+
+double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
+                                        const ContactList &contacts, int iterations, double contact_damping)
+{
+  std::vector<Vec3> held(packing.n_grains(), Vec3::Zero());
+  for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i][axis] += k; });
+  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  const double omega2 = power_iteration(packing, elements, held, iterations);
+  if (contact_damping <= 0)
+    return 2 / std::sqrt(omega2);
+  std::fill(held.begin(), held.end(), Vec3::Zero());
+  return stable_step(omega2, power_iteration(packing, dashpots(packing, elements, contact_damping), held, iterations));
 }
 } // namespace isostat

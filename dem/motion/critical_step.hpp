@@ -17,15 +17,19 @@ namespace isostat
 /// not move freely and count once. lambda_max is bounded from above by |B^8|_F^(1/8), which exceeds it by at most 12 %.
 /// The step is never above that of two smallest grains which collide while each is held from behind, whether contacts
 /// are closed or not.
-/// @param walls  nullptr in a periodic cell
-/// @return 2/omega_max, s      cost: 1 us per grain; taken every few hundred steps, not in the loop
+///
+/// With dashpots C, whose forces follow from the velocity half a step ago, a step dt is stable if
+///     dt^2 omega_max^2/4 + dt gamma_max/2 <= 1,   gamma_max = lambda_max(M^-1/2 C M^-1/2), bounded in the same way.
+/// @param walls            nullptr in a periodic cell
+/// @param contact_damping  beta of the dashpots, dem/contact/dashpot.hpp; 0: the step is 2/omega_max
+/// @return s      cost: 1 us per grain; taken every few hundred steps, not in the loop
 /// tested: tests/verification/critical_step_test.cpp (against power iteration on the assembled K)
 double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
-                           const ContactList &contacts);
+                           const ContactList &contacts, double contact_damping = 0);
 
 /// The true critical step 2/omega_max by power iteration on the assembled stiffness, s: what the bound is measured
 /// with.
 /// @param iterations  each costs two passes over the contacts; converges from below to omega_max
 double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
-                                        const ContactList &contacts, int iterations);
+                                        const ContactList &contacts, int iterations, double contact_damping = 0);
 } // namespace isostat

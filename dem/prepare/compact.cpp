@@ -17,10 +17,11 @@ constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure f
 /// Runs a stage on a state and returns what it ends with. Free grains are not damped: a cloud consists of them.
 Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const Preparation &how)
 {
-  const Programme programme{.motion = {.damping = damping, .free_grain_damping = 0, .carry_grains = false},
-                            .servo = how.specimen,
-                            .record = {.snapshots = "none"},
-                            .stages = {stage}};
+  const Programme programme{
+      .motion = {.contact_damping = 0, .damping = damping, .free_grain_damping = 0, .carry_grains = false},
+      .servo = how.specimen,
+      .record = {.snapshots = "none"},
+      .stages = {stage}};
   Assembly assembly(initial, {.threads = how.threads});
   DriveState state;
   if (run_programme(programme, assembly, state, how.observer) == RunOutcome::interrupted)

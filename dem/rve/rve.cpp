@@ -56,7 +56,8 @@ void RveSettings::check() const
 }
 
 Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
-    : settings_(settings), assembly_(periodic(specimen), {.damping = settings.motion.damping,
+    : settings_(settings), assembly_(periodic(specimen), {.contact_damping = settings.motion.contact_damping,
+                                                          .damping = settings.motion.damping,
                                                           .free_grain_damping = settings.motion.free_grain_damping})
 {
   settings_.check();

@@ -28,8 +28,8 @@ constexpr Section fixed_sections[] = {
      .text = "How the specimen is made. Exactly one of `relative_density`, `void_ratio`, `preparation_friction` and "
              "`file` is to be given."},
     {.name = "motion",
-     .text = "Equations of motion and their time step. The rate of loading follows from a tolerance, from an inertial "
-             "number, or is fixed."},
+     .text =
+         "Equations of motion and their time step. The rate of loading follows from an inertial number, or is fixed."},
     {.name = "stage",
      .text =
          "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "

@@ -18,10 +18,10 @@ struct Steps
   double bound, true_step;
 };
 
-Steps steps_of(const Assembly &a)
+Steps steps_of(const Assembly &a, double contact_damping = 0)
 {
-  return {critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts()),
-          critical_step_by_power_iteration(a.law(), a.packing(), a.walls(), a.contacts(), 2000)};
+  return {critical_step_bound(a.law(), a.packing(), a.walls(), a.contacts(), contact_damping),
+          critical_step_by_power_iteration(a.law(), a.packing(), a.walls(), a.contacts(), 2000, contact_damping)};
 }
 
 TEST(CriticalStep, ClosedFormOfTwoGrains)
@@ -44,14 +44,15 @@ TEST(CriticalStep, ClosedFormOfTwoGrains)
 TEST(CriticalStep, BoundHoldsAndIsTightOnARealPacking)
 {
   for (const double preparation : {2.0, 10.0})
-    {
-      const Assembly a(test::specimen(1000, preparation));
-      const Steps steps = steps_of(a);
-      std::printf("prepared at %g deg: bound %.4g s, true %.4g s, bound/true %.3f\n", preparation, steps.bound,
-                  steps.true_step, steps.bound / steps.true_step);
-      EXPECT_LE(steps.bound, steps.true_step);
-      EXPECT_GT(steps.bound, 0.8 * steps.true_step);
-    }
+    for (const double contact_damping : {0.0, 0.1, 0.4})
+      {
+        const Assembly a(test::specimen(1000, preparation));
+        const Steps steps = steps_of(a, contact_damping);
+        std::printf("prepared at %g deg, beta %.1f: bound %.4g s, true %.4g s, bound/true %.3f\n", preparation,
+                    contact_damping, steps.bound, steps.true_step, steps.bound / steps.true_step);
+        EXPECT_LE(steps.bound, steps.true_step);
+        EXPECT_GT(steps.bound, 0.8 * steps.true_step);
+      }
 }
 
 /// Simple cubic lattice of equal spheres squeezed by its walls: every contact is loaded, so a mode is linear until its
@@ -79,11 +80,13 @@ Snapshot lattice()
   return s;
 }
 
-/// Largest grain speed within 1,000 undamped steps over the one at the start; infinite if the packing explodes.
-double speed_growth(double time_step)
+/// Largest grain speed within 1,000 steps without local damping over the one at the start; infinite if the packing
+/// explodes.
+double speed_growth(double time_step, double contact_damping = 0)
 {
   Assembly a(lattice());
   a.settings.damping = 0;
+  a.settings.contact_damping = contact_damping;
   a.settings.time_step = time_step;
   double maximum = 0;
   try
@@ -117,10 +120,22 @@ TEST(CriticalStep, TheLimitIsReal)
   EXPECT_GT(unstable, 1e6);
 }
 
+TEST(CriticalStep, DashpotsNeedAShorterOne)
+{
+  const Assembly a(lattice());
+  const double beta = 0.4, bound = steps_of(a, beta).bound, without = steps_of(a).bound;
+  const double stable = speed_growth(bound, beta), unstable = speed_growth(without, beta);
+  std::printf("lattice, beta 0.4: bound %.3f of that without; speed grows %.3g times there, %.3g at that without\n",
+              bound / without, stable, unstable);
+  EXPECT_BELOW_BECAUSE(bound, 0.8 * without, "at beta 0.4 dashpots count");
+  EXPECT_LT(stable, 20);
+  EXPECT_GT(unstable, 1e6);
+}
+
 TEST(CriticalStep, ProgrammeReportsAnUnstableFixedStep)
 {
   Assembly a(test::specimen(1000, 2.0));
-  const Steps steps = steps_of(a);
+  const Steps steps = steps_of(a, MotionSpec().contact_damping);
   UndrainedMonotonic stage;
   stage.strain_end = 1e-4;
   stage.max_steps = 3000;

@@ -11,10 +11,11 @@ namespace isostat
 namespace
 {
 /// Compression at constant volume with a smooth start to a given strain.
-EnergyBalance sheared(double time_step, double strain, double rate)
+EnergyBalance sheared(double time_step, double strain, double rate, double contact_damping = 0)
 {
   Assembly a(test::specimen(500, 10.0));
   a.settings.time_step = time_step;
+  a.settings.contact_damping = contact_damping;
   a.settings.measure_energy = true;
   const RigidBox reference = a.box();
   double axial = 0, now = 0;
@@ -50,6 +51,22 @@ TEST(EnergyBalance, ClosesAtEveryTimeStep)
     }
   for (const double residual : residuals)
     EXPECT_BELOW_BECAUSE(residual, 1e-5, "the scatter of single contacts that open and close, some 5e-7 at every step");
+}
+
+// What a dashpot takes follows from a velocity half a step old.
+TEST(EnergyBalance, OfDashpotsClosesInFirstOrder)
+{
+  std::vector<double> residuals;
+  for (const double time_step : {4e-8, 2e-8, 1e-8})
+    {
+      const EnergyBalance e = sheared(time_step, 1e-3, 1, 0.1);
+      residuals.push_back(std::abs(e.residual()) / e.boundary_work);
+      std::printf("dt %.1e s: work %.4e J, sliding %.3e, damping %.3e, contact damping %.3e, residual/work %.2e\n",
+                  time_step, e.boundary_work, e.sliding, e.damping, e.contact_damping, e.residual() / e.boundary_work);
+      EXPECT_GT(e.contact_damping, 0);
+    }
+  EXPECT_BELOW_BECAUSE(residuals[0], 1e-3, "a share of what dashpots take, half a step of 4e-8 s");
+  EXPECT_BELOW_BECAUSE(residuals[2], 0.5 * residuals[0], "first order, a quarter of the step");
 }
 } // namespace
 } // namespace isostat

@@ -95,7 +95,8 @@ ContactList list_of(const CloudInCell &c, const HistoryLayout &layout, bool with
 }
 
 /// @param bound  of the sum of F b, J
-CellOutcome simd_outcome(const LinearRolling &law, const CloudInCell &c, bool with_energy, double bound)
+CellOutcome simd_outcome(const LinearRolling &law, const CloudInCell &c, bool with_energy, double bound,
+                         double beta = 0)
 {
   CellOutcome out;
   ContactList list = list_of(c, law.history());
@@ -103,15 +104,17 @@ CellOutcome simd_outcome(const LinearRolling &law, const CloudInCell &c, bool wi
   virial.start(list.partition().n_chunks, bound);
   const CellMotion motion{c.strain_step, &virial};
   out.action.assign(8 * list.n_slots(), 0.0);
-  add_contact_forces(law, c.cloud.packing, dt, list, out.action.data(), with_energy ? &out.loss : nullptr, &motion);
+  add_contact_forces(law, c.cloud.packing, dt, list, out.action.data(), with_energy ? &out.loss : nullptr, &motion,
+                     beta);
   out.virial = virial.sum();
   std::size_t p = 0;
   for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
     if (list.first()[lane] < c.cloud.packing.n_grains())
       {
         out.histories.push_back(list.history(lane));
-        if (with_energy && law.active().friction) // in order of pairs: chunks leave lanes idle
-          for (auto *v : {&out.loss.sliding, &out.loss.rolling, &out.loss.released, &out.loss.created})
+        if (with_energy) // in order of pairs: chunks leave lanes idle
+          for (auto *v :
+               {&out.loss.sliding, &out.loss.rolling, &out.loss.released, &out.loss.created, &out.loss.viscous})
             (*v)[p] = (*v)[lane];
         ++p;
       }
@@ -119,14 +122,22 @@ CellOutcome simd_outcome(const LinearRolling &law, const CloudInCell &c, bool wi
 }
 
 /// Symmetric part of the sum of F b by the scalar law, and sum of |F| |b|.
-std::pair<Mat3, double> scalar_virial(const LinearRolling &law, const CloudInCell &c)
+std::pair<Mat3, double> scalar_virial(const LinearRolling &law, const CloudInCell &c, double beta)
 {
   Mat3 sum = Mat3::Zero();
   double size = 0;
   for (std::size_t p = 0; p < c.images.size(); ++p)
     {
       ContactHistory history = masked(c.cloud.histories[p], law.active());
-      const Vec3 force = contact_force(law, c.seen(p), dt, history).force, b = c.branch(p);
+      const auto [i, j] = c.cloud.pairs[p];
+      const ContactPair seen = c.seen(p);
+      const ContactForce f = contact_force(law, seen, dt, history);
+      Vec3 force = f.force;
+      double loss = 0;
+      if (f.touching && beta > 0)
+        force +=
+            scalar_dashpot(law, seen, c.cloud.packing.mass(i), c.cloud.packing.mass(j), f.normal_force, beta, loss);
+      const Vec3 b = c.branch(p);
       sum += force * b.transpose();
       size += force.norm() * b.norm();
     }
@@ -170,11 +181,12 @@ CloudInCell many_clouds(unsigned seed)
 double energy_of(const LinearRolling &law, const CloudInCell &c) { return law.young * c.edges.determinant(); }
 
 /// Worst misfit of the loop: forces, histories and losses, and the virial in units of sum |F| |b|.
-std::pair<double, double> worst_misfit(const LinearRolling &law, const CloudInCell &c, bool with_energy)
+std::pair<double, double> worst_misfit(const LinearRolling &law, const CloudInCell &c, bool with_energy, double beta)
 {
-  const CellOutcome out = simd_outcome(law, c, with_energy, energy_of(law, c));
-  const auto [virial, size] = scalar_virial(law, c);
-  Outcome twin = scalar_outcome(law, c.cloud, [&](std::size_t p) { return c.seen(p); });
+  const CellOutcome out = simd_outcome(law, c, with_energy, energy_of(law, c), beta);
+  const auto [virial, size] = scalar_virial(law, c, beta);
+  Outcome twin = scalar_outcome(
+      law, c.cloud, [&](std::size_t p) { return c.seen(p); }, beta);
   return {misfit(out, twin, with_energy), (out.virial - virial).norm() / size};
 }
 
@@ -194,12 +206,12 @@ protected:
 TEST_P(CellKernel, EqualsTheScalarLawAtTheImage)
 {
   for (const Variant &v : variants)
-    for (const bool with_energy : {false, true})
+    for (const auto &[with_energy, beta] : {std::pair(false, 0.0), {true, 0.0}, {false, 0.3}, {true, 0.3}})
       {
         double worst = 0, worst_virial = 0;
         for (unsigned seed = 1; seed <= 10; ++seed)
           {
-            const auto [all, virial] = worst_misfit(law_of(v), cloud_in_cell(seed), with_energy);
+            const auto [all, virial] = worst_misfit(law_of(v), cloud_in_cell(seed), with_energy, beta);
             worst = std::max(worst, all);
             worst_virial = std::max(worst_virial, virial);
           }
@@ -217,9 +229,9 @@ TEST_P(CellKernel, ChunksAndGhostsAddUpToTheScalarSums)
   ASSERT_GT(list_of(c, {}).partition().n_chunks, 3u);
   ASSERT_GT(list_of(c, {}).n_slots(), c.cloud.packing.n_grains() + Packing::n_padding);
   for (const Variant &v : variants)
-    for (const bool with_energy : {false, true})
+    for (const auto &[with_energy, beta] : {std::pair(false, 0.0), {true, 0.0}, {false, 0.3}, {true, 0.3}})
       {
-        const auto [worst, virial] = worst_misfit(law_of(v), c, with_energy);
+        const auto [worst, virial] = worst_misfit(law_of(v), c, with_energy, beta);
         EXPECT_BELOW_BECAUSE(worst, tolerance) << v.name << (with_energy ? " with energy" : "");
         EXPECT_BELOW_BECAUSE(virial, 1e-12, "a sum of thousands of terms on a grid of 2^-52 of their bound") << v.name;
       }

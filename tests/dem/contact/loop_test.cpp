@@ -37,12 +37,13 @@ ContactList make_list(const Cloud &cloud, const LinearRolling &law, bool touchin
   return list;
 }
 
-Outcome simd_outcome(const LinearRolling &law, const Cloud &cloud, bool with_energy, bool touching_only = false)
+Outcome simd_outcome(const LinearRolling &law, const Cloud &cloud, bool with_energy, bool touching_only = false,
+                     double beta = 0)
 {
   Outcome out;
   ContactList list = make_list(cloud, law, touching_only);
   out.action.assign(8 * (cloud.packing.n_grains() + Packing::n_padding), 0.0);
-  add_contact_forces(law, cloud.packing, dt, list, out.action.data(), with_energy ? &out.loss : nullptr);
+  add_contact_forces(law, cloud.packing, dt, list, out.action.data(), with_energy ? &out.loss : nullptr, nullptr, beta);
   for (std::size_t p = 0; p < list.n_pairs(); ++p)
     out.histories.push_back(list.history(p));
   return out;
@@ -63,18 +64,17 @@ protected:
 TEST_P(ContactKernel, EqualsTheScalarLaw)
 {
   for (const Variant &v : variants)
-    for (const bool with_energy : {false, true})
+    for (const auto &[with_energy, beta] : {std::pair(false, 0.0), {true, 0.0}, {false, 0.3}, {true, 0.3}})
       {
         double worst = 0;
         for (unsigned seed = 1; seed <= 10; ++seed)
           {
             const Cloud cloud = random_cloud(seed);
-            worst = std::max(
-                worst, misfit(simd_outcome(law_of(v), cloud, with_energy),
-                              scalar_outcome(law_of(v), cloud, [&](std::size_t p) { return pair_in_box(cloud, p); }),
-                              with_energy));
+            const auto see = [&](std::size_t p) { return pair_in_box(cloud, p); };
+            worst = std::max(worst, misfit(simd_outcome(law_of(v), cloud, with_energy, false, beta),
+                                           scalar_outcome(law_of(v), cloud, see, beta), with_energy));
           }
-        EXPECT_LE(worst, tolerance) << v.name << (with_energy ? " with energy" : "");
+        EXPECT_LE(worst, tolerance) << v.name << (with_energy ? " with energy" : "") << " beta " << beta;
         std::printf("%-9s %-12s %-6s %.1e\n", instruction_set().c_str(), v.name, with_energy ? "energy" : "", worst);
       }
 }

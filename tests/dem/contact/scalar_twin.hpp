@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the contact loop is tested against: contact_force() over all pairs of a random cloud, and the misfit of both.
 #pragma once
+#include "dem/contact/dashpot.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/contact/loop.hpp"
 #include "tests/dem/contact/random_cloud.hpp"
@@ -63,9 +64,20 @@ inline void scalar_loss(const LinearRolling &law, const ContactPair &pair, const
         0.5 * (turned.bending_moment + now.bending_moment).dot(trial.bending_moment - now.bending_moment) / k.rolling;
 }
 
+/// Force that the dashpot of a touching pair adds, on the second grain; what it dissipates goes to loss.viscous.
+inline Vec3 scalar_dashpot(const LinearRolling &law, const ContactPair &pair, double m1, double m2, double fn,
+                           double beta, double &loss)
+{
+  const Vec3 n = (pair.x2 - pair.x1).normalized();
+  const double speed = n.dot(pair.v2 - pair.v1);
+  const double drag = dashpot_force(beta, law.stiffness(pair.r1, pair.r2).normal, m1, m2, fn, speed);
+  loss = dt * drag * speed;
+  return -drag * n;
+}
+
 /// The same by the scalar law, pair after pair; `see(p)` gives pair p as the law sees it.
 template <typename See>
-Outcome scalar_outcome(const LinearRolling &law, const Cloud &cloud, const See &see)
+Outcome scalar_outcome(const LinearRolling &law, const Cloud &cloud, const See &see, double beta = 0)
 {
   Outcome out;
   const Packing &g = cloud.packing;
@@ -77,7 +89,9 @@ Outcome scalar_outcome(const LinearRolling &law, const Cloud &cloud, const See &
       const ContactPair pair = see(p);
       const ContactHistory past = masked(cloud.histories[p], law.active());
       ContactHistory now = past;
-      const ContactForce f = contact_force(law, pair, dt, now);
+      ContactForce f = contact_force(law, pair, dt, now);
+      if (f.touching && beta > 0)
+        f.force += scalar_dashpot(law, pair, g.mass(i), g.mass(j), f.normal_force, beta, out.loss.viscous[p]);
       for (int k = 0; k < 3; ++k)
         {
           out.action[8 * i + k] -= f.force[k];
@@ -131,7 +145,7 @@ inline double misfit(const Outcome &a, const Outcome &b, bool with_energy)
     worst = std::max(worst, misfit(a.histories, b.histories, n, member(m)));
   if (with_energy && !a.loss.sliding.empty())
     for (auto m : {&DissipationPerPair::sliding, &DissipationPerPair::rolling, &DissipationPerPair::released,
-                   &DissipationPerPair::created})
+                   &DissipationPerPair::created, &DissipationPerPair::viscous})
       worst = std::max(worst, misfit(a.loss.*m, b.loss.*m, n, number));
   return worst;
 }

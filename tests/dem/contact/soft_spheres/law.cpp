@@ -22,10 +22,13 @@ struct SoftSpheresLanes
   static constexpr bool is_central = true;
   static constexpr std::size_t n_components = 0;
 
+  static HWY_INLINE V normal_stiffness(const Numbers &k, const Pairs &p)
+  {
+    return closed(p, hn::Mul(hn::Mul(p.r1, p.r2), hn::Mul(inverse(p.reach), hn::Set(D(), k.twice_modulus))));
+  }
   static HWY_INLINE V normal_force(const Numbers &k, const Pairs &p)
   {
-    const V kn = hn::Mul(hn::Mul(p.r1, p.r2), hn::Mul(inverse(p.reach), hn::Set(D(), k.twice_modulus)));
-    return closed(p, hn::Mul(kn, p.overlap));
+    return hn::Mul(normal_stiffness(k, p), p.overlap);
   }
 };
 

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The default's distance to the quasi-static limit: cyclic tests on 20 specimens, box and cell, against a tenth of the
+rate. Not part of the usual tests: ctest --preset long, some ten minutes on two cores."""
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "benchmarks"))
+from free_grains import plan, tables  # noqa: E402  (the folder comes first)
+from speed_error import runner  # noqa: E402
+
+BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
+SEEDS = range(1, 21)
+CYCLES = 0.5, "the bound on the mean, taken at the nearer end of its 95 % interval"
+STRESS = 0.5  # kPa, of the mean path at reversals 2 to 16
+STEPS = 3e4  # to the onset
+
+
+class QuasiStaticLimit(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        runs = [plan.Run("prepare", s, domain) for domain in plan.DOMAINS for s in SEEDS]
+        runs += [plan.Run("cyclic", s, domain, setting) for setting in (plan.DEFAULT, plan.SLOW)
+                 for domain in plan.DOMAINS for s in SEEDS]
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        store = runner.Store(cls.folder.name)
+        complete = runner.Campaign(store, BINARY, runs, len(os.sched_getaffinity(0))).run_all(0)
+        assert complete, "a run failed: see above"
+        cls.results = tables.Results(store, runs)
+
+    def test_the_default_is_at_the_limit(self):
+        for domain in plan.DOMAINS:
+            with self.subTest(domain):
+                default, slow = ((domain, plan.GRAINS, setting) for setting in (plan.DEFAULT, plan.SLOW))
+                tests = self.results.cyclic[default].values()
+                self.assertEqual(sum(np.isfinite(t.cycles) for t in tests), len(SEEDS), "all liquefy")
+                cycles, half = tables.mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
+                stress = np.nanmean(self.results.differences(slow, default, lambda t: t.p), axis=0)
+                steps = np.mean([t.steps for t in tests])
+                print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, p' at reversals 2 to 16 "
+                      f"{np.round(stress, 2)} kPa, {steps:.0f} steps to the onset")
+                self.assertLess(abs(cycles) - half, CYCLES[0], CYCLES[1])
+                self.assertLess(half, 1, "or the interval says nothing")
+                self.assertLess(np.abs(stress).max(), STRESS)
+                self.assertLess(steps, STEPS)
+
+
+if __name__ == "__main__":
+    unittest.main()
