@@ -65,7 +65,7 @@ def draw_cycles(results, path):
 
 
 def draw_damping(results, path):
-    """Cycles less those of the default on the same specimens, against local damping beside the dashpots."""
+    """Cycles less those of the default on the same specimens, three or more, against local damping beside the dashpots."""
     both = {**plan.DAMPING, 0.1: [plan.DEFAULT, plan.SLOW]}
     figure, axes = panels(len(plan.DOMAINS), sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
@@ -73,7 +73,7 @@ def draw_damping(results, path):
         for rate, (label, colour, marker) in enumerate((("I = 4e-4", "#0072b2", "o"), ("I = 4e-5", "#d55e00", "s"))):
             keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
             rows = [(damping, *tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)))
-                    for damping, key in keys.items() if key in results.cyclic]
+                    for damping, key in keys.items() if len(results.cyclic.get(key, {})) > 2]
             if rows:
                 damping, mean, half = np.array(rows).T
                 panel.errorbar(damping, mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)

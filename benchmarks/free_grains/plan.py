@@ -108,9 +108,10 @@ def runs(n_seeds):
     result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in (DEFAULT, SLOW, SLOWEST)]
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
-    result += [Run("liquefied", s, "rigid-box", setting) for s in three for setting in (DEFAULT, SLOW)]
+    result += [Run("liquefied", s, "rigid-box") for s in three]
     cyclic([fast for fast, _ in DAMPING.values()], half)
     cyclic(ALONE_SETTINGS, half)
     cyclic(PUSHED, half, box)
+    result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
     cyclic([slow for _, slow in DAMPING.values()], few)
     return result
