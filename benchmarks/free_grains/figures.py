@@ -65,7 +65,7 @@ def draw_cycles(results, path):
 
 
 def draw_damping(results, path):
-    """Cycles less those of the default on the same specimens, three or more, against local damping beside the dashpots."""
+    """Cycles less those of the default on the same specimens (at least three) against local damping."""
     both = {**plan.DAMPING, 0.1: [plan.DEFAULT, plan.SLOW]}
     figure, axes = panels(len(plan.DOMAINS), sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
