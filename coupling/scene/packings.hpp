@@ -9,7 +9,7 @@ namespace isostat
 {
 class SceneDocument;
 
-/// What users choose of how packings run: library, cache, in_situ, realisations, min_steps, damping,
+/// What users choose of how packings run: library, cache, in_situ, realisations, min_steps, contact_damping, damping,
 /// free_grain_damping, inertial_number. Drainage and threads are set by the program.
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
