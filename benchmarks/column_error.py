@@ -36,15 +36,15 @@ LEVELS = {  # name: amplitude, duration, ramp
     "moderate": ("0.06 g", "4 s", "0.5 s"),
     "strong": ("0.15 g", "2 s", "0.5 s"),
 }
-MOTION = {"contact_damping": 0.05, "damping": 0.1, "free_grain_damping": 0.1,
-          "inertial_number": 4e-4}  # the defaults of the schema
-PLACES = {"contact_damping": -8, "damping": -7, "free_grain_damping": -6,
-          "inertial_number": -4}  # in the words of a recipe
+MOTION = {"contact_damping": 0.05, "damping": 0.2, "free_grain_damping": 0.1,
+          "inertial_number": 1e-4}  # the defaults of the schema
+PLACES = {"contact_damping": -9, "damping": -8, "free_grain_damping": -7,
+          "inertial_number": -5}  # in the words of a recipe
 SLOW = {"inertial_number": 4e-5, "min_steps": 60}
 NUMERICS = [  # family, label, what differs from the defaults; time step in ms
     ("default", "default", {}),
     ("reference", "reference", SLOW),
-    ("rate", "I 1e-4", {"inertial_number": 1e-4}),
+    ("rate", "I 5e-4", {"inertial_number": 5e-4}),
     ("rate", "I 1e-3", {"inertial_number": 1e-3}),
     ("min_steps", "min_steps 10", {"min_steps": 10}),
     ("min_steps", "min_steps 40", {"min_steps": 40}),
@@ -64,7 +64,7 @@ NUMERICS = [  # family, label, what differs from the defaults; time step in ms
     ("min_steps", "min_steps 100", {"min_steps": 100}),
     ("min_steps", "min_steps 200", {"min_steps": 200}),
     ("fast", "fast", {"inertial_number": 1e-3, "min_steps": 10}),
-    ("same", "I 1e-4, own packings", {"inertial_number": 1e-4, "own": True}),
+    ("same", "I 5e-4, own packings", {"inertial_number": 5e-4, "own": True}),
 ]
 PAIR = ("default", "reference")  # of every seed
 

@@ -205,7 +205,7 @@ def twins(runs, level):
     """How far runs part that nothing but a millionth of the motion, or their packings in situ, sets apart."""
     pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
              "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
-             "packings in situ with I = 1e-4": ("I 1e-4, own packings", "I 1e-4")}
+             "packings in situ with I = 5e-4": ("I 5e-4, own packings", "I 5e-4")}
     print(f"\n<!-- twins, {level} -->\n\n"
           "| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
           "|---|---|---|---|---|")

@@ -17,6 +17,8 @@ SERIES = (  # label, colour, marker, settings
     ("free grains left alone", "#e69f00", "D", plan.ALONE_SETTINGS),
     ("all three", "#d55e00", "s", plan.OLD_SETTINGS))
 
+RATES = ("default rate", "#0072b2", "o"), ("a tenth of it", "#d55e00", "s")
+
 
 def panels(n, **more):
     figure, axes = plt.subplots(1, n, figsize=(4.4 * n, 3.5), squeeze=False, **more)
@@ -70,7 +72,7 @@ def draw_damping(results, path):
     figure, axes = panels(len(plan.DOMAINS), sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
         reference = domain, plan.GRAINS, plan.DEFAULT
-        for rate, (label, colour, marker) in enumerate((("I = 4e-4", "#0072b2", "o"), ("I = 4e-5", "#d55e00", "s"))):
+        for rate, (label, colour, marker) in enumerate(RATES):
             keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
             rows = [(damping, *tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)))
                     for damping, key in keys.items() if len(results.cyclic.get(key, {})) > 2]

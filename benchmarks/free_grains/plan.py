@@ -27,22 +27,26 @@ def of(label, steps=2.5e4, **motion):
 
 
 DEFAULT = of("default")
-SLOW = of("I / 10", 2e5, inertial_number=4e-5)
-SLOWEST = of("I / 100", 2e6, inertial_number=4e-6)
+# both bounds on the rate divided by 10 and by 100
+TENTH, HUNDREDTH = {"inertial_number": 5e-5, "load_per_wave": 0.007}, {"inertial_number": 5e-6, "load_per_wave": 7e-4}
+SLOW = of("rate / 10", 2.5e5, **TENTH)
+SLOWEST = of("rate / 100", 2.5e6, **HUNDREDTH)
 LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": "false"}
 
 
 def at_two_rates(label, **motion):
-    return [of(label, **motion), of(f"{label}, I / 10", 2e5, inertial_number=4e-5, **motion)]
+    return [of(label, **motion), of(f"{label}, rate / 10", 2.5e5, **TENTH, **motion)]
 
 
 LOCAL_SETTINGS = at_two_rates("local damping alone", **LOCAL)
 ALONE_SETTINGS = at_two_rates("free grains left alone", **ALONE)
 PUSHED = at_two_rates("walls push", **PUSHING)
 OLD_SETTINGS = at_two_rates("all three", **LOCAL, **ALONE, **PUSHING)
-NUMERICS = [of("I x 2.5", inertial_number=1e-3), of("time step / 2", 5e4, time_step_safety=0.4),
+NUMERICS = [of("rate x 2", inertial_number=1e-3, load_per_wave=0.14),
+            of("I alone", load_per_wave=0), of("time step / 2", 5e4, time_step_safety=0.4),
             of("c / 2", free_grain_damping=0.05), of("c x 2", free_grain_damping=0.2),
             of("beta / 2", contact_damping=0.025), of("beta x 2", contact_damping=0.1)]
+LITTLE = at_two_rates("local damping 0.02", damping=0.02)
 DAMPING = {value: at_two_rates(f"local damping {value:g}", damping=value) for value in (0, 0.05, 0.2, 0.4)}
 
 
@@ -86,7 +90,7 @@ class Run:
     def estimated_seconds(self):
         of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.5 * self.setting.steps,
                    "liquefied": 18 * self.setting.steps, "hold": HELD_STEPS, "hold-late": 4e5}
-        return 4.5e-5 * of_kind[self.kind] * self.grains / GRAINS
+        return 1.1e-4 * of_kind[self.kind] * self.grains / GRAINS
 
 
 def runs(n_seeds):
@@ -102,16 +106,15 @@ def runs(n_seeds):
 
     cyclic([DEFAULT, SLOW])
     cyclic(NUMERICS)
-    cyclic([DEFAULT, SLOW, *LOCAL_SETTINGS], three, box, grains=MANY)
-    cyclic([SLOWEST], few)
-    cyclic(LOCAL_SETTINGS + OLD_SETTINGS, half)
+    cyclic([DEFAULT, SLOW, *LITTLE], three, box, grains=MANY)
     result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in (DEFAULT, SLOW, SLOWEST)]
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
     result += [Run("liquefied", s, "rigid-box") for s in three]
-    cyclic([fast for fast, _ in DAMPING.values()], half)
-    cyclic(ALONE_SETTINGS, half)
-    cyclic(PUSHED, half, box)
     result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
+    cyclic([fast for fast, _ in DAMPING.values()], half)
+    cyclic(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
+    cyclic(PUSHED, few, box)
+    cyclic([SLOWEST], few)
     cyclic([slow for _, slow in DAMPING.values()], few)
     return result

@@ -26,11 +26,12 @@ struct ProgrammePlace
 /// How fast a packing is strained.
 struct Pace
 {
-  double rate = 0;      ///< bound on the driven strain rate, from the rate control, 1/s
+  double rate = 0;      ///< bound on the driven strain rate, 1/s
+  double load_rate = 0; ///< bound on |d load/dt|, Pa/s; 0: none
   double time_step = 0; ///< s
   double indicator = 0; ///< quasi-static error indicator of the last control, see rate_control.hpp [-]
 
-  ISOSTAT_FIELDS(rate, time_step, indicator)
+  ISOSTAT_FIELDS(rate, load_rate, time_step, indicator)
 };
 
 enum class LoadDirection

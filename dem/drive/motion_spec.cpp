@@ -10,28 +10,34 @@ namespace isostat
 namespace
 {
 // clang-format off
-constexpr Key controlled[] = {
+constexpr Key shared[] = {
   {.path = "contact_damping", .value = "0.05", .range = {0, 1, false, true},
    .reason = "because it is a share of critical damping; a large one needs a small time step",
    .text = "Dashpots along the normals of contacts, as a share of critical damping: two grains that collide part with "
            "0.86 of their speed at 0.05. 0: none.",
    .field = [](MotionSpec &m) -> Field { return &m.contact_damping; }},
-  {.path = "damping", .value = "0.1", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
-   .text = "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what gives way as "
-           "a whole.",
-   .field = [](MotionSpec &m) -> Field { return &m.damping; }},
   {.path = "free_grain_damping", .value = "0.1", .range = {0, 1}, .reason = "because it is a share",
    .text = "Share of its velocity that a grain on which nothing acts loses in each step; 0: it flies on until it hits "
            "another one, and knocks at the packing as long as the test lasts.",
    .field = [](MotionSpec &m) -> Field { return &m.free_grain_damping; }},
-  {.path = "inertial_number", .value = "4e-4", .range = ranges::fraction,
-   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
-   .text = "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
-           "simple shear that of gamma_xy) is I sqrt(p0'/density)/d50 throughout.",
-   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
 };
 
 constexpr Key chosen[] = {
+  {.path = "damping", .value = "0.1", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
+   .text = "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what gives way as "
+           "a whole.",
+   .field = [](MotionSpec &m) -> Field { return &m.damping; }},
+  {.path = "inertial_number", .value = "5e-4", .range = ranges::fraction,
+   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
+   .text = "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
+           "simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50.",
+   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
+  {.path = "load_per_wave", .value = "0.07", .range = {0, 1},
+   .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
+   .text = "The load, q or tau, changes at most by this share of p0' while a wave goes through the packing, "
+           "L sqrt(density/young): the strain rate is lowered where the packing is stiff, and the larger the packing, "
+           "the more. 0: never lowered. Not used with a fixed strain_rate.",
+   .field = [](MotionSpec &m) -> Field { return &m.load_per_wave; }},
   {.path = "carry_grains", .kind = Kind::boolean, .value = "true",
    .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "
            "which start or turn round send no waves; false: walls push.",
@@ -48,15 +54,37 @@ constexpr Key chosen[] = {
    .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts.",
    .field = [](MotionSpec &m) -> Field { return &m.time_step; }},
 };
+constexpr Key controlled[] = {
+  {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
+   .text = "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their stress hardly "
+           "come to rest.",
+   .field = [](MotionSpec &m) -> Field { return &m.damping; }},
+  {.path = "inertial_number", .value = "1e-4", .range = ranges::fraction,
+   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
+   .text = "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that would strain it "
+           "faster than I sqrt(p0'/density)/d50 take more time steps of the grains than min_steps.",
+   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
+};
 // clang-format on
 } // namespace
 
-SceneFragment<MotionSpec> controlled_motion_keys() { return {controlled}; }
+SceneFragment<MotionSpec> controlled_motion_keys()
+{
+  static const KeyTable table{controlled, shared};
+  return {table.keys()};
+}
 
 SceneFragment<MotionSpec> motion_keys()
 {
-  static const KeyTable table{controlled, chosen};
+  static const KeyTable table{shared, chosen};
   return {table.keys()};
+}
+
+void set_damping(const MotionSpec &motion, StepSettings &settings)
+{
+  settings.contact_damping = motion.contact_damping;
+  settings.damping = motion.damping;
+  settings.free_grain_damping = motion.free_grain_damping;
 }
 
 std::string recipe_text(const MotionSpec &motion)

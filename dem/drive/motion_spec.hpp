@@ -2,6 +2,7 @@
 #pragma once
 #include "base/fields.hpp"
 #include "base/scene/fragment.hpp"
+#include "dem/assembly/contact_forces.hpp"
 
 namespace isostat
 {
@@ -9,25 +10,33 @@ namespace isostat
 /// are made from it.
 struct MotionSpec
 {
-  double contact_damping = 0.05;          ///< beta of dashpots in contacts, dem/contact/dashpot.hpp [-]
-  double damping = 0.1;                   ///< local (non-viscous) damping coefficient [-]
-  double free_grain_damping = 0.1;        ///< share of its velocity that a grain without any force loses in a step [-]
-  bool carry_grains = true;               ///< grains of a box share the homogeneous motion of its walls
-  double inertial_number = 4e-4;          ///< I at p0': the strain rate is I sqrt(p0'/density)/d50 [-]
+  double contact_damping = 0.05;   ///< beta of dashpots in contacts, dem/contact/dashpot.hpp [-]
+  double damping = 0.1;            ///< local (non-viscous) damping coefficient [-]
+  double free_grain_damping = 0.1; ///< share of its velocity that a grain without any force loses in a step [-]
+  bool carry_grains = true;        ///< grains of a box share the homogeneous motion of its walls
+  double inertial_number = 5e-4;   ///< I at p0': the strain rate is at most I sqrt(p0'/density)/d50 [-]
+  double load_per_wave = 0.07; ///< the load changes at most by this share of p0' while a wave goes through the packing
   std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the inertial number
   double time_step_safety = 0.8;          ///< fraction of the critical step
   std::optional<double> time_step = {};   ///< fixed, s; checked against the critical step
 
   bool operator==(const MotionSpec &) const = default;
 
-  ISOSTAT_FIELDS(contact_damping, damping, free_grain_damping, carry_grains, inertial_number, strain_rate,
-                 time_step_safety, time_step)
+  ISOSTAT_FIELDS(contact_damping, damping, free_grain_damping, carry_grains, inertial_number, load_per_wave,
+                 strain_rate, time_step_safety, time_step)
 };
 
 /// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
 SceneFragment<MotionSpec> motion_keys();
-/// Those of packings whose strain somebody else gives: damping and rate.
+/// The defaults of packings whose strain answers their stress, as in a column: with less local damping packing and
+/// column keep each other in motion (docs/results/free_grains.md, "Columns"), and at a higher rate they liquefy late
+/// (docs/results/column_error.md).
+inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number = 1e-4}; }
+/// The keys of such packings: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();
+
+/// What the motion says of damping, for the steps to come.
+void set_damping(const MotionSpec &motion, StepSettings &settings);
 
 /// All settings as text, to the bit: part of the recipe of whatever they shape.
 std::string recipe_text(const MotionSpec &motion);

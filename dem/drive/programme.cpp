@@ -108,9 +108,7 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
 {
   while (state.place.stage < programme.stages.size())
     {
-      assembly.settings.contact_damping = programme.motion.contact_damping;
-      assembly.settings.damping = programme.motion.damping;
-      assembly.settings.free_grain_damping = programme.motion.free_grain_damping;
+      set_damping(programme.motion, assembly.settings);
       assembly.settings.carry_grains = programme.motion.carry_grains;
       StageRun run(programme, behaviour(programme.stages[state.place.stage]), assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)

@@ -24,6 +24,19 @@ double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_
   return motion.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }
 
+double load_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly, double p0)
+{
+  const bool fixed = stage_rate || motion.strain_rate;
+  return fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
+}
+
+double bounded_rate(const Pace &pace, const Loading &loading)
+{
+  if (pace.load_rate <= 0 || loading.slope <= 0)
+    return pace.rate;
+  return std::clamp(pace.load_rate / loading.slope, 0.01 * pace.rate, pace.rate);
+}
+
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate)
 {
   const double p_r = std::max(mean_stress, 0.05 * p0);
@@ -46,15 +59,15 @@ double next_rate(const Loading &loading, double rate, double load, double limit,
   return direction * std::min(std::abs(next), braked);
 }
 
-double ramp_time(const Assembly &assembly)
+double wave_time(const Assembly &assembly)
 {
   const double edge = assembly.walls() ? assembly.box().edges().maxCoeff() : std::cbrt(assembly.volume());
-  return 3 * edge * std::sqrt(assembly.packing().density / assembly.law()->young);
+  return edge * std::sqrt(assembly.packing().density / assembly.law()->young);
 }
 
-void update_slope(Loading &loading, double load, std::uint64_t step_number)
+void update_slope(Loading &loading, double load, std::uint64_t step_number, std::uint64_t window)
 {
-  if (step_number % 20 != 0)
+  if (step_number % window != 0)
     return;
   const double strain = std::abs(loading.strain - loading.window_strain);
   loading.slope = strain > 0 ? std::abs(load - loading.window_load) / strain : 0;

@@ -8,12 +8,19 @@ namespace isostat
 {
 /// Strain rate of a stage, 1/s: its own where it has one, else that of the motion, else that of the inertial number,
 /// I sqrt(p0'/rho)/d50. It stays the same while p' changes: what error that leaves, also in the liquefied state, is
-/// measured in docs/results/free_grains.md.
+/// measured in docs/results/free_grains.md. Where the packing is stiff it is lowered (`load_rate`).
 /// @param p0  mean effective stress when shearing began, Pa
 /// @throws RunFailure  the rate is that of the inertial number and p0 <= 0
 /// tested: tests/dem/drive/rate_control_test.cpp
 double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
                    double p0);
+
+/// Bound on |dq/dt| (in simple shear |dtau/dt|), Pa/s: load_per_wave p0' / wave_time, so that the stress in a packing
+/// is uniform to about that share of p0' whatever its size and stiffness. 0, no bound: a fixed rate was asked for, by
+/// the stage or the motion, or load_per_wave is 0.
+/// tested: tests/dem/drive/rate_control_test.cpp
+double load_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
+                 double p0);
 
 /// What inertia adds to a quasi-static answer, relative to the stress at hand; recorded every 50 steps:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0'),
@@ -23,16 +30,24 @@ double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_
 /// @pre compute_forces()
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);
 
+/// min(pace.rate, pace.load_rate / loading.slope), 1/s; at least a hundredth of pace.rate, so that no noise in the
+/// slope stops a test.
+double bounded_rate(const Pace &pace, const Loading &loading);
+
 /// Driven rate for the next step, 1/s: goes towards sign(direction) * rate within `ramp_time`, and brakes with the same
 /// deceleration so that the load arrives at +-limit at a tenth of the rate: a load reversal is no jump either.
 /// @param rate  1/s   @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time, time_step  s
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step);
 
-/// How long loads ramp, s: 3 L sqrt(rho/E), L the longest edge of a box or V^(1/3) of a cell, E the contact modulus;
-/// some ten times what a wave needs through the packing, whatever the time step.
-double ramp_time(const Assembly &assembly);
+/// L sqrt(rho/E), s, for a wave through the packing: L the longest edge of a box or V^(1/3) of a cell, E the contact
+/// modulus, rho the density of the grains.
+double wave_time(const Assembly &assembly);
 
-/// Keeps loading.slope = |d load/d driven strain| over windows of 20 steps, for the braking.
+/// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal (docs/results/free_grains.md).
+constexpr double ramp_waves = 4;
+
+/// Keeps loading.slope = |d load/d driven strain| over windows of `window` steps: for the bound on the load rate and
+/// for the braking. Drivers take windows of one wave time.
 /// @param step_number  of the stage
-void update_slope(Loading &loading, double load, std::uint64_t step_number);
+void update_slope(Loading &loading, double load, std::uint64_t step_number, std::uint64_t window);
 } // namespace isostat

@@ -55,12 +55,10 @@ void RveSettings::check() const
                                  min_steps, max_steps));
 }
 
-Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
-    : settings_(settings), assembly_(periodic(specimen), {.contact_damping = settings.motion.contact_damping,
-                                                          .damping = settings.motion.damping,
-                                                          .free_grain_damping = settings.motion.free_grain_damping})
+Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
 {
   settings_.check();
+  set_damping(settings_.motion, assembly_.settings);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);

@@ -95,7 +95,7 @@ TEST(RveColumn, OneElementIsThePackingAloneToTheBit)
   DynamicsSettings settings{.safety = 0.5, .drainage = Drainage::undrained};
   settings.motion[0] = harmonic_motion(45, 4, 2, 0.2, 1e-3);
   Dynamics run(space, material, settings);
-  RveSettings same; // in its own axes, as an element test
+  RveSettings same{.motion = RveMaterialSettings{}.motion}; // in its own axes, as an element test
   same.min_steps = RveMaterialSettings{}.min_steps;
   Rve alone(specimen, same);
   const Mat3 frame = column_frame();

@@ -57,6 +57,7 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
       path.gamma = 0;
     }
   c.state.pace.rate = isostat::strain_rate(c.motion, strain_rate, c.assembly, path.p0());
+  c.state.pace.load_rate = load_rate(c.motion, strain_rate, c.assembly, path.p0());
   path.lateral_target = -stress.diagonal();
   c.state.loading.window_load = load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)});
 }
@@ -67,9 +68,10 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
   if (state.place.steps % indicator_interval == 0)
     state.pace.indicator = quasi_static_indicator(c.assembly, seen.p, state.path.p0(), state.pace.rate);
   Loading &loading = state.loading;
-  const double present = load(seen), dt = c.assembly.settings.time_step;
-  update_slope(loading, present, state.place.steps);
-  loading.signed_rate = next_rate(loading, state.pace.rate, present, load_limit(state), ramp_time(c.assembly), dt);
+  const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly);
+  update_slope(loading, present, state.place.steps, std::max<std::uint64_t>(1, std::lround(wave / dt)));
+  const double rate = bounded_rate(state.pace, loading);
+  loading.signed_rate = next_rate(loading, rate, present, load_limit(state), ramp_waves * wave, dt);
   loading.strain += loading.signed_rate * dt;
   return loading.signed_rate * dt;
 }

@@ -46,7 +46,7 @@ TEST(RveMaterial, ABatchIsAsManySingleElements)
       RveMaterialSettings settings;
       settings.undrained = undrained;
       RveMaterial material(specimens(), settings, MPI_COMM_SELF);
-      RveSettings element;
+      RveSettings element{.motion = settings.motion};
       element.min_steps = settings.min_steps;
       element.frame = column_frame();
       std::vector<Rve> alone;
@@ -72,7 +72,7 @@ TEST(RveMaterial, ABatchIsAsManySingleElements)
 TEST(RveMaterial, ShearOfTheColumnIsThatOfTheElementTests)
 {
   RveMaterial material({test::soft_specimen(4)}, {}, MPI_COMM_SELF);
-  RveSettings same;
+  RveSettings same{.motion = RveMaterialSettings{}.motion};
   same.min_steps = RveMaterialSettings{}.min_steps;
   Rve test_element(test::soft_specimen(4), same);
   Mat3 h = Mat3::Zero();

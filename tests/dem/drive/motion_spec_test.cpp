@@ -27,8 +27,8 @@ TEST(MotionSpec, RecipeTellsEveryFieldApart)
 {
   const MotionSpec usual;
   EXPECT_EQ(recipe_text(usual), "0.050000000000000003 0.10000000000000001 0.10000000000000001 1 "
-                                "0.00040000000000000002 no 0.80000000000000004 no");
-  for (int changed = 0; changed < 8; ++changed)
+                                "0.00050000000000000001 0.070000000000000007 no 0.80000000000000004 no");
+  for (int changed = 0; changed < 9; ++changed)
     {
       MotionSpec motion;
       int k = 0;

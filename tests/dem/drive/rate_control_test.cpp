@@ -41,7 +41,7 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
       double q = 0;
       for (std::uint64_t k = 0; sign(direction) * q < limit && k < 100000; ++k)
         {
-          update_slope(loading, q, k);
+          update_slope(loading, q, k, 20);
           loading.signed_rate = next_rate(loading, rate, q, limit, ramp_time, dt);
           loading.strain += loading.signed_rate * dt;
           q = modulus * loading.strain;
@@ -70,6 +70,33 @@ TEST(StrainRate, IsThatOfTheStageOfTheMotionOrOfTheInertialNumber)
   EXPECT_EQ(strain_rate(motion, {}, assembly, 0), 0.7);
   EXPECT_EQ(strain_rate(motion, {}, assembly, 200e3), 0.7);
   EXPECT_EQ(strain_rate(motion, 0.3, assembly, 200e3), 0.3);
+}
+
+TEST(LoadRate, IsTheShareOfP0ThatAWaveTimeAllows)
+{
+  const Assembly assembly(test::specimen(500, 10));
+  const MotionSpec motion{.load_per_wave = 0.05};
+  const double edge = assembly.box().edges().maxCoeff(), density = assembly.packing().density;
+  EXPECT_CLOSE_BECAUSE(wave_time(assembly), edge * std::sqrt(density / assembly.law()->young), 1e-14, "round-off");
+  EXPECT_CLOSE_BECAUSE(load_rate(motion, {}, assembly, 200e3) * wave_time(assembly), 0.05 * 200e3, 1e-14, "round-off");
+  EXPECT_EQ(load_rate({.load_per_wave = 0}, {}, assembly, 200e3), 0);
+  EXPECT_EQ(load_rate({.strain_rate = 0.7}, {}, assembly, 200e3), 0) << "a fixed rate stays what it is";
+  EXPECT_EQ(load_rate(motion, 0.3, assembly, 200e3), 0);
+}
+
+TEST(BoundedRate, IsLowWhereThePackingIsStiff)
+{
+  Pace pace{.rate = 10, .load_rate = 2e9};
+  Loading loading;
+  EXPECT_EQ(bounded_rate(pace, loading), 10) << "no slope yet";
+  loading.slope = 1e8;
+  EXPECT_EQ(bounded_rate(pace, loading), 10);
+  loading.slope = 5e8;
+  EXPECT_DOUBLE_EQ(bounded_rate(pace, loading), 4);
+  loading.slope = 1e30;
+  EXPECT_DOUBLE_EQ(bounded_rate(pace, loading), 0.1);
+  pace.load_rate = 0;
+  EXPECT_EQ(bounded_rate(pace, loading), 10);
 }
 
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)
