@@ -46,7 +46,8 @@ NUMERICS = [of("rate x 2", inertial_number=1e-3, load_per_wave=0.14),
             of("I alone", load_per_wave=0), of("time step / 2", 5e4, time_step_safety=0.4),
             of("c / 2", free_grain_damping=0.05), of("c x 2", free_grain_damping=0.2),
             of("beta / 2", contact_damping=0.025), of("beta x 2", contact_damping=0.1)]
-LITTLE = at_two_rates("local damping 0.02", damping=0.02)
+LARGE = [*at_two_rates("local damping 0.02", damping=0.02), of("load_per_wave 0.02", 7e4, load_per_wave=0.02),
+         of("load_per_wave 0.02, local damping 0.02", 7e4, load_per_wave=0.02, damping=0.02)]
 DAMPING = {value: at_two_rates(f"local damping {value:g}", damping=value) for value in (0, 0.05, 0.2, 0.4)}
 
 
@@ -106,15 +107,15 @@ def runs(n_seeds):
 
     cyclic([DEFAULT, SLOW])
     cyclic(NUMERICS)
-    cyclic([DEFAULT, SLOW, *LITTLE], three, box, grains=MANY)
+    cyclic([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
     result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in (DEFAULT, SLOW, SLOWEST)]
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
     result += [Run("liquefied", s, "rigid-box") for s in three]
-    result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
     cyclic([fast for fast, _ in DAMPING.values()], half)
     cyclic(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
     cyclic(PUSHED, few, box)
+    result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
     cyclic([SLOWEST], few)
     cyclic([slow for _, slow in DAMPING.values()], few)
     return result

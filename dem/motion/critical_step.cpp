@@ -91,23 +91,31 @@ Mat6 scaled_block(const Packing &packing, std::size_t i, const Mat6 &block)
   return scale.asDiagonal() * block * scale.asDiagonal();
 }
 
-/// lambda of two smallest grains that meet while each is held by one more contact on the far side: what may come about
-/// before the next review, in a cloud or a liquid where little is closed now.
-double min_eigenvalue(const ContactLaw &law, const Packing &packing)
+/// Two smallest grains that meet: what may come about before the next review, in a cloud or a liquid where little is
+/// closed now.
+struct SmallestPair
 {
-  const double r = packing.min_radius();
-  const ContactStiffness k = law.stiffness(r, r, overlap_expected * r);
-  const double mass = 4.0 / 3.0 * M_PI * r * r * r * packing.density, inertia = 0.4 * mass * r * r;
-  return 2 * std::max((2 * k.normal + 2 * k.shear) / mass, (2 * (k.shear * r * r + k.rolling) + k.twisting) / inertia);
-}
+  SmallestPair(const ContactLaw &law, const Packing &packing)
+      : radius(packing.min_radius()), mass(4.0 / 3.0 * M_PI * radius * radius * radius * packing.density),
+        k(law.stiffness(radius, radius, overlap_expected * radius))
+  {}
 
-/// The same of their dashpots.
-double min_damping(const ContactLaw &law, const Packing &packing, double contact_damping)
-{
-  const double r = packing.min_radius(), mass = 4.0 / 3.0 * M_PI * r * r * r * packing.density;
-  const double kn = law.stiffness(r, r, overlap_expected * r).normal;
-  return 4 * dashpot_coefficient(contact_damping, kn, mass, mass) / mass;
-}
+  /// Each is held by one more contact on the far side.
+  double eigenvalue() const
+  {
+    const double inertia = 0.4 * mass * radius * radius;
+    return 2 * std::max((2 * k.normal + 2 * k.shear) / mass,
+                        (2 * (k.shear * radius * radius + k.rolling) + k.twisting) / inertia);
+  }
+  /// The same of their dashpots.
+  double damping(double contact_damping) const
+  {
+    return 4 * dashpot_coefficient(contact_damping, k.normal, mass, mass) / mass;
+  }
+
+  double radius, mass;
+  ContactStiffness k;
+};
 
 /// y = M^-1/2 K M^-1/2 x on 6 components per grain.
 struct ScaledStiffness
@@ -238,12 +246,12 @@ double critical_step_bound(const ContactLaw &law, const Packing &packing, const 
   const std::vector<Element> elements = closed_contacts(law, packing, contacts);
   Blocks held(packing.n_grains(), Mat6::Zero());
   for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i](axis, axis) += k; });
-  const double omega2 = largest_eigenvalue(packing, elements, held, min_eigenvalue(law, packing));
+  const double omega2 = largest_eigenvalue(packing, elements, held, SmallestPair(law, packing).eigenvalue());
   if (contact_damping <= 0)
     return 2 / std::sqrt(omega2);
   std::fill(held.begin(), held.end(), Mat6::Zero());
   return stable_step(omega2, largest_eigenvalue(packing, dashpots(packing, elements, contact_damping), held,
-                                                min_damping(law, packing, contact_damping)));
+                                                SmallestPair(law, packing).damping(contact_damping)));
 }
 
 double critical_step_by_power_iteration(const ContactLaw &law, const Packing &packing, const RigidBox *walls,

@@ -17,7 +17,7 @@ from speed_error import runner  # noqa: E402
 BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
 SEEDS = range(1, 21)
 CYCLES = 0.5, "the bound on the mean, taken at the nearer end of its 95 % interval"
-STRESS = 1.6  # kPa, of the mean path at reversals 2 to 16: 1.3 was measured in the box, 0.6 in the cell
+STRESS = 0.7  # kPa, of the mean path at reversals 2 to 16: 0.4 was measured in the box, 0.13 in the cell
 STEPS = 3e4  # to the onset
 
 
@@ -46,7 +46,7 @@ class QuasiStaticLimit(unittest.TestCase):
                 print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, p' at reversals 2 to 16 "
                       f"{np.round(stress, 2)} kPa, {steps:.0f} steps to the onset")
                 self.assertLess(abs(cycles) - half, CYCLES[0], CYCLES[1])
-                self.assertLess(half, 1, "or the interval says nothing")
+                self.assertLess(half, 0.5, "or the interval says nothing")
                 self.assertLess(np.abs(stress).max(), STRESS)
                 self.assertLess(steps, STEPS)
 
