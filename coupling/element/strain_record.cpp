@@ -13,7 +13,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-strain-record";
-constexpr std::uint64_t schema_version = 3; // 2: a tolerance of the rate
+constexpr std::uint64_t schema_version = 4; // 3: no load_per_wave; 2: a tolerance of the rate
 constexpr const char *gradient_names[] = {"H_xx", "H_xy", "H_xz", "H_yx", "H_yy", "H_yz", "H_zx", "H_zy", "H_zz"};
 constexpr const char *stress_names[] = {"sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy"};
 

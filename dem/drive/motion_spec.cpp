@@ -34,9 +34,9 @@ constexpr Key chosen[] = {
    .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
   {.path = "load_per_wave", .value = "0.07", .range = {0, 1},
    .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
-   .text = "The load, q or tau, changes at most by this share of p0' while a wave goes through the packing, "
-           "L sqrt(density/young): the strain rate is lowered where the packing is stiff, and the larger the packing, "
-           "the more. 0: never lowered. Not used with a fixed strain_rate.",
+   .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the packing, "
+           "L sqrt(density/young): the strain rate is lowered where the packing is stiff, the larger the packing the "
+           "more, but not below a hundredth. 0: never lowered. Not used with a fixed strain_rate.",
    .field = [](MotionSpec &m) -> Field { return &m.load_per_wave; }},
   {.path = "carry_grains", .kind = Kind::boolean, .value = "true",
    .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "

@@ -15,8 +15,8 @@ namespace isostat
 double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
                    double p0);
 
-/// Bound on |dq/dt| (in simple shear |dtau/dt|), Pa/s: load_per_wave p0' / wave_time, so that the stress in a packing
-/// is uniform to about that share of p0' whatever its size and stiffness. 0, no bound: a fixed rate was asked for, by
+/// Bound on |dq/dt| (in simple shear |dtau/dt|), Pa/s: load_per_wave p0' / wave_time, so that stress has time to spread
+/// through the packing. 0, no bound: a fixed rate was asked for, by
 /// the stage or the motion, or load_per_wave is 0.
 /// tested: tests/dem/drive/rate_control_test.cpp
 double load_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
@@ -39,8 +39,8 @@ double bounded_rate(const Pace &pace, const Loading &loading);
 /// @param rate  1/s   @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time, time_step  s
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step);
 
-/// L sqrt(rho/E), s, for a wave through the packing: L the longest edge of a box or V^(1/3) of a cell, E the contact
-/// modulus, rho the density of the grains.
+/// L sqrt(rho/E), s, the nominal time of a wave through the packing (shear waves in sand take some 3.5 times it): L the
+/// longest edge of a box or V^(1/3) of a cell, E the contact modulus, rho the density of the grains.
 double wave_time(const Assembly &assembly);
 
 /// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal (docs/results/free_grains.md).

@@ -19,7 +19,7 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t magic = 0x4556525453495349;
-constexpr std::uint64_t default_law = 3, named_law = 4; ///< version: does the law need its name?
+constexpr std::uint64_t default_law = 5, named_law = 6; ///< version: does the law need its name?
 
 std::uint64_t checksum(std::span<const std::byte> bytes) { return Hash().words(bytes).value(); }
 

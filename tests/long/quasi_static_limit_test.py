@@ -16,7 +16,8 @@ from speed_error import runner  # noqa: E402
 
 BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
 SEEDS = range(1, 21)
-CYCLES = 0.5, "the bound on the mean, taken at the nearer end of its 95 % interval"
+CYCLES = 0.5  # of the mean; 0.0 was measured in the box, 0.1 in the cell
+INTERVAL = 0.5  # half its 95 % interval, 0.3 and 0.4: a wider one says nothing
 STRESS = 0.7  # kPa, of the mean path at reversals 2 to 16: 0.4 was measured in the box, 0.13 in the cell
 STEPS = 3e4  # to the onset
 
@@ -45,8 +46,8 @@ class QuasiStaticLimit(unittest.TestCase):
                 steps = np.mean([t.steps for t in tests])
                 print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, p' at reversals 2 to 16 "
                       f"{np.round(stress, 2)} kPa, {steps:.0f} steps to the onset")
-                self.assertLess(abs(cycles) - half, CYCLES[0], CYCLES[1])
-                self.assertLess(half, 0.5, "or the interval says nothing")
+                self.assertLess(abs(cycles), CYCLES)
+                self.assertLess(half, INTERVAL)
                 self.assertLess(np.abs(stress).max(), STRESS)
                 self.assertLess(steps, STEPS)
 
