@@ -2,6 +2,7 @@
 #include "apps/common/scene_program.hpp"
 
 #include "base/error.hpp"
+#include "base/files/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -58,13 +59,23 @@ int SceneProgram::main(int argc, char **argv) const
   return ready ? guard([&] { run(options); }) : code;
 }
 
+std::string first_difference(const std::string &one, const std::string &other)
+{
+  const auto a = split_lines(one), b = split_lines(other);
+  for (std::size_t k = 0; k < b.size(); ++k)
+    if (k >= a.size() || a[k] != b[k])
+      return std::string(b[k]);
+  return "lines at the end";
+}
+
 void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene)
 {
   if (checkpoint != scene)
-    throw InputError(
-        fmt::format("{}: the checkpoint belongs to another scene than this one (compare {} with the output "
-                    "of --validate). Resume with the scene and --set values of the first run.",
-                    folder.string(), (folder / "scene.toml").string()));
+    throw InputError(fmt::format(
+        "{}: the checkpoint belongs to another scene than this one: it has `{}` where this one has `{}` "
+        "(compare {} with the output of --validate). Resume with the scene and --set values of the first run.",
+        folder.string(), first_difference(scene, checkpoint), first_difference(checkpoint, scene),
+        (folder / "scene.toml").string()));
 }
 
 std::string last_checkpoint(const std::filesystem::path &folder)

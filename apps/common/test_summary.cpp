@@ -236,9 +236,11 @@ std::string to_text(const TestSummary &s, const Scene &scene)
       "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
       s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
   const MotionSpec &motion = scene.motion;
-  const std::string rate = motion.strain_rate
-                               ? fmt::format("fixed at {:g} 1/s", *motion.strain_rate)
-                               : fmt::format("of the inertial number {:g} at p0'", motion.inertial_number);
+  const std::string rate =
+      motion.strain_rate ? fmt::format("fixed at {:g} 1/s", *motion.strain_rate)
+                         : fmt::format("of the inertial number {:g} at p0', or less: the load changes by {:g} % of p0' "
+                                       "at most in a wave time",
+                                       motion.inertial_number, 100 * motion.load_per_wave);
   text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
                       s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
@@ -246,10 +248,13 @@ std::string to_text(const TestSummary &s, const Scene &scene)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
                         2 * s.cycles_to_liquefaction);
   if (s.liquefied)
-    text += fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after          "
-                        "{:.3f}\n  I_R as p'/p0 recovers    {:.3f} (mean of {:.0f})",
-                        s.shear ? "|gamma| before it" : "strain before it", 100 * s.strain_before,
-                        s.redundancy_at_onset, s.redundancy_min, s.redundancy_recovered, s.n_recoveries);
+    text +=
+        fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after          "
+                    "{:.3f}\n  I_R as p'/p0 recovers    {}",
+                    s.shear ? "|gamma| before it" : "strain before it", 100 * s.strain_before, s.redundancy_at_onset,
+                    s.redundancy_min,
+                    s.n_recoveries > 0 ? fmt::format("{:.3f} (mean of {:.0f})", s.redundancy_recovered, s.n_recoveries)
+                                       : "it does not recover");
   else
     text += "\n  liquefaction             none";
   if (s.cyclic)

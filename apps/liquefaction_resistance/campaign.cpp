@@ -2,6 +2,7 @@
 #include "apps/liquefaction_resistance/campaign.hpp"
 
 #include "apps/common/result_folder.hpp"
+#include "apps/common/scene_program.hpp"
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
@@ -55,16 +56,6 @@ double consolidation_pressure(const Scene &scene, std::size_t stage)
                                  "needs isotropic consolidation. Take it, or cyclic simple shear.",
                                  scene.title));
   return pressure;
-}
-
-/// First line in which two texts differ, as it stands in the second.
-std::string difference(const std::string &one, const std::string &other)
-{
-  const auto a = split_lines(one), b = split_lines(other);
-  for (std::size_t k = 0; k < b.size(); ++k)
-    if (k >= a.size() || a[k] != b[k])
-      return std::string(b[k]);
-  return "lines at the end";
 }
 } // namespace
 
@@ -149,7 +140,7 @@ void Campaign::check_folder() const
   if (text != there)
     throw InputError(fmt::format("{}: in use by another scene: it has `{}` where this one has `{}`. Choose another "
                                  "--output, or --overwrite to start anew.",
-                                 folder_.string(), difference(text, there), difference(there, text)));
+                                 folder_.string(), first_difference(text, there), first_difference(there, text)));
 }
 
 void Campaign::open()

@@ -22,7 +22,9 @@ void refuse_unknown(const SceneDocument &document, const std::string &path)
 {
   const SceneSchema &schema = document.schema();
   const std::string known = schema.schema_path(path);
-  document.refuse(path, fmt::format("is no key of a scene. Did you mean {}?", schema.nearest_path(known)));
+  const std::string near = schema.nearest_path(known);
+  document.refuse(path, near.empty() ? "is no key of this kind of scene. --manual lists all keys."
+                                     : fmt::format("is no key of a scene. Did you mean {}?", near));
 }
 
 /// Every key of the document is in the schema; tables are tables.

@@ -121,7 +121,8 @@ struct SceneSchema
   unsigned kinds_of(std::string_view path) const;    ///< bits of the kinds that take it, over all its entries; 0: all
   /// The path of a key as in the schema: "stage.3.strain" -> "stage.strain".
   std::string schema_path(std::string_view path) const;
-  /// The known path with the fewest typing errors from an unknown one; the section may be missing or wrong.
+  /// The known path with the fewest typing errors from an unknown one; the section may be missing or wrong. Empty: none
+  /// shares half of its letters.
   std::string nearest_path(std::string_view unknown) const;
   /// Names of the kinds of a section from their bits, "any" if it is all of them.
   std::string kinds_text(const Section &section, unsigned kinds) const;

@@ -155,7 +155,7 @@ std::string SceneSchema::nearest_path(std::string_view unknown) const
     offer(key.path);
   for (const Section &section : sections)
     offer(section.name);
-  return best;
+  return fewest <= std::max<std::size_t>(4, word.size()) ? best : "";
 }
 
 std::string heading(const Section &section)

@@ -44,7 +44,7 @@ constexpr Key chosen[] = {
    .field = [](MotionSpec &m) -> Field { return &m.carry_grains; }},
   {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",
-   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number.",
+   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number and load_per_wave.",
    .field = [](MotionSpec &m) -> Field { return &m.strain_rate; }},
   {.path = "time_step_safety", .value = "0.8", .range = ranges::to_one,
    .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",

@@ -170,7 +170,7 @@ class OutputFolder(AppTest):
         before = contents(self.folder / "out")
         for change in ("motion.damping=0.25", "specimen.pressure=100 kPa"):
             result = self.run_test(self.scene, "-o", "out", "--resume", *every_256_steps, "--set", change)
-            self.assert_refused(result, "another scene", "out")
+            self.assert_refused(result, "another scene", "out", change.split(".")[1].split("=")[0])
         self.assertEqual(contents(self.folder / "out"), before)
         self.assertEqual(len(list(self.cache.glob("*.h5"))), 1)  # nothing was prepared for the refused ones
 

@@ -36,6 +36,7 @@ relative_density = 0.5
 [grains]
 library = "{cache}/library.h5"
 cache = "{cache}/in_situ.h5"
+inertial_number = 5e-4
 snapshot_depths = ["1 m", "2.5 m"]
 path_depths = ["2.1 m"]
 snapshot_interval = "0.1 s"
