@@ -18,7 +18,7 @@ std::string joined(const std::string &prefix, std::string_view word)
   return prefix.empty() ? std::string(word) : fmt::format("{}.{}", prefix, word);
 }
 
-void refuse_unknown(const SceneDocument &document, const std::string &path)
+[[noreturn]] void refuse_unknown(const SceneDocument &document, const std::string &path)
 {
   const SceneSchema &schema = document.schema();
   const std::string known = schema.schema_path(path);
