@@ -10,6 +10,21 @@ namespace isostat
 namespace
 {
 // clang-format off
+// two keys that stand in both tables, with the defaults and words of each
+constexpr Key damping(const char *value, const char *text)
+{
+  return {.path = "damping", .value = value, .range = {0, 1, false, true},
+          .reason = "because at 1 no grain would get moving", .text = text,
+          .field = [](MotionSpec &m) -> Field { return &m.damping; }};
+}
+
+constexpr Key inertial_number(const char *value, const char *text)
+{
+  return {.path = "inertial_number", .value = value, .range = ranges::fraction,
+          .reason = "because at 1 inertia is as large as the stress", .group = "rate", .text = text,
+          .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }};
+}
+
 constexpr Key shared[] = {
   {.path = "contact_damping", .value = "0.05", .range = {0, 1, false, true},
    .reason = "because it is a share of critical damping; a large one needs a small time step",
@@ -23,15 +38,10 @@ constexpr Key shared[] = {
 };
 
 constexpr Key chosen[] = {
-  {.path = "damping", .value = "0.1", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
-   .text = "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what gives way as "
-           "a whole.",
-   .field = [](MotionSpec &m) -> Field { return &m.damping; }},
-  {.path = "inertial_number", .value = "5e-4", .range = ranges::fraction,
-   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
-   .text = "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
-           "simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50.",
-   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
+  damping("0.1", "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what gives way as "
+          "a whole."),
+  inertial_number("5e-4", "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
+                  "simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50."),
   {.path = "load_per_wave", .value = "0.07", .range = {0, 1},
    .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
    .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the packing, "
@@ -54,16 +64,12 @@ constexpr Key chosen[] = {
    .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts.",
    .field = [](MotionSpec &m) -> Field { return &m.time_step; }},
 };
+
 constexpr Key controlled[] = {
-  {.path = "damping", .value = "0.2", .range = {0, 1, false, true}, .reason = "because at 1 no grain would get moving",
-   .text = "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their stress hardly "
-           "come to rest.",
-   .field = [](MotionSpec &m) -> Field { return &m.damping; }},
-  {.path = "inertial_number", .value = "1e-4", .range = ranges::fraction,
-   .reason = "because at 1 inertia is as large as the stress", .group = "rate",
-   .text = "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that would strain it "
-           "faster than I sqrt(p0'/density)/d50 take more time steps of the grains than min_steps.",
-   .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }},
+  damping("0.2", "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their stress hardly "
+          "come to rest."),
+  inertial_number("1e-4", "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that would strain it "
+                  "faster than I sqrt(p0'/density)/d50 take more time steps of the grains than min_steps."),
 };
 // clang-format on
 } // namespace
