@@ -236,11 +236,11 @@ std::string to_text(const TestSummary &s, const Scene &scene)
       "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
       s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
   const MotionSpec &motion = scene.motion;
-  const std::string rate =
-      motion.strain_rate ? fmt::format("fixed at {:g} 1/s", *motion.strain_rate)
-                         : fmt::format("of the inertial number {:g} at p0', or less: the load changes by {:g} % of p0' "
-                                       "at most in a wave time",
-                                       motion.inertial_number, 100 * motion.load_per_wave);
+  std::string rate = motion.strain_rate ? fmt::format("fixed at {:g} 1/s", *motion.strain_rate)
+                                        : fmt::format("of the inertial number {:g} at p0'", motion.inertial_number);
+  if (!motion.strain_rate && motion.load_per_wave > 0)
+    rate +=
+        fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time", 100 * motion.load_per_wave);
   text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
                       s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
