@@ -100,7 +100,7 @@ def draw_hold(results, path):
         axes[1].plot(steps, energy, line, color=colour, label=label)
     axes[0].set(xlabel="time steps since loading stopped [-]", ylabel="p' lost [kPa]")
     axes[1].set(xlabel="time steps since loading stopped [-]", ylabel="kinetic energy [J]", yscale="log")
-    axes[0].legend(fontsize=7)
+    axes[1].legend(fontsize=7, loc="center right")
     for panel, letter in zip(axes, "ab"):
         panel.set_title(f"({letter})", loc="left")
     finish(figure, path)
