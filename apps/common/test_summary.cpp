@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace isostat
 {
@@ -100,6 +102,25 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
       if (!summary.liquefied)
         summary.max_indicator = std::max(summary.max_indicator, history(row, indicator));
     }
+}
+
+/// "of the inertial number 4e-05 at p0', or less: ..." The bound on the strain rate of the stages.
+std::string rate_text(const Scene &scene)
+{
+  const MotionSpec &motion = scene.motion;
+  if (motion.strain_rate)
+    return fmt::format("fixed at {:g} 1/s", *motion.strain_rate);
+  std::set<double> numbers;
+  for (const Stage &stage : scene.stages)
+    if (const auto *shear = as<ShearStage>(stage); shear && !shear->strain_rate)
+      numbers.insert(motion.inertial_number.value_or(shear->inertial_number()));
+  if (numbers.empty())
+    return "fixed by the stages";
+  std::string text = fmt::format("of the inertial number {:g} at p0'", fmt::join(numbers, ", "));
+  if (motion.load_per_wave > 0)
+    text +=
+        fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time", 100 * motion.load_per_wave);
+  return text;
 }
 
 bool is_cyclic(const Stage &stage) { return as<CyclicConstantVolume>(stage); }
@@ -235,14 +256,8 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   text += fmt::format(
       "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
       s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
-  const MotionSpec &motion = scene.motion;
-  std::string rate = motion.strain_rate ? fmt::format("fixed at {:g} 1/s", *motion.strain_rate)
-                                        : fmt::format("of the inertial number {:g} at p0'", motion.inertial_number);
-  if (!motion.strain_rate && motion.load_per_wave > 0)
-    rate +=
-        fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time", 100 * motion.load_per_wave);
-  text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)", rate,
-                      s.max_indicator);
+  text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)",
+                      rate_text(scene), s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
   if (s.cyclic && s.liquefied)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,

@@ -77,7 +77,8 @@ struct Squares
 RveSettings changed(RveSettings settings, const Options &options)
 {
   MotionSpec &motion = settings.motion;
-  motion.inertial_number = options.inertial_number.value_or(motion.inertial_number);
+  if (options.inertial_number)
+    motion.inertial_number = options.inertial_number;
   motion.damping = options.damping.value_or(motion.damping);
   settings.min_steps = options.min_steps.value_or(settings.min_steps);
   return settings;

@@ -6,6 +6,7 @@ from speed_error import plan as speed_plan
 
 GRAINS, MANY = 2000, 10_000
 DOMAINS = ("rigid-box", "periodic-cell")
+LOOSE, DENSER = 10, 8  # preparation friction, degrees
 HELD_STEPS = 100_000
 
 
@@ -28,9 +29,11 @@ def of(label, steps=2.5e4, **motion):
 
 DEFAULT = of("default")
 # both bounds on the rate divided by 10 and by 100
-TENTH, HUNDREDTH = {"inertial_number": 5e-5, "load_per_wave": 0.007}, {"inertial_number": 5e-6, "load_per_wave": 7e-4}
+TENTH, HUNDREDTH = {"inertial_number": 7e-5, "load_per_wave": 0.01}, {"inertial_number": 7e-6, "load_per_wave": 1e-3}
 SLOW = of("rate / 10", 2.5e5, **TENTH)
 SLOWEST = of("rate / 100", 2.5e6, **HUNDREDTH)
+# monotonic tests have a default of their own, I = 4e-5
+ONE_WAY = [DEFAULT, of("I of cyclic tests", inertial_number=7e-4), of("I / 10", 2.5e6, inertial_number=4e-6)]
 LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": "false"}
 
 
@@ -42,7 +45,7 @@ LOCAL_SETTINGS = at_two_rates("local damping alone", **LOCAL)
 ALONE_SETTINGS = at_two_rates("free grains left alone", **ALONE)
 PUSHED = at_two_rates("walls push", **PUSHING)
 OLD_SETTINGS = at_two_rates("all three", **LOCAL, **ALONE, **PUSHING)
-NUMERICS = [of("rate x 2", inertial_number=1e-3, load_per_wave=0.14),
+NUMERICS = [of("rate x 2", inertial_number=1.4e-3, load_per_wave=0.2),
             of("I alone", load_per_wave=0), of("time step / 2", 5e4, time_step_safety=0.4),
             of("c / 2", free_grain_damping=0.05), of("c x 2", free_grain_damping=0.2),
             of("beta / 2", contact_damping=0.025), of("beta x 2", contact_damping=0.1)]
@@ -60,22 +63,28 @@ class Run:
     domain: str
     setting: Setting = DEFAULT
     grains: int = GRAINS
+    degrees: float = LOOSE
+
+    @property
+    def packing(self):
+        """Domain, and the preparation friction where it is not the usual one."""
+        return self.domain + (f" at {self.degrees:g} deg" if self.degrees != LOOSE else "")
 
     @property
     def name(self):
         what = "specimen" if self.kind == "prepare" else f"{self.kind}_{self.setting.name}"
-        return f"{what}_{self.domain}_n{self.grains}_s{self.seed}"
+        return f"{what}_{self.packing.replace(' ', '_')}_n{self.grains}_s{self.seed}"
 
     @property
     def specimen(self):
-        return self.domain, self.grains, self.seed
+        return self.packing, self.grains, self.seed
 
     def scene(self):
         text = speed_plan.SCENE.format(title=self.name, grains=self.grains, seed=self.seed,
                                        edge=10 * (self.grains / 10000) ** (1 / 3), stage=self.stages(),
                                        record_strain="1e-4",
                                        motion="\n".join(f"{key} = {value}" for key, value in self.setting.motion))
-        text = text.replace("rigid-box", self.domain)
+        text = text.replace("rigid-box", self.domain).replace('"10 deg"', f'"{self.degrees:g} deg"')
         return text + "record_steps = 500\n" if self.kind.startswith("hold") else text
 
     def stages(self):
@@ -89,7 +98,7 @@ class Run:
                 "hold-late": cyclic.format("cycles = 100, reversals_after_liquefaction = 3") + hold}[self.kind]
 
     def estimated_seconds(self):
-        of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.5 * self.setting.steps,
+        of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.4 * max(self.setting.steps, 2.5e5),
                    "liquefied": 18 * self.setting.steps, "hold": HELD_STEPS, "hold-late": 4e5}
         return 1.1e-4 * of_kind[self.kind] * self.grains / GRAINS
 
@@ -108,7 +117,9 @@ def runs(n_seeds):
     cyclic([DEFAULT, SLOW])
     cyclic(NUMERICS)
     cyclic([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
-    result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in (DEFAULT, SLOW, SLOWEST)]
+    result += [Run("prepare", s, domain, degrees=DENSER) for domain in DOMAINS for s in few]
+    cyclic([DEFAULT, SLOW], few, degrees=DENSER)
+    result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in ONE_WAY]
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
     result += [Run("liquefied", s, "rigid-box") for s in three]

@@ -46,7 +46,7 @@ class Results:
         self.cyclic = {}
         for run in self.runs:
             if run.kind == "cyclic":
-                self.cyclic.setdefault((run.domain, run.grains, run.setting), {})[run.seed] = Cyclic(
+                self.cyclic.setdefault((run.packing, run.grains, run.setting), {})[run.seed] = Cyclic(
                     paths.History(store.folder(run)))
 
     def of(self, kind):
@@ -91,7 +91,8 @@ class Results:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
                                  np.mean(found), standard_error(found)])
         histories = {(run.setting, run.seed): paths.History(self.store.folder(run)) for run in self.of("monotonic")}
-        for setting, reference in ((plan.DEFAULT, plan.SLOW), (plan.DEFAULT, plan.SLOWEST), (plan.SLOW, plan.SLOWEST)):
+        *settings, reference = plan.ONE_WAY
+        for setting in settings:
             for strain in (0.001, 0.002, 0.005):
                 found = [paths.deviation(paths.monotonic_path(histories[setting, s], strain),
                                          paths.monotonic_path(histories[reference, s], strain))

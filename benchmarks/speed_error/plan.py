@@ -58,9 +58,9 @@ class Setting:
 
     @property
     def slowness(self):
-        """Time steps over those of the default, on the same path."""
+        """Time steps over those of the default of cyclic tests, on the same path."""
         keys = dict(self.motion)
-        return 4e-4 / float(keys.get("inertial_number", 4e-4)) * 0.8 / float(keys.get("time_step_safety", 0.8))
+        return 7e-4 / float(keys.get("inertial_number", 7e-4)) * 0.8 / float(keys.get("time_step_safety", 0.8))
 
 
 @dataclasses.dataclass(frozen=True)

@@ -55,8 +55,9 @@ struct Loading
   LoadDirection direction = LoadDirection::compression;
   double slope = 0;                          ///< |d load/d strain|, Pa
   double window_load = 0, window_strain = 0; ///< where the window began that the slope is taken over, Pa and [-]
+  std::uint64_t window_steps = 0;            ///< since then
 
-  ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain)
+  ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain, window_steps)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.

@@ -14,8 +14,9 @@ struct MotionSpec
   double damping = 0.1;            ///< local (non-viscous) damping coefficient [-]
   double free_grain_damping = 0.1; ///< share of its velocity that a grain without any force loses in a step [-]
   bool carry_grains = true;        ///< grains of a box share the homogeneous motion of its walls
-  double inertial_number = 5e-4;   ///< I at p0': the strain rate is at most I sqrt(p0'/density)/d50 [-]
-  double load_per_wave = 0.07; ///< the load changes at most by this share of p0' while a wave goes through the packing
+  std::optional<double> inertial_number = {}; ///< I at p0': the strain rate is at most I sqrt(p0'/density)/d50; none:
+                                              ///< what suits the kind of stage [-]
+  double load_per_wave = 0.1; ///< the load changes at most by this share of p0' while a wave goes through the packing
   std::optional<double> strain_rate = {}; ///< fixed axial rate, 1/s; instead of the inertial number
   double time_step_safety = 0.8;          ///< fraction of the critical step
   std::optional<double> time_step = {};   ///< fixed, s; checked against the critical step
@@ -31,7 +32,8 @@ SceneFragment<MotionSpec> motion_keys();
 /// The defaults of packings whose strain answers their stress, as in a column: with less local damping packing and
 /// column keep each other in motion (docs/results/free_grains.md, "Columns"), and at a higher rate they liquefy late
 /// (docs/results/column_error.md).
-inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number = 1e-4}; }
+constexpr double controlled_inertial_number = 1e-4;
+inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number = controlled_inertial_number}; }
 /// The keys of such packings: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();
 

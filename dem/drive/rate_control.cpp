@@ -9,25 +9,39 @@
 
 namespace isostat
 {
-double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
-                   double p0)
+namespace
 {
-  if (stage_rate)
-    return *stage_rate;
-  if (motion.strain_rate)
-    return *motion.strain_rate;
+std::optional<double> fixed_rate(const MotionSpec &motion, const StageRate &stage)
+{
+  return stage.fixed ? stage.fixed : motion.strain_rate;
+}
+
+void begin_window(Loading &loading, double load, double slope)
+{
+  loading.slope = slope;
+  loading.window_load = load;
+  loading.window_strain = loading.strain;
+  loading.window_steps = 0;
+}
+} // namespace
+
+double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0)
+{
+  if (const auto fixed = fixed_rate(motion, stage))
+    return *fixed;
   if (!(p0 > 0))
     throw RunFailure(
         fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
                     "number goes with its root. Consolidate it first, or give motion.strain_rate.",
                     p0));
-  return motion.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
+  const double number = motion.inertial_number.value_or(stage.inertial_number);
+  return number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }
 
-double load_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly, double p0)
+void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace)
 {
-  const bool fixed = stage_rate || motion.strain_rate;
-  return fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
+  pace.rate = strain_rate(motion, stage, assembly, p0);
+  pace.load_rate = fixed_rate(motion, stage) ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
 }
 
 double bounded_rate(const Pace &pace, const Loading &loading)
@@ -48,8 +62,8 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
 
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step)
 {
-  const double acceleration = rate / ramp_time, direction = sign(loading.direction);
-  const double change = acceleration * time_step;
+  const double direction = sign(loading.direction), acceleration = rate / ramp_time;
+  const double change = std::max(rate, std::abs(loading.signed_rate)) / ramp_time * time_step;
   const double next = loading.signed_rate + std::clamp(direction * rate - loading.signed_rate, -change, change);
   if (limit <= 0 || loading.slope <= 0 || next * direction <= 0)
     return next;
@@ -65,13 +79,18 @@ double wave_time(const Assembly &assembly)
   return edge * std::sqrt(assembly.packing().density / assembly.law()->young);
 }
 
-void update_slope(Loading &loading, double load, std::uint64_t step_number, std::uint64_t window)
+void start_loading(Loading &loading, double load, double slope)
 {
-  if (step_number % window != 0)
+  loading.signed_rate = 0;
+  begin_window(loading, load, slope);
+}
+
+void update_slope(Loading &loading, double load, std::uint64_t window)
+{
+  if (loading.window_steps++ < window)
     return;
   const double strain = std::abs(loading.strain - loading.window_strain);
-  loading.slope = strain > 0 ? std::abs(load - loading.window_load) / strain : 0;
-  loading.window_load = load;
-  loading.window_strain = loading.strain;
+  begin_window(loading, load, strain > 0 ? std::abs(load - loading.window_load) / strain : 0);
+  loading.window_steps = 1;
 }
 } // namespace isostat

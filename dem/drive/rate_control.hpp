@@ -6,21 +6,25 @@
 
 namespace isostat
 {
-/// Strain rate of a stage, 1/s: its own where it has one, else that of the motion, else that of the inertial number,
+/// What a stage says of its rate.
+struct StageRate
+{
+  std::optional<double> fixed = {}; ///< strain rate, 1/s; before that of the motion
+  double inertial_number;           ///< where the motion names none [-]
+};
+
+/// Strain rate, 1/s: the fixed one of the stage, else of the motion, else that of the inertial number,
 /// I sqrt(p0'/rho)/d50. It stays the same while p' changes: what error that leaves, also in the liquefied state, is
-/// measured in docs/results/free_grains.md. Where the packing is stiff it is lowered (`load_rate`).
+/// measured in docs/results/free_grains.md.
 /// @param p0  mean effective stress when shearing began, Pa
 /// @throws RunFailure  the rate is that of the inertial number and p0 <= 0
 /// tested: tests/dem/drive/rate_control_test.cpp
-double strain_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
-                   double p0);
+double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0);
 
-/// Bound on |dq/dt| (in simple shear |dtau/dt|), Pa/s: load_per_wave p0' / wave_time, so that stress has time to spread
-/// through the packing. 0, no bound: a fixed rate was asked for, by
-/// the stage or the motion, or load_per_wave is 0.
+/// Sets both bounds on the rate: pace.rate = strain_rate(), and pace.load_rate = load_per_wave p0' / wave_time, so that
+/// stress has time to spread through the packing; none with a fixed rate.
 /// tested: tests/dem/drive/rate_control_test.cpp
-double load_rate(const MotionSpec &motion, const std::optional<double> &stage_rate, const Assembly &assembly,
-                 double p0);
+void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace);
 
 /// What inertia adds to a quasi-static answer, relative to the stress at hand; recorded every 50 steps:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0'),
@@ -46,8 +50,11 @@ double wave_time(const Assembly &assembly);
 /// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal (docs/results/free_grains.md).
 constexpr double ramp_waves = 4;
 
+/// Loading starts from rest, at the beginning of a stage or at a reversal, with a first window of the slope.
+/// @param slope  expected, Pa: what holds until the first window is full
+void start_loading(Loading &loading, double load, double slope);
+
 /// Keeps loading.slope = |d load/d driven strain| over windows of `window` steps: for the bound on the load rate and
-/// for the braking. Drivers take windows of one wave time.
-/// @param step_number  of the stage
-void update_slope(Loading &loading, double load, std::uint64_t step_number, std::uint64_t window);
+/// for the braking. Drivers take windows of one wave time. Once a step.
+void update_slope(Loading &loading, double load, std::uint64_t window);
 } // namespace isostat

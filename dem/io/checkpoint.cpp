@@ -10,8 +10,8 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-checkpoint";
-constexpr std::uint64_t schema_version =
-    4; // 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
+// 4: no window of the slope; 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
+constexpr std::uint64_t schema_version = 5;
 
 Checkpoint read_file(const std::filesystem::path &path)
 {

@@ -290,6 +290,20 @@ Vec3 affine_moduli(const LiveContacts &contacts, double volume)
   return sum / volume;
 }
 
+double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &gradient)
+{
+  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
+  double sum = 0;
+  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
+    const double r1 = contacts.packing.radius(i), r2 = contacts.packing.radius(j), length = branch.norm();
+    const ContactStiffness k = contacts.law.stiffness(r1, r2, r1 + r2 - length);
+    const Vec3 n = branch / length, motion = strain * branch;
+    const double along = n.dot(motion);
+    sum += k.normal * along * along + k.shear * (motion.squaredNorm() - along * along);
+  });
+  return sum / volume;
+}
+
 Mat3 column_stiffness(const Mat6 &stiffness, int axis)
 {
   constexpr std::array<std::array<int, 3>, 3> rows{{{0, 5, 4}, {1, 5, 3}, {2, 4, 3}}};

@@ -60,6 +60,13 @@ Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elast
 /// tested: tests/verification/cell_programme_test.cpp (the servo that uses it)
 Vec3 affine_moduli(const LiveContacts &contacts, double volume);
 
+/// The same in one direction of strain, e:C:e with e the symmetric part of `gradient`, Pa: what a load rises by per
+/// unit of the strain that drives it, where the two are work-conjugate (q and axial strain at constant volume, tau and
+/// gamma).
+/// @param volume  m3     cost one pass over the contacts
+/// tested: tests/dem/assembly/assembly_test.cpp (against affine_stiffness)
+double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &gradient);
+
 /// What is left of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
 /// the lateral directions b < c. Rows and columns: aa, ab, ac with engineering shear; for axis 2: zz, xz, yz.
 /// It is the acoustic tensor C_iaja in that order. @param axis  0, 1, 2 = x, y, z     @return Pa

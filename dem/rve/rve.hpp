@@ -13,7 +13,7 @@ namespace isostat
 /// How a representative volume element is run.
 struct RveSettings
 {
-  MotionSpec motion;             ///< damping, rate, time step; load_per_wave is not used
+  MotionSpec motion = {.inertial_number = 5e-4}; ///< damping, rate, time step; load_per_wave is not used
   Mat3 frame = Mat3::Identity(); ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
   /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
   /// each in a step or two, without time for its grains to find their places.

@@ -40,25 +40,22 @@ Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &
   Verdict verdict = ConstantVolume::reached(c, seen);
   const UndrainedRecord &record = c.state.undrained;
   if (sign(c.state.loading.direction) * load(seen) >= load_limit(c.state))
-    turn(seen, c.state, verdict);
+    turn(c, seen, verdict);
   const bool enough_after =
       record.liquefaction && record.reversals >= record.liquefaction->reversals + reversals_after_liquefaction;
   verdict.finished = enough_after || record.reversals >= 2 * max_cycles || std::abs(strain(seen)) >= max_strain;
   return verdict;
 }
 
-void CyclicConstantVolume::turn(const Observation &seen, DriveState &state, Verdict &verdict) const
+void CyclicConstantVolume::turn(const StageContext &c, const Observation &seen, Verdict &verdict) const
 {
   const double now = load(seen);
+  DriveState &state = c.state;
   UndrainedRecord &record = state.undrained;
   record.worst_overshoot = std::max(record.worst_overshoot, std::abs(now) - load_limit(state));
   record.reversals += 1;
-  Loading &loading = state.loading;
-  loading.direction = opposite(loading.direction);
-  loading.signed_rate = 0;
-  loading.slope = 0;
-  loading.window_load = now;
-  loading.window_strain = loading.strain;
+  state.loading.direction = opposite(state.loading.direction);
+  load_from_rest(c, now);
   verdict.notable = true;
   verdict.event =
       fmt::format("reversal {} at step {}: {} {:.4g} %, p' {:.2f} kPa, {} {:.2f} kPa", record.reversals, seen.step,

@@ -49,6 +49,7 @@ public:
   double max_strain = 0.15; ///< driven, its amount [-]
 
   bool operator==(const CyclicConstantVolume &) const = default;
+  double inertial_number() const final { return 7e-4; }
   std::optional<double> fraction_done(const DriveState &state) const final;
 
   /// The cyclic stress ratio (CSR) of this kind, in words: "q_amp / (2 p0')".
@@ -62,7 +63,7 @@ protected:
   Verdict reached(const StageContext &c, const Observation &seen) const final;
 
 private:
-  void turn(const Observation &seen, DriveState &state, Verdict &verdict) const;
+  void turn(const StageContext &c, const Observation &seen, Verdict &verdict) const;
 };
 
 /// Axial loading between +-q_amp.

@@ -3,6 +3,7 @@
 
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
+#include "dem/measure/stiffness.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace
 {
 constexpr std::uint64_t indicator_interval = 50;
 constexpr double servo_rate_factor = 4; ///< the sides may move so much faster than the top
+constexpr double modulus_over_affine =
+    0.5; ///< of sand after a reversal: grains give way, contacts in series are softer
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -56,10 +59,15 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
       path.cell_strain.setZero();
       path.gamma = 0;
     }
-  c.state.pace.rate = isostat::strain_rate(c.motion, strain_rate, c.assembly, path.p0());
-  c.state.pace.load_rate = load_rate(c.motion, strain_rate, c.assembly, path.p0());
+  set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.p0(), c.state.pace);
   path.lateral_target = -stress.diagonal();
-  c.state.loading.window_load = load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)});
+  load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
+}
+
+void ShearStage::load_from_rest(const StageContext &c, double present) const
+{
+  const double affine = affine_modulus(c.assembly.live_contacts(), c.assembly.volume(), mode().constant_volume(1));
+  start_loading(c.state.loading, present, modulus_over_affine * affine);
 }
 
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
@@ -69,7 +77,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
     state.pace.indicator = quasi_static_indicator(c.assembly, seen.p, state.path.p0(), state.pace.rate);
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly);
-  update_slope(loading, present, state.place.steps, std::max<std::uint64_t>(1, std::lround(wave / dt)));
+  update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));
   const double rate = bounded_rate(state.pace, loading);
   loading.signed_rate = next_rate(loading, rate, present, load_limit(state), ramp_waves * wave, dt);
   loading.strain += loading.signed_rate * dt;

@@ -29,6 +29,9 @@ public:
 
   bool operator==(const ShearStage &) const = default;
   virtual const ShearMode &mode() const { return triaxial_mode; }
+  /// Where the motion names none: a path that goes one way depends more on its rate than one that turns
+  /// (docs/results/free_grains.md) [-].
+  virtual double inertial_number() const { return 4e-5; }
   bool needs_cell() const override { return mode().needs_cell; }
   bool shears() const final { return true; }
   void begin(const StageContext &c) const override;
@@ -38,6 +41,9 @@ public:
   std::optional<double> fraction_done(const DriveState &state) const override;
 
 protected:
+  /// Begins to load from rest, with half the affine modulus as the slope that is expected.
+  /// @param present  load, Pa    cost one pass over the contacts
+  void load_from_rest(const StageContext &c, double present) const;
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
   /// |load| at which the stage turns, Pa; 0: it does not.

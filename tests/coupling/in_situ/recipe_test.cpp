@@ -21,7 +21,7 @@ TEST(InSituRecipe, ItsTextIsThatOfItsVersion)
   EXPECT_EQ(recipe({}),
             "in situ 2; specimen 3f64747dcade3880; stress -1000 -2000 -1000 0 0 0; path 0; tolerance 0.001; "
             "steps 500000; motion 0.050000000000000003 0.10000000000000001 0.10000000000000001 1 "
-            "0.00050000000000000001 0.070000000000000007 no 0.80000000000000004 no");
+            "no 0.10000000000000001 no 0.80000000000000004 no");
 }
 
 TEST(InSituRecipe, AllThatTheResultDependsOnIsInIt)

@@ -4,9 +4,11 @@
 
 #include "base/error.hpp"
 #include "dem/io/text_tables.hpp"
+#include "dem/measure/stiffness.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/unbalanced.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/specimens.hpp"
 
 #include <gmock/gmock.h>
 
@@ -154,6 +156,29 @@ TEST(Assembly, UnbalancedForceIsThatOfTheMeasure)
           << "after " << steps << " steps";
       assembly.move(next_box(assembly.box()));
     }
+}
+
+TEST(Assembly, AffineModuliAreThoseOfTheStiffness)
+{
+  const Snapshot &cell = test::periodic_specimen(500, 10);
+  const Assembly assembly(cell);
+  const Mat6 stiffness = affine_stiffness(cell);
+  const auto modulus = [&](const Mat3 &gradient) {
+    return affine_modulus(assembly.live_contacts(), assembly.volume(), gradient);
+  };
+  Mat3 any;
+  any << 1, 0.3, -0.2, 0.5, -2, 0.7, 0.1, -0.4, 0.6;
+  const Mat3 triaxial = Vec3(0.5, -1, 0.5).asDiagonal(), shear = Vec3::UnitX() * Vec3::UnitY().transpose();
+  for (const Mat3 &gradient : {any, triaxial, shear})
+    {
+      const Mat3 e = 0.5 * (gradient + gradient.transpose());
+      const Eigen::Vector<double, 6> strain(e(0, 0), e(1, 1), e(2, 2), 2 * e(1, 2), 2 * e(0, 2), 2 * e(0, 1));
+      EXPECT_CLOSE_BECAUSE(modulus(gradient), strain.dot(stiffness * strain), 1e-3,
+                           "the stiffness weights shear with alpha, 1 + u/2R");
+    }
+  const Vec3 along = affine_moduli(assembly.live_contacts(), assembly.volume());
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_CLOSE_BECAUSE(modulus(Vec3::Unit(axis) * Vec3::Unit(axis).transpose()), along[axis], 1e-12, "round-off");
 }
 
 TEST(Assembly, SnapshotHoldsEveryTouchingPair)

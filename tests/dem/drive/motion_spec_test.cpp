@@ -27,7 +27,7 @@ TEST(MotionSpec, RecipeTellsEveryFieldApart)
 {
   const MotionSpec usual;
   EXPECT_EQ(recipe_text(usual), "0.050000000000000003 0.10000000000000001 0.10000000000000001 1 "
-                                "0.00050000000000000001 0.070000000000000007 no 0.80000000000000004 no");
+                                "no 0.10000000000000001 no 0.80000000000000004 no");
   for (int changed = 0; changed < 9; ++changed)
     {
       MotionSpec motion;

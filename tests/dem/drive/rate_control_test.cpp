@@ -38,10 +38,11 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
     {
       Loading loading;
       loading.direction = direction;
+      start_loading(loading, 0, 0.5 * modulus);
       double q = 0;
-      for (std::uint64_t k = 0; sign(direction) * q < limit && k < 100000; ++k)
+      for (int k = 0; sign(direction) * q < limit && k < 100000; ++k)
         {
-          update_slope(loading, q, k, 20);
+          update_slope(loading, q, 20);
           loading.signed_rate = next_rate(loading, rate, q, limit, ramp_time, dt);
           loading.strain += loading.signed_rate * dt;
           q = modulus * loading.strain;
@@ -53,42 +54,79 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
     }
 }
 
+TEST(NextRate, SlowsDownAsFastAsItIs)
+{
+  // the packing has become stiff: the bound is a hundredth of the rate that it has
+  Loading loading{.signed_rate = 10};
+  EXPECT_DOUBLE_EQ(next_rate(loading, 0.1, 0, 0, ramp_time, dt), 10 - 10.0 / 200);
+}
+
+TEST(Slope, IsExpectedUntilTheFirstWindowIsFull)
+{
+  Loading loading{.strain = 0.5, .signed_rate = 3};
+  start_loading(loading, 1e3, 7e8);
+  EXPECT_EQ(loading.signed_rate, 0);
+  constexpr int window = 8;
+  for (int step = 0; step < 3 * window; ++step)
+    {
+      const double load = 1e3 - 4e8 * (loading.strain - 0.5) * (1 + step / window); // stiffer from window to window
+      update_slope(loading, load, window);
+      EXPECT_NEAR_BECAUSE(loading.slope,
+                          step < window       ? 7e8
+                          : step < 2 * window ? 4e8 * 2
+                                              : loading.slope,
+                          1, "round-off of strains of 1e-6 on 0.5");
+      loading.strain += 1e-6;
+    }
+}
+
+constexpr StageRate of_cyclic_stage{.inertial_number = 3e-4};
+
 TEST(StrainRate, IsThatOfTheStageOfTheMotionOrOfTheInertialNumber)
 {
   const Assembly assembly(test::specimen(500, 10));
   MotionSpec motion;
+  const auto number = [&](double p0) {
+    return inertial_number(strain_rate(motion, of_cyclic_stage, assembly, p0), assembly.d50(),
+                           assembly.packing().density, p0);
+  };
+  EXPECT_CLOSE_BECAUSE(number(200e3), 3e-4, 1e-14, "round-off of a root and its square");
   for (const double wanted : {5e-4, 1e-6})
     for (const double p0 : {200e3, 5e3})
       {
         motion.inertial_number = wanted;
-        const double rate = strain_rate(motion, {}, assembly, p0);
-        EXPECT_CLOSE_BECAUSE(inertial_number(rate, assembly.d50(), assembly.packing().density, p0), wanted, 1e-14,
-                             "round-off of a root and its square");
+        EXPECT_CLOSE_BECAUSE(number(p0), wanted, 1e-14, "round-off of a root and its square");
       }
-  EXPECT_THROW(strain_rate(motion, {}, assembly, 0), RunFailure);
+  EXPECT_THROW(strain_rate(motion, of_cyclic_stage, assembly, 0), RunFailure);
   motion.strain_rate = 0.7;
-  EXPECT_EQ(strain_rate(motion, {}, assembly, 0), 0.7);
-  EXPECT_EQ(strain_rate(motion, {}, assembly, 200e3), 0.7);
-  EXPECT_EQ(strain_rate(motion, 0.3, assembly, 200e3), 0.3);
+  EXPECT_EQ(strain_rate(motion, of_cyclic_stage, assembly, 0), 0.7);
+  EXPECT_EQ(strain_rate(motion, of_cyclic_stage, assembly, 200e3), 0.7);
+  EXPECT_EQ(strain_rate(motion, {0.3, 3e-4}, assembly, 200e3), 0.3);
 }
 
 TEST(LoadRate, IsTheShareOfP0ThatAWaveTimeAllows)
 {
   const Assembly assembly(test::specimen(500, 10));
-  const MotionSpec motion{.load_per_wave = 0.05};
+  const auto load_rate = [&](const MotionSpec &motion, const StageRate &stage) {
+    Pace pace;
+    set_bounds(motion, stage, assembly, 200e3, pace);
+    EXPECT_EQ(pace.rate, strain_rate(motion, stage, assembly, 200e3));
+    return pace.load_rate;
+  };
   const double edge = assembly.box().edges().maxCoeff(), density = assembly.packing().density;
   EXPECT_CLOSE_BECAUSE(wave_time(assembly), edge * std::sqrt(density / assembly.law()->young), 1e-14, "round-off");
-  EXPECT_CLOSE_BECAUSE(load_rate(motion, {}, assembly, 200e3) * wave_time(assembly), 0.05 * 200e3, 1e-14, "round-off");
-  EXPECT_EQ(load_rate({.load_per_wave = 0}, {}, assembly, 200e3), 0);
-  EXPECT_EQ(load_rate({.strain_rate = 0.7}, {}, assembly, 200e3), 0) << "a fixed rate stays what it is";
-  EXPECT_EQ(load_rate(motion, 0.3, assembly, 200e3), 0);
+  const MotionSpec motion{.load_per_wave = 0.05};
+  EXPECT_CLOSE_BECAUSE(load_rate(motion, of_cyclic_stage) * wave_time(assembly), 0.05 * 200e3, 1e-14, "round-off");
+  EXPECT_EQ(load_rate({.load_per_wave = 0}, of_cyclic_stage), 0);
+  EXPECT_EQ(load_rate({.strain_rate = 0.7}, of_cyclic_stage), 0) << "a fixed rate stays what it is";
+  EXPECT_EQ(load_rate(motion, {0.3, 3e-4}), 0);
 }
 
 TEST(BoundedRate, IsLowWhereThePackingIsStiff)
 {
   Pace pace{.rate = 10, .load_rate = 2e9};
   Loading loading;
-  EXPECT_EQ(bounded_rate(pace, loading), 10) << "no slope yet";
+  EXPECT_EQ(bounded_rate(pace, loading), 10) << "no contacts, no slope";
   loading.slope = 1e8;
   EXPECT_EQ(bounded_rate(pace, loading), 10);
   loading.slope = 5e8;
