@@ -115,7 +115,7 @@ def runs(n_seeds):
                       for s in some for domain in domains for setting in settings)
 
     cyclic([DEFAULT, SLOW])
-    cyclic(NUMERICS)
+    cyclic(NUMERICS, half)
     cyclic([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
     result += [Run("prepare", s, domain, degrees=DENSER) for domain in DOMAINS for s in few]
     cyclic([DEFAULT, SLOW], few, degrees=DENSER)
