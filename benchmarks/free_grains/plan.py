@@ -117,12 +117,12 @@ def runs(n_seeds):
     cyclic([DEFAULT, SLOW])
     cyclic(NUMERICS, half)
     cyclic([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
+    result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in ONE_WAY]
+    result += [Run("liquefied", s, "rigid-box") for s in three]
     result += [Run("prepare", s, domain, degrees=DENSER) for domain in DOMAINS for s in few]
     cyclic([DEFAULT, SLOW], few, degrees=DENSER)
-    result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in ONE_WAY]
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
-    result += [Run("liquefied", s, "rigid-box") for s in three]
     cyclic([fast for fast, _ in DAMPING.values()], half)
     cyclic(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
     cyclic(PUSHED, few, box)

@@ -35,7 +35,9 @@ class Cyclic:
         self.cycles = history.reversals[onset] / 2 if onset is not None else np.nan
         self.redundancy = history.IR[onset] if onset is not None else np.nan
         self.steps = history.step[onset if onset is not None else -1] - history.step[0]
-        self.p = np.array([history.p[rows[k - 1]] / 1e3 if len(rows) >= k else np.nan for k in REVERSALS])
+        # not of the last two reversals before the onset: there p' falls by tens of kPa in a half cycle
+        last = history.reversals[onset] - 2 if onset is not None else len(rows)
+        self.p = np.array([history.p[rows[k - 1]] / 1e3 if k <= last else np.nan for k in REVERSALS])
         self.path = paths.cyclic_path(history, 10)
 
 
