@@ -6,11 +6,11 @@
 
 namespace isostat
 {
-/// What a stage says of its rate.
+/// What a stage says of its rate; by default what holds for a packing without stages.
 struct StageRate
 {
-  std::optional<double> fixed = {}; ///< strain rate, 1/s; before that of the motion
-  double inertial_number;           ///< where the motion names none [-]
+  std::optional<double> fixed = {};                    ///< strain rate, 1/s; before that of the motion
+  double inertial_number = controlled_inertial_number; ///< where the motion names none [-]
 };
 
 /// Strain rate, 1/s: the fixed one of the stage, else of the motion, else that of the inertial number,

@@ -233,6 +233,16 @@ Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknown
   return factors.solve(load);
 }
 
+/// visit(branch, stiffness) for every touching pair.
+template <typename Visit>
+void for_stiffnesses(const LiveContacts &contacts, const Visit &visit)
+{
+  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
+    const double r1 = contacts.packing.radius(i), r2 = contacts.packing.radius(j);
+    visit(branch, contacts.law.stiffness(r1, r2, r1 + r2 - branch.norm()));
+  });
+}
+
 Mat6 energy(const Element &e, const Mat6 &deformation) { return deformation.transpose() * rigidity(e) * deformation; }
 
 Mat6 checked(const Mat6 &sum, double volume)
@@ -280,9 +290,7 @@ Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
 Vec3 affine_moduli(const LiveContacts &contacts, double volume)
 {
   Vec3 sum = Vec3::Zero();
-  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
-    const double r1 = contacts.packing.radius(i), r2 = contacts.packing.radius(j);
-    const ContactStiffness k = contacts.law.stiffness(r1, r2, r1 + r2 - branch.norm());
+  for_stiffnesses(contacts, [&](const Vec3 &branch, const ContactStiffness &k) {
     const Vec3 n2 = branch.cwiseAbs2() / branch.squaredNorm();
     const Vec3 along = n2.cwiseProduct(k.normal * n2 + k.shear * (Vec3::Ones() - n2));
     sum += branch.squaredNorm() * along;
@@ -294,10 +302,8 @@ double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &g
 {
   const Mat3 strain = 0.5 * (gradient + gradient.transpose());
   double sum = 0;
-  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
-    const double r1 = contacts.packing.radius(i), r2 = contacts.packing.radius(j), length = branch.norm();
-    const ContactStiffness k = contacts.law.stiffness(r1, r2, r1 + r2 - length);
-    const Vec3 n = branch / length, motion = strain * branch;
+  for_stiffnesses(contacts, [&](const Vec3 &branch, const ContactStiffness &k) {
+    const Vec3 n = branch / branch.norm(), motion = strain * branch;
     const double along = n.dot(motion);
     sum += k.normal * along * along + k.shear * (motion.squaredNorm() - along * along);
   });

@@ -62,8 +62,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(sett
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
-  drive_.pace.rate =
-      strain_rate(settings_.motion, {.inertial_number = controlled_inertial_number}, assembly_, drive_.p0);
+  drive_.pace.rate = strain_rate(settings_.motion, {}, assembly_, drive_.p0);
   keep_safe();
 }
 

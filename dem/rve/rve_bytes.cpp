@@ -108,8 +108,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   body(cost);
   start.cell = state.grains.cell;
   Rve rve(start, settings);
-  state.drive.pace.rate =
-      strain_rate(settings.motion, {.inertial_number = controlled_inertial_number}, rve.assembly_, state.drive.p0);
+  state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
   rve.restore(state);
   rve.cost_ = cost;
   return rve;
