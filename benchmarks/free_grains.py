@@ -35,7 +35,7 @@ def main():
         return 0
     campaign = runner.Campaign(store, pathlib.Path(options.build) / "bin/element_test", runs, options.jobs)
     complete = campaign.run_all(options.minutes)
-    folder = ROOT / "docs/results/free_grains"
+    folder = ROOT / "docs/results/free_grains" if complete else pathlib.Path(options.work) / "incomplete"
     folder.mkdir(parents=True, exist_ok=True)
     results = tables.Results(store, runs)
     for name, (header, rows) in results.tables().items():

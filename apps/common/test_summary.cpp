@@ -104,22 +104,30 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
     }
 }
 
-/// "of the inertial number 4e-05 at p0', or less: ..." The bound on the strain rate of the stages.
+/// "I = 4e-05 at p0'" or "2 1/s": the bound on the strain rate of a stage, or its fixed one.
+std::string rate_text(const MotionSpec &motion, const ShearStage &stage)
+{
+  if (const auto fixed = stage.strain_rate ? stage.strain_rate : motion.strain_rate)
+    return fmt::format("{:g} 1/s", *fixed);
+  return fmt::format("I = {:g} at p0'", motion.inertial_number.value_or(stage.inertial_number()));
+}
+
+/// Those of all stages that shear, with their numbers unless they are the same.
 std::string rate_text(const Scene &scene)
 {
-  const MotionSpec &motion = scene.motion;
-  if (motion.strain_rate)
-    return fmt::format("fixed at {:g} 1/s", *motion.strain_rate);
-  std::set<double> numbers;
-  for (const Stage &stage : scene.stages)
-    if (const auto *shear = as<ShearStage>(stage); shear && !shear->strain_rate)
-      numbers.insert(motion.inertial_number.value_or(shear->inertial_number()));
-  if (numbers.empty())
-    return "fixed by the stages";
-  std::string text = fmt::format("of the inertial number {:g} at p0'", fmt::join(numbers, ", "));
-  if (motion.load_per_wave > 0)
-    text +=
-        fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time", 100 * motion.load_per_wave);
+  std::set<std::string> rates;
+  std::vector<std::string> lines;
+  for (std::size_t k = 0; k < scene.stages.size(); ++k)
+    if (const auto *shear = as<ShearStage>(scene.stages[k]))
+      {
+        rates.insert(rate_text(scene.motion, *shear));
+        lines.push_back(fmt::format("stage {}: {}", k, rate_text(scene.motion, *shear)));
+      }
+  std::string text = rates.size() == 1 ? *rates.begin() : fmt::format("{}", fmt::join(lines, "; "));
+  const bool bounded = text.find('I') != std::string::npos;
+  if (bounded && scene.motion.load_per_wave > 0)
+    text += fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time",
+                        100 * scene.motion.load_per_wave);
   return text;
 }
 
@@ -254,10 +262,12 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   if (s.preparation_friction >= 0)
     text += fmt::format(", prepared at {:.2f} deg", s.preparation_friction);
   text += fmt::format(
-      "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps in {:.1f} s ({:.0f} steps/s)",
-      s.p0 / 1e3, s.steps, s.seconds, s.steps / std::max(s.seconds, 1e-9));
-  text += fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (before liquefaction)",
-                      rate_text(scene), s.max_indicator);
+      "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps{} in {:.1f} s ({:.0f} steps/s)",
+      s.p0 / 1e3, s.steps, s.last_steps < s.steps ? fmt::format(", the last {:.0f}", s.last_steps) : "", s.seconds,
+      s.last_steps / std::max(s.seconds, 1e-9));
+  text +=
+      fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (recorded before liquefaction)",
+                  rate_text(scene), s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
   if (s.cyclic && s.liquefied)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
@@ -290,6 +300,7 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
             {"preparation_friction_deg", s.preparation_friction},
             {"p0", s.p0},
             {"steps", std::llround(s.steps)},
+            {"steps_since_resumed", std::llround(s.last_steps)},
             {"seconds", s.seconds},
             {"shear_stage_first_row", s.first_row},
             {"reversals", std::llround(s.reversals)},

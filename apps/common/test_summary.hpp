@@ -27,7 +27,8 @@ struct TestSummary
   std::size_t grains = 0;
   double void_ratio = 0, relative_density = 0, preparation_friction = -1; ///< degrees; negative: unknown
   double p0 = 0;                                                          ///< Pa
-  double steps = 0, seconds = 0;
+  double steps = 0;
+  double last_steps = 0, seconds = 0; ///< since the run was begun or resumed for the last time
   double reversals = 0, worst_overshoot = 0;
   bool cyclic = false, liquefied = false;
   double cycles_to_liquefaction = 0; ///< reversals / 2

@@ -71,6 +71,7 @@ void run_test(const SceneOptions &options)
   if (use != FolderUse::resume)
     write_provenance(folder, scene, command_line);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
+  const std::uint64_t first_step = run.assembly->step();
   const Stopwatch watch;
   RunOutcome outcome = RunOutcome::finished;
   try
@@ -89,6 +90,7 @@ void run_test(const SceneOptions &options)
 
   TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
+  summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
   write_json(folder / "summary.json", summary);
   leave_summary(folder, to_text(summary, scene), "", "element_test", !options.no_figures);
 }

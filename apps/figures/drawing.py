@@ -42,6 +42,8 @@ class Drawing:
             return
         if results.title:
             figure.suptitle(results.title, fontsize=9.5, x=0.01, ha="left")
+        figure.set_dpi(plt.rcParams["savefig.dpi"])
+        figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
         figure.savefig(out / f"{name}.png")
         plt.close(figure)
         print(out / f"{name}.png")

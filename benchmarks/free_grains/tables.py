@@ -55,7 +55,8 @@ class Results:
         return [run for run in self.runs if run.kind == kind]
 
     def tables(self):
-        return {"cycles": self.cycles_table(), "path": self.path_table(), "hold": self.hold_table(),
+        return {"cycles": self.cycles_table(), "path": self.path_table(),
+                "monotonic": self.monotonic_table(), "hold": self.hold_table(),
                 "liquefied": self.liquefied_table()}
 
     def differences(self, key, reference, value):
@@ -67,6 +68,7 @@ class Results:
         header = ["domain", "grains", "setting", "seeds", "liquefied", "cycles", "standard error",
                   "cycles less those of the default", "half 95 % interval", "steps to the onset", "I_R at onset"]
         header += [f"p' at reversal {k} less that of the default (kPa)" for k in REVERSALS]
+        header += [f"half 95 % interval at {k}" for k in REVERSALS]
         rows = []
         for key, tests in self.cyclic.items():
             domain, grains, setting = key
@@ -77,11 +79,12 @@ class Results:
                          standard_error(cycles),
                          *mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
                          np.mean([t.steps for t in tests.values()]),
-                         np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0)])
+                         np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0),
+                         *[mean_and_interval(column)[1] for column in stress.T]])
         return header, rows
 
     def path_table(self):
-        """Largest distance in the p'-q plane over p0': of the cyclic path to reversal 10, of the monotonic one."""
+        """Largest distance in the p'-q plane over p0', of the cyclic path to reversal 10."""
         rows = []
         for domain, grains, setting in self.cyclic:
             for reference in (plan.SLOW, plan.SLOWEST):
@@ -91,20 +94,27 @@ class Results:
                 found = [100 * d[1] for d in found if d]
                 if found and setting is not reference:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
-                                 np.mean(found), standard_error(found)])
+                                 np.mean(found), standard_error(found), np.median(found), np.max(found)])
+        return ["path", "domain", "grains", "setting", "reference", "seeds", "largest distance (% of p0')",
+                "standard error", "median", "largest of a specimen"], rows
+
+    def monotonic_table(self):
+        """At each strain p' less that of the slow test, and the largest distance of the path up to it; over p0'."""
         histories = {(run.setting, run.seed): paths.History(self.store.folder(run)) for run in self.of("monotonic")}
         *settings, reference = plan.ONE_WAY
+        rows = []
         for setting in settings:
-            for strain in (0.001, 0.002, 0.005):
-                found = [paths.deviation(paths.monotonic_path(histories[setting, s], strain),
-                                         paths.monotonic_path(histories[reference, s], strain))
+            for strain in (0.001, 0.002, 0.003, 0.004, 0.005):
+                pairs = [[paths.monotonic_path(histories[key], strain) for key in ((setting, s), (reference, s))]
                          for (some, s) in histories if some == setting and (reference, s) in histories]
-                found = [100 * d[1] for d in found if d]
-                if found:
-                    rows.append([f"monotonic to {100 * strain:g} %", "rigid-box", plan.GRAINS, setting.label,
-                                 reference.label, len(found), np.mean(found), standard_error(found)])
-        return ["path", "domain", "grains", "setting", "reference", "seeds",
-                "largest distance (% of p0')", "standard error"], rows
+                pairs = [pair for pair in pairs if all(path is not None for path in pair)]
+                if pairs:
+                    signed = mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
+                    distances = [100 * paths.deviation(*pair)[1] for pair in pairs]
+                    rows.append([setting.label, reference.label, len(pairs), f"{100 * strain:g}", *signed,
+                                 np.mean(distances), standard_error(distances)])
+        return ["setting", "reference", "seeds", "axial strain (%)", "p' less that of the reference (% of p0')",
+                "half 95 % interval", "largest distance of the path (% of p0')", "standard error"], rows
 
     def held(self, run):
         """Steps since loading stopped, p' lost (kPa), kinetic energy (J), unbalanced-force ratio; p' at first (kPa)."""

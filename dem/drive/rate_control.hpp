@@ -6,11 +6,11 @@
 
 namespace isostat
 {
-/// What a stage says of its rate; by default what holds for a packing without stages.
+/// What a stage says of its rate; by default what holds for a packing without stages, a representative volume element.
 struct StageRate
 {
-  std::optional<double> fixed = {};                    ///< strain rate, 1/s; before that of the motion
-  double inertial_number = controlled_inertial_number; ///< where the motion names none [-]
+  std::optional<double> fixed = {}; ///< strain rate, 1/s; before that of the motion
+  double inertial_number = 5e-4;    ///< where the motion names none [-]
 };
 
 /// Strain rate, 1/s: the fixed one of the stage, else of the motion, else that of the inertial number,
@@ -31,6 +31,7 @@ void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly
 /// U the unbalanced-force ratio and I = eps_dot d50 sqrt(rho/p_r) the inertial number; the factor 10 makes I = 1e-3 as
 /// bad as a 1 % imbalance. Below 5 % of p0' errors are judged against 5 % of p0': in the liquefied state stresses
 /// vanish, and with them what a relative error could mean. A periodic cell has no walls: its first term is 0.
+/// @param rate  eps_dot, driven at present, 1/s; in a representative volume element the bound on it
 /// @pre compute_forces()
 double quasi_static_indicator(const Assembly &assembly, double mean_stress, double p0, double rate);
 

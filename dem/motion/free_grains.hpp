@@ -10,8 +10,8 @@ namespace isostat
 ///     v' <- (1 - c) v',   w <- (1 - c) w
 ///
 /// with v' the velocity that local damping acts on: against the homogeneous motion of the walls for carried grains, the
-/// fluctuation in a cell, else the absolute one. c = 0.1 takes a velocity in some ten steps: as long as a collision
-/// lasts, too short to cross a pore.
+/// fluctuation in a cell, else the absolute one. c = 0.1 takes two thirds of a velocity in ten steps: as long as a
+/// collision lasts, too short to cross a pore.
 /// cost: one test of a grain's eight force components
 /// tested: tests/dem/motion/free_grains_test.cpp
 struct FreeGrainDamping

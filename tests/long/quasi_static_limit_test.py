@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The default's distance to the quasi-static limit: cyclic tests on 20 specimens, box and cell, against a tenth of the
+"""The default's distance to a slow test: cyclic tests on 20 specimens, box and cell, against a tenth of the
 rate. Not part of the usual tests: ctest --preset long, some ten minutes on two cores."""
 import os
 import pathlib
@@ -12,17 +12,16 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "benchmarks"))
 from free_grains import plan, tables  # noqa: E402  (the folder comes first)
-from speed_error import runner  # noqa: E402
+from speed_error import paths, runner  # noqa: E402
 
 BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
 SEEDS = range(1, 21)
-CYCLES = 0.5  # of the mean; 0.4 was measured in the box, 0.15 in the cell
-INTERVAL = 0.5  # half its 95 % interval, 0.3 and 0.4: a wider one says nothing
-STRESS = 0.7  # kPa, of the mean path at reversals 2 to 16: 0.5 was measured in the box, 0.12 in the cell
+CYCLES = 1.0  # what the mean may differ by, 95 % interval included; 0.71 and 0.59 were measured
+PATH = {"rigid-box": 1.0, "periodic-cell": 0.5}  # % of p0', mean to reversal 10; 0.61 +- 0.10 and 0.22 +- 0.04 measured
 STEPS = 3e4  # to the onset
 
 
-class QuasiStaticLimit(unittest.TestCase):
+class SlowTests(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         runs = [plan.Run("prepare", s, domain) for domain in plan.DOMAINS for s in SEEDS]
@@ -35,20 +34,20 @@ class QuasiStaticLimit(unittest.TestCase):
         assert complete, "a run failed: see above"
         cls.results = tables.Results(store, runs)
 
-    def test_the_default_is_at_the_limit(self):
+    def test_the_default_is_as_far_from_them_as_said(self):
         for domain in plan.DOMAINS:
             with self.subTest(domain):
                 default, slow = ((domain, plan.GRAINS, setting) for setting in (plan.DEFAULT, plan.SLOW))
                 tests = self.results.cyclic[default].values()
                 self.assertEqual(sum(np.isfinite(t.cycles) for t in tests), len(SEEDS), "all liquefy")
                 cycles, half = tables.mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
-                stress = np.nanmean(self.results.differences(slow, default, lambda t: t.p), axis=0)
                 steps = np.mean([t.steps for t in tests])
-                print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, p' at reversals 2 to 16 "
-                      f"{np.round(stress, 2)} kPa, {steps:.0f} steps to the onset")
-                self.assertLess(abs(cycles), CYCLES)
-                self.assertLess(half, INTERVAL)
-                self.assertLess(np.abs(stress).max(), STRESS)
+                tests, others = (self.results.cyclic[key] for key in (default, slow))
+                path = np.mean([100 * paths.deviation(tests[s].path, others[s].path)[1] for s in SEEDS])
+                print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, path {path:.2f} % of p0' "
+                      f"from it, {steps:.0f} steps to the onset")
+                self.assertLess(abs(cycles) + half, CYCLES)
+                self.assertLess(path, PATH[domain])
                 self.assertLess(steps, STEPS)
 
 

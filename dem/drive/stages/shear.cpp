@@ -73,7 +73,8 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
 {
   DriveState &state = c.state;
   if (state.place.steps % indicator_interval == 0)
-    state.pace.indicator = quasi_static_indicator(c.assembly, seen.p, state.path.p0(), state.pace.rate);
+    state.pace.indicator =
+        quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly);
   update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));

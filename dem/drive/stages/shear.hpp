@@ -19,7 +19,7 @@ extern const ShearMode simple_shear_mode; ///< tau = sigma_xy against gamma_xy; 
 
 /// A stage that drives a strain at the rate of the rate control (dem/drive/rate_control.hpp), with ramps. It goes one
 /// way to a strain unless it turns.
-/// tested: tests/dem/drive/stages/constant_volume_test.cpp
+/// tested: tests/dem/drive/stages/constant_volume_test.cpp, shear_test.cpp
 class ShearStage : public SteppedStage
 {
 public:

@@ -24,27 +24,34 @@ struct Image
   Vec3 branch; ///< from the first grain to this image of the second, m
 };
 
+/// Those of a cell's own corner, up to `range` edges away each way.
+std::vector<Image> images_around(const Mat3 &edges, int range)
+{
+  std::vector<Image> images;
+  for (int a = -range; a <= range; ++a)
+    for (int b = -range; b <= range; ++b)
+      for (int c = -range; c <= range; ++c)
+        images.push_back({{a, b, c}, edges * Vec3(a, b, c)});
+  return images;
+}
+
 /// visit(i, j, image) for every image, of the (2 range + 1)^3 about the second grain's place in the cell of the first,
 /// whose surface is closer than `skin`.
 template <typename Visit>
 void for_near_images(const Packing &packing, const Mat3 &edges, double skin, int range, const Visit &visit)
 {
   const Mat3 to_fraction = edges.inverse();
+  const std::vector<Image> around = images_around(edges, range);
   for (std::uint32_t i = 0; i < packing.n_grains(); ++i)
     for (std::uint32_t j = i + 1; j < packing.n_grains(); ++j)
       {
         const Vec3 between = packing.centre(j) - packing.centre(i);
         const Eigen::Vector3i middle = (to_fraction * between).array().floor().cast<int>();
+        const Vec3 nearest = between - edges * middle.cast<double>();
         const double reach = packing.radius(i) + packing.radius(j) + skin;
-        for (int a = -range; a <= range; ++a)
-          for (int b = -range; b <= range; ++b)
-            for (int c = -range; c <= range; ++c)
-              {
-                const Eigen::Vector3i shift = Eigen::Vector3i(a, b, c) - middle;
-                const Vec3 branch = between + edges * shift.cast<double>();
-                if (branch.squaredNorm() < reach * reach)
-                  visit(i, j, Image{shift, branch});
-              }
+        for (const Image &image : around)
+          if (const Vec3 branch = nearest + image.branch; branch.squaredNorm() < reach * reach)
+            visit(i, j, Image{image.shift - middle, branch});
       }
 }
 
