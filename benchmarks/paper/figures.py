@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the committed tables, nothing else: each figure from the CSV files of one folder."""
+import csv
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+
+from paper import lab, plan, states  # noqa: E402
+
+BLUE, ORANGE, GREEN, RED, PINK, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#777777"
+STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
+         "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
+DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
+PRIME = r"$p^\prime$"
+
+
+class Table:
+    """Columns by name; numbers where they are numbers."""
+
+    def __init__(self, path):
+        with open(path, newline="", encoding="utf-8") as file:
+            self.rows = list(csv.DictReader(file))
+
+    def where(self, **conditions):
+        """Rows whose columns, named with _ for anything but letters, have these values."""
+        table = object.__new__(Table)
+        table.rows = [row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())]
+        return table
+
+    def values(self, name):
+        return list(dict.fromkeys(row[name] for row in self.rows))
+
+    def __getitem__(self, name):
+        return np.array([float(row[name] or "nan") for row in self.rows])
+
+    def __bool__(self):
+        return bool(self.rows)
+
+
+def panels(rows, columns, width=7.2, height=3.2, **more):
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height), layout="constrained", squeeze=False, **more)
+    for letter, panel in zip("abcdefgh", axes.flat):
+        panel.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
+    return figure, axes
+
+
+def legend_below(figure, panel, ncols, height):
+    """Of the whole figure, in the lowest `height` of it."""
+    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
+    figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
+
+
+def band(panel, x, mean, deviation, colour, label=None, style="-"):
+    panel.plot(x, mean, style, color=colour, linewidth=1.1, label=label)
+    panel.fill_between(x, mean - np.nan_to_num(deviation), mean + np.nan_to_num(deviation), color=colour, alpha=0.18,
+                       linewidth=0)
+
+
+def draw(folder):
+    plt.rcParams.update(STYLE)
+    for name, function in FIGURES.items():
+        table = folder / f"{function.table}.csv"
+        if table.exists():
+            figure = function(Table(table), folder)
+            if figure is not None:
+                figure.set_dpi(STYLE["savefig.dpi"])
+                figure.draw_without_rendering()  # so that ticks are those that savefig lays out
+                figure.savefig(folder / f"{name}.png")
+                plt.close(figure)
+                print(folder / f"{name}.png")
+
+
+def of_table(name):
+    """Says which table a figure is drawn from."""
+    def mark(function):
+        function.table = name
+        return function
+    return mark
+
+
+@of_table("undrained_curves")
+def monotonic(table, _):
+    """Figure 1: effective stress paths and stress-strain curves, beside laboratory anchors."""
+    figure, ((path, curve),) = panels(1, 2, height=3.9)
+    for density, colour in DENSITIES.items():
+        for direction, sign in (("compression", 1), ("extension", -1)):
+            rows = table.where(**{"specimen": f"D_r {density:.2f}, 200 kPa", "test": direction, "slow": "False"})
+            if not rows:
+                continue
+            label = f"$D_r$ = {density:.2f}" if sign > 0 else None
+            p, q, strain = rows["p' (kPa)"], sign * rows["q (kPa)"], sign * rows["|eps_1| (%)"]
+            path.plot(p, q, color=colour, linewidth=1.1, label=label)
+            band(curve, strain, q, rows["q (kPa) s.d."], colour)
+    for anchor in lab.undrained_anchors():
+        colour = dict(zip(("loose", "medium", "dense"), DENSITIES.values()))[anchor["density"]]
+        marker = "s" if anchor["state"] == "instability" else "o"
+        if np.isfinite(anchor["q (kPa)"]):
+            path.plot(anchor["p' (kPa)"], anchor["q (kPa)"], marker, color=colour, markersize=5, mec="black", zorder=5)
+            curve.plot(anchor["eps_1 (%)"], anchor["q (kPa)"], marker, color=colour, markersize=5, mec="black",
+                       zorder=5)
+        else:
+            path.plot(anchor["p' (kPa)"], -10, "v", color=colour, markersize=5, mec="black", zorder=5)
+    for panel in (path, curve):
+        panel.axhline(0, color="black", linewidth=0.6)
+        panel.set_ylim(-350, 450)
+        panel.set_ylabel("Deviatoric stress $q$ (kPa)")
+    path.set_xlim(0, 500)
+    path.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
+    curve.set_xlim(-5, 5)
+    curve.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    for marker, text in (("s", "laboratory, instability"), ("o", f"laboratory, least {PRIME}"),
+                         ("v", f"laboratory, least {PRIME} in extension ($q$ not read)")):
+        path.plot([], [], marker, color="white", mec="black", markersize=5, label=text)
+    legend_below(figure, path, 3, 0.12)
+    return figure
+
+
+@of_table("undrained_curves")
+def dense(table, _):
+    """Why dense packings reach megapascals at constant volume: the same test with softer contacts."""
+    figure, ((stress, ratio),) = panels(1, 2)
+    for young, colour in ((10, BLUE), (1, GREEN), (0.1, ORANGE)):
+        label = f"D_r {plan.PAPER[2]:.2f}, 200 kPa" + ("" if young == 10 else f", E {young:g} GPa")
+        rows = table.where(**{"specimen": label, "test": "compression", "slow": "False"})
+        if rows:
+            band(stress, rows["|eps_1| (%)"], rows["q (kPa)"] / 1e3, rows["q (kPa) s.d."] / 1e3, colour,
+                 f"$E$ = {young:g} GPa")
+            ratio.plot(rows["|eps_1| (%)"], rows["q (kPa)"] / rows["p' (kPa)"], color=colour, linewidth=1.1)
+    stress.set_ylabel("Deviatoric stress $q$ (MPa)")
+    stress.set_yscale("log")
+    ratio.set_ylabel(f"$q$/{PRIME}")
+    for panel in (stress, ratio):
+        panel.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    stress.legend()
+    return figure
+
+
+@of_table("cyclic_tests")
+def cycles(table, _):
+    """Figure 2 as an ensemble: cycles to liquefaction against void ratio, at the amplitude of the paper."""
+    figure, ((panel, strains),) = panels(1, 2)
+    table = table.where(**{"p0' (kPa)": "200", "q_amp/(2 p0')": "0.15"})
+    for label in table.values("specimen"):
+        rows = table.where(specimen=label)
+        paper = label.startswith("D_r")
+        colour, marker = (RED, "D") if paper else (BLUE, "o")
+        number, applied = rows["cycles"], rows["cycles applied"]
+        panel.plot(rows["e"], number, marker, color=colour, markersize=4)
+        panel.plot(rows["e"][np.isnan(number)], applied[np.isnan(number)], "^", color=colour, markersize=5, mfc="none")
+        if "largest strain after, compression (%)" in rows.rows[0]:
+            strains.plot(rows["largest strain after, compression (%)"], rows["largest strain after, extension (%)"],
+                         marker, color=colour, markersize=4)
+    panel.axhline(17, color=GREY, linewidth=0.9, linestyle="--")
+    panel.axhline(11, color=GREY, linewidth=0.9, linestyle=":")
+    panel.set_yscale("log")
+    panel.set_xlabel("Void ratio $e$")
+    panel.set_ylabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
+    for marker, colour, text in (("D", RED, "$D_r$ = 0.64 (paper's limits)"), ("o", BLUE, "5 to 11 deg"),
+                                 ("^", GREY, "not liquefied when the test ended")):
+        panel.plot([], [], marker, color=colour, markersize=4, label=text, mfc="none" if marker == "^" else colour)
+    panel.plot([], [], "--", color=GREY, label="paper: 17")
+    panel.plot([], [], ":", color=GREY, label="laboratory: 11")
+    panel.legend()
+    high = max(1.0, np.nanmax(strains.dataLim.max)) if strains.lines else 1.0
+    strains.plot([0, high], [0, high], color=GREY, linewidth=0.8)
+    strains.set_xlabel(r"Largest $\varepsilon_1$ in compression after the onset (%)")
+    strains.set_ylabel(r"Largest $\varepsilon_1$ in extension after the onset (%)")
+    return figure
+
+
+def loosest_liquefying(table):
+    """The preparation, by friction, with the most seeds that liquefy; the densest of those."""
+    labels = [label for label in table.values("specimen") if "deg" in label]
+    most = max((table.where(specimen=label)["seeds"][0] for label in labels), default=0)
+    fitting = [label for label in labels if table.where(specimen=label)["seeds"][0] == most]
+    return min(fitting, key=lambda label: float(label.split()[0]), default=None)
+
+
+def phase_axis(axes, rows):
+    for panel in axes:
+        panel.axvline(1, color=RED, linewidth=0.9, linestyle=":")
+        panel.set_xlim(0, rows["phase"][-1])
+    last = int(rows["phase"][-1])
+    axes[-1].set_xlabel("Share of the cycles to the onset; then whole half cycles, the first towards compression")
+    axes[-1].set_xticks(range(last + 1), ["0", "onset", *[f"{k}" for k in range(1, last)]])
+
+
+@of_table("cyclic_curves")
+def redundancy(table, _):
+    """Figure 3: redundancy index and contact fractions, mean and standard deviation over seeds."""
+    label = loosest_liquefying(table)
+    if label is None:
+        return None
+    rows = table.where(specimen=label)
+    figure, axes = panels(3, 1, height=6.2, sharex=True)
+    index, ratio, fractions = axes[:, 0]
+    for (column, name), colour in zip(states.COUNTS.items(), (BLUE, ORANGE, GREEN)):
+        band(index, rows["phase"], rows[column], rows[f"{column} s.d."], colour, name)
+    for level in (1, 0.35):
+        index.axhline(level, color=GREY, linewidth=0.8, linestyle="--")
+    index.set_ylabel("Redundancy index $I_R$")
+    ratio.plot(rows["phase"], rows["p'/p0'"], color="black", linewidth=1.1)
+    ratio.axhline(0.01, color=GREY, linewidth=0.8, linestyle="--")
+    ratio.set_yscale("log")
+    ratio.set_ylabel(f"{PRIME}/$p_0^\\prime$")
+    for column, name, colour in (("f_S", "sliding", BLUE), ("f_SR", "both", GREEN), ("f_R", "rolling", ORANGE)):
+        band(fractions, rows["phase"], rows[column], rows[f"{column} s.d."], colour, name)
+    fractions.set_ylabel("Fraction of contacts")
+    index.legend(ncols=3, loc="upper right")
+    fractions.legend(ncols=3, loc="upper left")
+    phase_axis(axes[:, 0], rows)
+    figure.suptitle(f"{label}, {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    return figure
+
+
+@of_table("cyclic_curves")
+def fabric(table, folder):
+    """Figure 4: fabric and its anisotropy, and the anisotropy of a half cycle against its strain."""
+    label = loosest_liquefying(table)
+    if label is None:
+        return None
+    rows = table.where(specimen=label)
+    figure, axes = panels(3, 1, height=6.6)
+    normals, anisotropy, against = axes[:, 0]
+    for column, colour in (("Fyy", BLUE), ("Fxx", ORANGE), ("Fzz", GREEN)):
+        band(normals, rows["phase"], rows[column], rows[f"{column} s.d."], colour, f"$F_{{{column[1:]}}}$")
+    band(anisotropy, rows["phase"], rows["F_yx"], rows["F_yx s.d."], ORANGE, "$F_{[y-x]}$")
+    band(anisotropy, rows["phase"], rows["F_yz"], rows["F_yz s.d."], GREEN, "$F_{[y-z]}$")
+    normals.axhline(1 / 3, color=GREY, linewidth=0.8, linestyle="--")
+    anisotropy.axhline(0, color=GREY, linewidth=0.8, linestyle="--")
+    normals.set_ylabel("Contact-normal fabric")
+    anisotropy.set_ylabel("Fabric anisotropy")
+    normals.legend(ncols=3)
+    anisotropy.legend(ncols=2)
+    phase_axis([normals, anisotropy], rows)
+    halves = Table(folder / "half_cycles.csv").where(**{"q_amp/(2 p0')": "0.15"})
+    for direction, colour in (("compression", BLUE), ("extension", ORANGE)):
+        part = halves.where(direction=direction)
+        against.plot(part["strain travelled (%)"], np.abs(part["F_yx at its end"]), "o", color=colour, markersize=3,
+                     label=direction)
+    against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%), all preparations")
+    against.set_ylabel("$|F_{[y-x]}|$ at its end")
+    against.legend()
+    figure.suptitle(f"{label}, {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    return figure
+
+
+@of_table("drained_curves")
+def drained(table, _):
+    """Drained tests beside the laboratory, the two pressures in columns."""
+    figure, axes = panels(2, 2, height=5.4, sharex=True)
+    tests = {test.name: test for test in lab.drained_tests()}
+    for column, pressure in enumerate((100, 200)):
+        for (density, names), colour in zip(plan.LABORATORY.items(), (RED, GREEN, BLUE)):
+            rows = table.where(specimen=f"D_r {density:.2f}, {pressure} kPa")
+            for panel, name in zip(axes[:, column], ("q (kPa)", "eps_v (%)")):
+                if rows:
+                    band(panel, rows["|eps_1| (%)"], rows[name], rows[f"{name} s.d."], colour,
+                         f"$D_r$ = {density:.2f}")
+            test = tests[names[column]]
+            axes[0, column].plot(100 * test.strain, (test.axial - test.radial) / 1e3, "--", color=colour, linewidth=0.9)
+            axes[1, column].plot(100 * test.strain, 100 * test.volume_strain, "--", color=colour, linewidth=0.9)
+        axes[0, column].set_title(f"{pressure} kPa")
+        axes[1, column].set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+        axes[1, column].set_xlim(0, 15)
+    axes[0, 0].set_ylabel("Deviatoric stress $q$ (kPa)")
+    axes[1, 0].set_ylabel(r"Volumetric strain $\varepsilon_v$ (%)")
+    axes[0, 0].plot([], [], "--", color=GREY, label="laboratory (Wichtmann and Triantafyllidis 2016)")
+    legend_below(figure, axes[0, 0], 4, 0.05)
+    return figure
+
+
+@of_table("cyclic_tests")
+def resistance(table, _):
+    """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure."""
+    figure, (row,) = panels(1, 2, sharey=True)
+    colours = (RED, GREEN, BLUE)
+    for panel, labels, names in (
+            (row[0], [f"{d:g} deg, 200 kPa" for d in plan.RESISTANCE], [f"{d:g} deg" for d in plan.RESISTANCE]),
+            (row[1], [f"9 deg, {p:g} kPa" for p in plan.PRESSURES],
+             [f"$p_0^\\prime$ = {p:g} kPa" for p in plan.PRESSURES])):
+        for label, name, colour in zip(labels, names, colours):
+            rows = table.where(specimen=label)
+            if rows:
+                panel.plot(rows["cycles"], rows["q_amp/(2 p0')"], "o", color=colour, markersize=4, label=name)
+        panel.set_xscale("log")
+        panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
+        if panel.lines:
+            panel.legend()
+    row[0].set_ylabel(r"$q_\mathrm{amp}/(2 p_0^\prime)$")
+    return figure
+
+
+FIGURES = {"figure_1": monotonic, "dense": dense, "figure_2": cycles, "figure_3": redundancy, "figure_4": fabric,
+           "drained": drained, "resistance": resistance}

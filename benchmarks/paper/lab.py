@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laboratory tests on Karlsruhe fine sand (apps/laboratory)."""
+import csv
+import dataclasses
+import pathlib
+
+import numpy as np
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "apps/laboratory"
+
+
+@dataclasses.dataclass(frozen=True)
+class Drained:
+    """One drained test: strains as shares, stresses in Pa, compression positive."""
+
+    name: str
+    void_ratio: float
+    relative_density: float
+    pressure: float  # kPa, nominal
+    strain: np.ndarray
+    volume_strain: np.ndarray
+    axial: np.ndarray
+    radial: np.ndarray
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def drained_tests():
+    programme = {row["test_id"]: row for row in rows_of(FOLDER / "drained/programme.csv")}
+    return [drained_test(path, programme[path.stem]) for path in sorted((FOLDER / "drained").glob("TMD*.csv"))]
+
+
+def drained_test(path, entry):
+    rows = rows_of(path)
+    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    return Drained(path.stem, float(entry["e_0[-]"]), float(entry["Dr_0[%]"]) / 100,
+                   100 * round(float(entry["sigma_r0[kPa]"]) / 100), columns["eps_a[%]"] / 100,
+                   columns["eps_v[%]"] / 100, 1e3 * columns["sigma_v[kPa]"], 1e3 * columns["sigma_r[kPa]"])
+
+
+def undrained_anchors():
+    """Single states of undrained tests; a number that was not read is nan."""
+    anchors = rows_of(FOLDER / "undrained_anchors.csv")
+    for row in anchors:
+        for name in ("eps_1 (%)", "p' (kPa)", "q (kPa)"):
+            row[name] = float(row[name] or "nan")
+    return anchors

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is run: specimens by relative density or preparation friction, and the scene of each test."""
+import dataclasses
+
+P0 = 200  # kPa, of the paper
+PAPER = (0.30, 0.64, 0.88)  # its relative densities
+LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
+PREPARATIONS = range(5, 12)  # friction, degrees
+RATIOS = (0.10, 0.15, 0.20, 0.25)  # q_amp/(2 p0')
+RESISTANCE = (8, 9, 10)  # preparation friction, degrees
+PRESSURES = (50, 200, 400)  # kPa
+AFTER_ONSET = 8  # reversals: four cycles
+MAX_CYCLES = 100
+
+SCENE = """\
+title = "{title}"
+
+[grading]
+curve = "karlsruhe-fine-sand"
+grains = {grains}
+cloud_edge = "{edge:.15g} mm"     # grains of one size for every number of them
+seed = {seed}
+
+[contact]
+young = "{young:g} GPa"
+stiffness_ratio = 0.3
+friction = "18 deg"
+rolling = {{ stiffness = 0.3, limit = 0.5 }}
+twisting = {{ stiffness = 0.3 }}
+
+[specimen]
+domain = "{domain}"
+pressure = "{pressure:g} kPa"
+{density}
+
+[motion]
+{motion}
+{stages}
+[output]
+snapshots = "none"
+paraview = false
+record_stress = "5 kPa"
+record_strain = {record_strain}
+"""
+# the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)
+FIRST_STRAIN, FAST = 0.005, 4e-4
+DENSITY_OF_GRAINS, D50 = 2650, 0.45e-3
+
+
+def strain_rate(inertial_number, pressure):
+    """I sqrt(p0'/rho)/d50, 1/s."""
+    return inertial_number * (pressure * 1e3 / DENSITY_OF_GRAINS) ** 0.5 / D50
+
+
+@dataclasses.dataclass(frozen=True)
+class Packing:
+    """One specimen. Either density or friction says how dense it is."""
+
+    grains: int
+    seed: int
+    relative_density: float = 0
+    degrees: float = 0
+    pressure: float = P0
+    domain: str = "rigid-box"
+    young: float = 10  # GPa
+
+    @property
+    def density(self):
+        return f"D_r {self.relative_density:.2f}" if self.relative_density else f"{self.degrees:g} deg"
+
+    @property
+    def label(self):
+        more = [self.density, f"{self.pressure:g} kPa"]
+        more += [self.domain] if self.domain != "rigid-box" else []
+        more += [f"E {self.young:g} GPa"] if self.young != 10 else []
+        return ", ".join(more)
+
+    def lines(self):
+        if self.relative_density:
+            return f"relative_density = {self.relative_density}"
+        return f'preparation_friction = "{self.degrees:g} deg"'
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """One run, as runner.Campaign takes it."""
+
+    kind: str  # prepare, compression, extension, drained, cyclic
+    packing: Packing
+    strain: float = 0.05
+    ratio: float = 0.15  # q_amp/(2 p0')
+    slow: bool = False
+
+    @property
+    def seed(self):
+        return self.packing.seed
+
+    @property
+    def specimen(self):
+        return self.packing
+
+    @property
+    def name(self):
+        how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
+        how += f"_{100 * self.strain:g}%" if self.one_way else ""
+        how += "_slow" if self.slow else ""
+        p = self.packing
+        return f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}".replace(", ", "_").replace(" ", "")
+
+    @property
+    def one_way(self):
+        return self.kind in ("compression", "extension", "drained")
+
+    def scene(self):
+        p = self.packing
+        large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
+        return SCENE.format(title=self.name, grains=p.grains, edge=10 * (p.grains / 10000) ** (1 / 3), seed=p.seed,
+                            young=p.young, domain=p.domain, pressure=p.pressure, density=p.lines(),
+                            motion="damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1",
+                            stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
+
+    def stages(self):
+        if self.kind == "prepare":
+            return ""
+        if self.kind == "cyclic":
+            amplitude = 2 * self.ratio * self.packing.pressure
+            until = f"cycles = {MAX_CYCLES}, reversals_after_liquefaction = {AFTER_ONSET}, strain = 0.15"
+            return (f'[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "{amplitude:g} kPa"\n'
+                    f"until = {{ {until} }}\n")
+        kind = "drained" if self.kind == "drained" else "undrained-monotonic"
+        direction = "extension" if self.kind == "extension" else "compression"
+        stage = f'[[stage]]\nkind = "{kind}"\ndirection = "{direction}"\n'
+        if self.slow or self.strain <= FIRST_STRAIN:
+            return stage + f"strain = {self.strain:g}\n"
+        rate = strain_rate(FAST, self.packing.pressure)
+        return (stage + f"strain = {FIRST_STRAIN:g}\n" + stage +
+                f'strain = {self.strain - FIRST_STRAIN:g}\nstrain_rate = "{rate:.3g} 1/s"\n')
+
+    def estimated_seconds(self):
+        first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN
+        fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01 * (10 if self.slow else 1)
+        search = 1.5e5 if self.packing.relative_density else 5e4
+        steps = {"prepare": search, "cyclic": 1.2e5}.get(self.kind, first + max(0, fast))
+        return 1.2e-4 * steps * self.packing.grains / 2000
+
+
+def figure_1(grains, seeds, whole):
+    """Monotonic tests at the three densities of the paper; the dense one with softer contacts, too."""
+    runs = []
+    for seed in seeds:
+        for density in PAPER:
+            for kind in ("compression", "extension"):
+                strain = 0.20 if density == PAPER[0] else 0.05
+                runs.append(Run(kind, Packing(grains, seed, density), strain))
+        runs += [Run("compression", Packing(grains, seed, PAPER[2], young=young), 0.05) for young in (1, 0.1)]
+    if whole:
+        runs += [Run("compression", Packing(grains, seeds[0], density), 0.03, slow=True) for density in PAPER]
+    return runs
+
+
+def drained(grains, seeds, whole):
+    return [Run("drained", Packing(grains, seed, density, pressure=pressure), 0.15 if whole else 0.10)
+            for seed in seeds for density in LABORATORY for pressure in ((100, 200) if whole else (P0,))]
+
+
+def cyclic(grains, seeds, many, whole):
+    """Figures 2 to 4: the density of the paper, and a row of preparations, in boxes."""
+    runs = [Run("cyclic", Packing(grains, seed, PAPER[1])) for seed in many]
+    return runs + [Run("cyclic", Packing(grains, seed, degrees=d)) for seed in seeds
+                   for d in PREPARATIONS if whole or d % 2 or d == 10]
+
+
+def resistance(grains, seeds, whole):
+    """Densities at 200 kPa, pressures at 9 deg; or all densities at all pressures."""
+    states = [(d, p) for d in RESISTANCE for p in PRESSURES if whole or d == RESISTANCE[1] or p == P0]
+    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio)
+            for seed in seeds for d, p in states for ratio in RATIOS if whole or ratio > RATIOS[0]]
+
+
+def runs_of(grains, n_seeds):
+    """All runs, each once, specimens first. Few grains: fewer states, what 20 minutes allow."""
+    seeds, many, whole = range(1, n_seeds + 1), range(1, n_seeds + 3), grains > 2000
+    tests = [*figure_1(grains, seeds, whole), *cyclic(grains, seeds, many, whole), *drained(grains, seeds, whole),
+             *resistance(grains, seeds, whole)]
+    tests = list(dict.fromkeys(tests))
+    packings = list(dict.fromkeys(run.packing for run in tests))
+    return [Run("prepare", packing) for packing in packings] + tests

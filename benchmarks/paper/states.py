@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers of one test, from its history: characteristic states of monotonic tests, what happens around liquefaction."""
+import numpy as np
+
+LIQUEFIED = 0.01  # p'/p0'
+COUNTS = {"IR": "Eq. 2", "IR_no_twist": "without twisting", "IR_sliding": "sliding only"}
+FRACTIONS = ("f_S", "f_R", "f_SR", "f_NSR")
+
+
+def undrained_states(strain, p, q):
+    """Rows of the instability state (None without softening), of the least p' and of the end; |strain| rises."""
+    least = int(np.argmin(p))
+    peak = int(np.argmax(np.abs(q[:least + 1])))
+    softens = peak < least and abs(q[least]) < 0.98 * abs(q[peak])
+    return {"instability": peak if softens else None, "least p'": least, "end": len(strain) - 1}
+
+
+def undrained_numbers(history):
+    """{state: (|strain| in %, p' and |q| in kPa, |q|/p')}; not a number where there is none."""
+    strain, p, q = np.abs(history.eps_y), history.p, np.abs(history.q)
+    numbers = {}
+    for name, row in undrained_states(strain, p, q).items():
+        if row is None:
+            numbers[name] = (np.nan,) * 4
+        elif name == "end":
+            last = strain > 0.95 * strain[-1]
+            stresses = p[last].mean() / 1e3, q[last].mean() / 1e3
+            numbers[name] = (100 * strain[-1], *stresses, stresses[1] / stresses[0])
+        else:
+            numbers[name] = (100 * strain[row], p[row] / 1e3, q[row] / 1e3, q[row] / p[row])
+    return numbers
+
+
+def friction_angle(axial, radial):
+    """Mobilised, degrees: sin phi = (s1 - s3)/(s1 + s3)."""
+    return np.degrees(np.arcsin((axial - radial) / (axial + radial)))
+
+
+def drained_numbers(strain, volume_strain, axial, radial):
+    """Of a drained compression test, strains as shares, compression positive: peak and end friction (degrees), strain
+    at the peak (%), largest dilatancy -d eps_v/d eps_1 over 1 % of strain, eps_v at the end (%)."""
+    phi = friction_angle(axial, radial)
+    peak = int(np.argmax(phi))
+    grid = np.arange(0, strain[-1], 0.0025)
+    volume = np.interp(grid, strain, volume_strain)
+    rate = -(volume[4:] - volume[:-4]) / 0.01 if len(grid) > 8 else np.array([np.nan])
+    return {"peak friction (deg)": phi[peak], "strain at peak (%)": 100 * strain[peak],
+            "end friction (deg)": phi[strain > strain[-1] - 0.01].mean(), "dilatancy": rate.max(),
+            "eps_v at the end (%)": 100 * volume_strain[-1]}
+
+
+def crossings(values, level):
+    """Rows in which values come from below to the level or above it."""
+    return np.flatnonzero((values[:-1] < level) & (values[1:] >= level)) + 1
+
+
+def cyclic_numbers(history):
+    """Up to the onset and around it."""
+    onset = history.onset
+    ratio = history.p / history.p0
+    before = slice(0, len(ratio) if onset is None else onset + 1)
+    numbers = {"cycles": np.nan if onset is None else history.reversals[onset] / 2,
+               "cycles applied": history.reversals[-1] / 2,
+               "largest strain before (%)": 100 * np.abs(history.eps_y[before]).max(),
+               "IR at the start": history.IR[0]}
+    for column, name in COUNTS.items():
+        count = getattr(history, column)
+        numbers[f"I_R at onset, {name}"] = np.nan if onset is None else count[onset]
+        below = np.flatnonzero(count < 1)
+        numbers[f"p'/p0' where I_R falls below 1, {name}"] = ratio[below[0]] if below.size else np.nan
+    for column in FRACTIONS:
+        numbers[f"{column} before"] = getattr(history, column)[before].mean()
+        numbers[f"{column} after"] = np.nan if onset is None else strain_mean(history, column, onset)
+    if onset is not None:
+        numbers["largest strain after, compression (%)"] = 100 * history.eps_y[onset:].max()
+        numbers["largest strain after, extension (%)"] = -100 * history.eps_y[onset:].min()
+    return numbers
+
+
+def strain_mean(history, column, onset):
+    """Mean after the onset by the strain travelled."""
+    weights = np.abs(np.gradient(history.eps_y[onset:])) + 1e-15
+    return np.average(getattr(history, column)[onset:], weights=weights)
+
+
+def half_cycles(history):
+    """One row for each whole half cycle after the onset."""
+    onset = history.onset
+    if onset is None:
+        return []
+    ends = [row for row in history.reversal_rows if row >= onset]
+    rows = []
+    for begin, end in zip(ends, ends[1:]):
+        part = slice(begin, end + 1)
+        ratio, index = history.p[part] / history.p0, history.IR[part]
+        recovered = crossings(ratio, LIQUEFIED)
+        first, last = (index[recovered[k]] if recovered.size else np.nan for k in (0, -1))
+        sliding = history.f_S[part] + history.f_SR[part]
+        rows.append({"direction": "compression" if history.q[end] > 0 else "extension",
+                     "strain travelled (%)": 100 * abs(history.eps_y[end] - history.eps_y[begin]),
+                     "strain at its end (%)": 100 * history.eps_y[end], "least I_R": index.min(),
+                     "I_R as p'/p0' first passes 0.01": first, "I_R as it last does": last,
+                     "largest |F_yx|": np.abs(history.F_yx[part]).max(), "F_yx at its end": history.F_yx[end],
+                     "p'/p0' at the most sliding": ratio[int(np.argmax(sliding))],
+                     "sliding contacts at most": sliding.max(), "sliding contacts at its end": sliding[-1]})
+    return rows
+
+
+def phases(history, points=41):
+    """Rows on an axis on which seeds can be averaged: share of the cycles to the onset (0 to 1), then whole
+    half cycles, the first towards compression, each by the share of the strain travelled in it (1 to 1 + n)."""
+    onset = history.onset
+    if onset is None:
+        return np.array([]), np.array([], dtype=int)
+    steps = history.reversals[:onset + 1] / max(1, history.reversals[onset])
+    x = [np.linspace(0, 1, points)]
+    rows = [np.searchsorted(np.maximum.accumulate(steps), x[0], side="left").clip(0, onset)]
+    ends = [row for row in history.reversal_rows if row > onset]
+    if len(ends) > 1 and history.q[ends[0]] > 0:
+        ends = ends[1:]  # at a reversal in extension: seeds liquefy on either side
+    for k, (begin, end) in enumerate(zip(ends, ends[1:])):
+        way = np.cumsum(np.abs(np.diff(history.eps_y[begin:end + 1], prepend=history.eps_y[begin])))
+        share = np.linspace(0, 1, points)
+        x.append(1 + k + share)
+        rows.append(begin + np.searchsorted(way / max(way[-1], 1e-15), share).clip(0, end - begin))
+    return np.concatenate(x), np.concatenate(rows)

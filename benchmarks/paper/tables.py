@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gathers the tests that are done into tables: a row for each test, and curves as mean and standard deviation."""
+import csv
+
+import numpy as np
+
+from paper import lab, states
+from speed_error import paths
+
+STRAINS = np.concatenate([np.arange(0, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
+PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz")
+UNDRAINED = ("strain (%)", "p' (kPa)", "q (kPa)", "q/p'")
+
+
+def mean(values):
+    values = np.asarray(values, dtype=float)
+    return np.nan if np.all(np.isnan(values)) else np.nanmean(values)
+
+
+def spread(values):
+    """Standard deviation; not a number of fewer than two values."""
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    return values.std(ddof=1) if len(values) > 1 else np.nan
+
+
+def ensemble(values):
+    """Mean, standard error, number."""
+    values = np.asarray([v for v in values if np.isfinite(v)], dtype=float)
+    error = values.std(ddof=1) / len(values)**0.5 if len(values) > 1 else np.nan
+    return (values.mean() if len(values) else np.nan), error, len(values)
+
+
+def identity(run, history):
+    """What a row begins with."""
+    e = history.e[0]
+    return {"specimen": run.packing.label, "grains": run.packing.grains, "seed": run.seed, "e": e,
+            "D_r (paper's limits)": (0.841 - e) / (0.841 - 0.568)}
+
+
+class Results:
+    def __init__(self, store, runs):
+        self.tests = [(run, paths.History(store.folder(run))) for run in runs
+                      if run.kind != "prepare" and store.is_done(run)]
+
+    def of(self, *kinds):
+        return [(run, history) for run, history in self.tests if run.kind in kinds]
+
+    def groups(self, *kinds):
+        """Tests that differ in their seed alone."""
+        found = {}
+        for run, history in self.of(*kinds):
+            found.setdefault((run.kind, run.packing.label, run.slow, run.ratio), []).append((run, history))
+        return found
+
+    def tables(self):
+        return {"undrained_states": self.undrained_states(), "undrained_curves": self.undrained_curves(),
+                "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
+                "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
+                "cyclic_curves": self.cyclic_curves()}
+
+    def undrained_states(self):
+        rows = []
+        for run, history in self.of("compression", "extension"):
+            row = {"direction": run.kind, "slow": run.slow, **identity(run, history)}
+            for state, numbers in states.undrained_numbers(history).items():
+                row.update({f"{state}: {name}": value for name, value in zip(UNDRAINED, numbers)})
+            rows.append(row)
+        return rows
+
+    def undrained_curves(self):
+        return curves(self.groups("compression", "extension"),
+                      lambda h: np.array([h.p, np.abs(h.q)]) / 1e3, ("p' (kPa)", "q (kPa)"))
+
+    def drained_states(self):
+        rows = []
+        for run, h in self.of("drained"):
+            volume = h.eps_x + h.eps_y + h.eps_z
+            axial, radial = h.p + 2 * h.q / 3, h.p - h.q / 3
+            rows.append({**identity(run, h), "laboratory test": "",
+                         **states.drained_numbers(h.eps_y, volume, axial, radial)})
+        for test in lab.drained_tests():
+            rows.append({"specimen": f"laboratory, {test.pressure:g} kPa", "e": test.void_ratio,
+                         "D_r (paper's limits)": test.relative_density, "laboratory test": test.name,
+                         **states.drained_numbers(test.strain, test.volume_strain, test.axial, test.radial)})
+        return rows
+
+    def drained_curves(self):
+        return curves(self.groups("drained"),
+                      lambda h: np.array([h.q / 1e3, 100 * (h.eps_x + h.eps_y + h.eps_z)]), ("q (kPa)", "eps_v (%)"))
+
+    def cyclic_tests(self):
+        rows = []
+        for run, history in self.of("cyclic"):
+            row = {**identity(run, history), "p0' (kPa)": run.packing.pressure, "q_amp/(2 p0')": run.ratio,
+                   "steps": history.step[-1] - history.step[0], **states.cyclic_numbers(history)}
+            rows.append(row)
+        return rows
+
+    def half_cycles(self):
+        return [{"specimen": run.packing.label, "q_amp/(2 p0')": run.ratio, "seed": run.seed, "half cycle": k + 1,
+                 **row} for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
+
+    def cyclic_curves(self):
+        """Of the amplitude of the paper: means over the seeds that liquefy, on the axis of states.phases()."""
+        rows = []
+        for (_, label, _, ratio), tests in self.groups("cyclic").items():
+            found = [(history, *states.phases(history)) for _, history in tests if history.onset is not None]
+            if ratio != 0.15 or not found:
+                continue
+            shortest = min((x for _, x, _ in found), key=len)
+            for k, phase in enumerate(shortest):
+                row = {"specimen": label, "phase": phase, "seeds": len(found)}
+                ratios = [history.p[rows_[k]] / history.p0 for history, _, rows_ in found]
+                row["p'/p0'"], row["p'/p0' s.d."] = mean(ratios), spread(ratios)
+                for column in PHASED:
+                    values = [getattr(history, column)[rows_[k]] for history, _, rows_ in found]
+                    row[column], row[f"{column} s.d."] = mean(values), spread(values)
+                rows.append(row)
+        return rows
+
+
+def curves(groups, values, names):
+    """Mean and standard deviation at equal |axial strain|, to the strain that all seeds reach."""
+    rows = []
+    for (kind, label, slow, _), tests in groups.items():
+        end = min(100 * np.abs(history.eps_y[-1]) for _, history in tests)
+        grid = STRAINS[STRAINS <= end * (1 + 1e-9)]
+        found = []
+        for _, history in tests:
+            order = np.maximum.accumulate(100 * np.abs(history.eps_y))
+            found.append([np.interp(grid, order, column) for column in values(history)])
+        found = np.array(found)  # seeds, columns, strains
+        for k, strain in enumerate(grid):
+            row = {"test": kind, "specimen": label, "slow": slow, "seeds": len(tests), "|eps_1| (%)": strain}
+            for column, name in enumerate(names):
+                row[name], row[f"{name} s.d."] = mean(found[:, column, k]), spread(found[:, column, k])
+            rows.append(row)
+    return rows
+
+
+def write_csv(path, rows):
+    """A table of dictionaries; columns in the order in which they are first met."""
+    header = list(dict.fromkeys(name for row in rows for name in row))
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(header)
+        for row in rows:
+            out.writerow([number(row.get(name, "")) for name in header])
+
+
+def number(value):
+    if isinstance(value, (float, np.floating)):
+        return "" if np.isnan(value) else f"{value:.5g}"
+    return value

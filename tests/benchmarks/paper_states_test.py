@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers that the campaign of the paper takes from a test: on histories made by hand, and on laboratory tests whose
+peaks are in their description."""
+import pathlib
+import sys
+import types
+import unittest
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests/apps")]
+from paper import lab, states  # noqa: E402  (the folders come first)
+from support import ToleranceTest  # noqa: E402
+
+
+def cyclic_history():
+    """Two reversals before the onset in row 40, three behind it; p' comes back in each half cycle."""
+    rows = np.arange(101)
+    reversals = np.searchsorted([10, 30, 50, 70, 90], rows, side="right").astype(float)
+    direction = np.where(reversals % 2 == 0, 1.0, -1.0)
+    p = np.where(rows < 40, 200e3, 1e3)
+    for begin, end in ((50, 70), (70, 90)):
+        p[begin + 15:end] = 20e3  # back above 1 % in the last quarter
+    index = np.where(rows < 35, 2.0, 0.5)
+    index[p == 20e3] = 1.2
+    strain = np.cumsum(np.roll(direction, 1) * np.where(rows < 40, 1e-6, 1e-4))
+    ends = [10, 30, 50, 70, 90]
+    columns = dict.fromkeys(("f_S", "f_R", "f_SR", "f_NSR", "F_yx"), 0.1 * np.ones(101))
+    return types.SimpleNamespace(p=p, p0=200e3, q=60e3 * np.roll(direction, 1), eps_y=strain, reversals=reversals,
+                                 onset=40, reversal_rows=ends, IR=index, IR_no_twist=index - 0.2,
+                                 IR_sliding=index - 0.6, **columns)
+
+
+class States(ToleranceTest):
+    def test_a_contractive_test_has_an_instability_and_a_dense_one_has_none(self):
+        strain = np.linspace(0, 0.05, 11)
+        p = np.array([200, 180, 150, 120, 100, 90, 95, 110, 140, 180, 220.0])
+        soft = np.array([0, 60, 80, 70, 62, 60, 70, 90, 130, 180, 240.0])
+        self.assertEqual(states.undrained_states(strain, p, soft), {"instability": 2, "least p'": 5, "end": 10})
+        hard = np.linspace(0, 240, 11)
+        self.assertIsNone(states.undrained_states(strain, p, hard)["instability"])
+
+    def test_the_friction_of_a_drained_test(self):
+        self.assert_near(states.friction_angle(3.0, 1.0), 30, 1e-9, "round-off")
+        found = {test.name: states.drained_numbers(test.strain, test.volume_strain, test.axial, test.radial)
+                 for test in lab.drained_tests()}
+        self.assertEqual(len(found), 8)
+        dense, loose = found["TMD23"], found["TMD3"]
+        self.assert_near(dense["strain at peak (%)"], 6, 1e-9, "round-off of a share")
+        self.assert_near(dense["eps_v at the end (%)"], -10.4459, 1e-9, "round-off of a share")
+        peak = np.degrees(np.arcsin(842.98 / (842.98 + 400)))  # largest q at a cell pressure of some 200 kPa
+        self.assert_near(dense["peak friction (deg)"], peak, 0.2, "the cell pressure drifts by a few kPa")
+        self.assert_near(dense["dilatancy"], 0.8, 0.1, "read off the curve between 2 and 5 %")
+        self.assert_near(loose["dilatancy"], 0.05, 0.05, "eps_v hardly falls behind 10 %")
+
+    def test_crossings_are_those_upwards(self):
+        self.assertEqual(list(states.crossings(np.array([0, 2, 0, 0, 3, 3, 0.0]), 1)), [1, 4])
+
+    def test_what_happens_around_liquefaction(self):
+        history = cyclic_history()
+        numbers = states.cyclic_numbers(history)
+        self.assertEqual(numbers["cycles"], 1.0)
+        self.assertEqual(numbers["I_R at onset, Eq. 2"], 0.5)
+        self.assertEqual(numbers["p'/p0' where I_R falls below 1, Eq. 2"], 1.0)
+        halves = states.half_cycles(history)
+        self.assertEqual([row["direction"] for row in halves], ["extension", "compression"])
+        self.assertEqual(halves[0]["I_R as p'/p0' first passes 0.01"], 1.2)
+        self.assert_near(halves[0]["strain travelled (%)"], 0.2, 1e-9, "round-off of 20 additions")
+
+    def test_half_cycles_of_all_seeds_begin_towards_compression(self):
+        x, rows = states.phases(cyclic_history())
+        self.assertEqual((x[0], rows[0]), (0, 0))
+        self.assertTrue(np.all(np.diff(rows) >= 0))
+        self.assertEqual((rows[x >= 1][1], rows[-1]), (70, 90))  # the first is that of the onset
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
