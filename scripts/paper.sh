@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The tests of the paper as ensembles (docs/results/paper.md), with the release build of scripts/demo.sh or test.sh.
+# The tests of the paper as ensembles, with the release build of scripts/demo.sh or test.sh.
 #
-#   scripts/paper.sh            2,000 grains, three seeds: at most 20 minutes on two cores
+#   scripts/paper.sh            2,000 grains, three seeds: some 20 minutes on two cores, estimated
 #   scripts/paper.sh --whole    10,000 grains as in the paper: some hours; interrupted, it goes on where it stopped
 #
 # Further arguments go to benchmarks/paper.py. Tables and figures are left in results/paper_*/tables.

@@ -8,7 +8,7 @@
 #include "dem/measure/stiffness.hpp"
 #include "dem/measure/unbalanced.hpp"
 #include "tests/support/near.hpp"
-#include "tests/support/specimens.hpp"
+#include "tests/support/rve_paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(Shear, ACyclicTestIsPacedByTheSlopeThatIsExpectedThenMeasured)
   stage.deviator_amplitude = 30e3;
   stage.max_cycles = 2;
   programme.stages = {stage};
-  Assembly assembly(test::periodic_specimen(500, 8));
+  Assembly assembly(test::rve_specimen());
   assembly.settings.damping = programme.motion.damping;
   DriveState state;
   Watcher watcher;
