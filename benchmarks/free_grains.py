@@ -21,20 +21,13 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", default=str(ROOT / "results/free_grains"), help="folder of runs and records")
-    parser.add_argument("--build", default=str(ROOT / "build/release"), help="build tree with bin/element_test")
+    runner.add_arguments(parser, ROOT, "free_grains")
     parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--jobs", type=int, default=2, help="runs side by side, each on a core of its own")
-    parser.add_argument("--minutes", type=float, default=0, help="stop after so many minutes; 0: no limit")
-    parser.add_argument("--dry-run", action="store_true")
     options = parser.parse_args()
-    store, runs = runner.Store(options.work), plan.runs(options.seeds)
-    left = [run for run in runs if not store.is_done(run)]
-    print(f"{len(runs)} runs, {len(left)} to do, some {sum(r.estimated_seconds() for r in left) / 60:.0f} CPU minutes")
-    if options.dry_run:
+    runs = plan.runs(options.seeds)
+    store, complete = runner.run_campaign(options, runs)
+    if complete is None:
         return 0
-    campaign = runner.Campaign(store, pathlib.Path(options.build) / "bin/element_test", runs, options.jobs)
-    complete = campaign.run_all(options.minutes)
     folder = ROOT / "docs/results/free_grains" if complete else pathlib.Path(options.work) / "incomplete"
     folder.mkdir(parents=True, exist_ok=True)
     results = tables.Results(store, runs)

@@ -24,24 +24,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=3, help="specimens of each kind; two more at D_r = 0.64")
-    parser.add_argument("--work", default=str(ROOT / "results/paper"), help="folder of runs and records")
+    runner.add_arguments(parser, ROOT, "paper")
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
-    parser.add_argument("--build", default=str(ROOT / "build/release"), help="build tree with bin/element_test")
-    parser.add_argument("--jobs", type=int, default=2, help="runs side by side, each on a core of its own")
-    parser.add_argument("--minutes", type=float, default=0, help="stop after so many minutes; 0: no limit")
-    parser.add_argument("--dry-run", action="store_true")
     parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
     options = parser.parse_args()
     if options.figures:
         figures.draw(pathlib.Path(options.figures))
         return 0
-    store, runs = runner.Store(options.work), plan.runs_of(options.grains, options.seeds)
-    left = [run for run in runs if not store.is_done(run)]
-    print(f"{len(runs)} runs, {len(left)} to do, some {sum(r.estimated_seconds() for r in left) / 60:.0f} CPU minutes")
-    if options.dry_run:
+    runs = plan.runs_of(options.grains, options.seeds)
+    store, complete = runner.run_campaign(options, runs)
+    if complete is None:
         return 0
-    campaign = runner.Campaign(store, pathlib.Path(options.build) / "bin/element_test", runs, options.jobs)
-    complete = campaign.run_all(options.minutes)
     folder = pathlib.Path(options.output or pathlib.Path(options.work) / "tables")
     folder.mkdir(parents=True, exist_ok=True)
     for name, rows in tables.Results(store, runs).tables().items():

@@ -4,6 +4,7 @@
 #include "base/files/csv_table.hpp"
 #include "base/files/json.hpp"
 #include "dem/drive/programme.hpp"
+#include "dem/drive/rate_control.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,27 +105,23 @@ void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
     }
 }
 
-/// "I = 4e-05 at p0'" or "2 1/s": the bound on the strain rate of a stage, or its fixed one.
-std::string rate_text(const MotionSpec &motion, const ShearStage &stage)
-{
-  if (const auto fixed = stage.strain_rate ? stage.strain_rate : motion.strain_rate)
-    return fmt::format("{:g} 1/s", *fixed);
-  return fmt::format("I = {:g} at p0'", motion.inertial_number.value_or(stage.inertial_number()));
-}
-
-/// Those of all stages that shear, with their numbers unless they are the same.
+/// "I = 4e-05 at p0'" or "2 1/s", of all stages that shear, with their numbers unless they are the same.
 std::string rate_text(const Scene &scene)
 {
   std::set<std::string> rates;
   std::vector<std::string> lines;
+  bool bounded = false;
   for (std::size_t k = 0; k < scene.stages.size(); ++k)
     if (const auto *shear = as<ShearStage>(scene.stages[k]))
       {
-        rates.insert(rate_text(scene.motion, *shear));
-        lines.push_back(fmt::format("stage {}: {}", k, rate_text(scene.motion, *shear)));
+        const StageRate rate = rate_in_force(scene.motion, {shear->strain_rate, shear->inertial_number()});
+        bounded |= !rate.fixed;
+        const std::string text =
+            rate.fixed ? fmt::format("{:g} 1/s", *rate.fixed) : fmt::format("I = {:g} at p0'", rate.inertial_number);
+        rates.insert(text);
+        lines.push_back(fmt::format("stage {}: {}", k, text));
       }
   std::string text = rates.size() == 1 ? *rates.begin() : fmt::format("{}", fmt::join(lines, "; "));
-  const bool bounded = text.find('I') != std::string::npos;
   if (bounded && scene.motion.load_per_wave > 0)
     text += fmt::format(", or less: the load changes by {:g} % of p0' at most in a wave time",
                         100 * scene.motion.load_per_wave);

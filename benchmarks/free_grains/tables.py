@@ -64,6 +64,12 @@ class Results:
         tests, others = self.cyclic[key], self.cyclic.get(reference, {})
         return [value(tests[s]) - value(others[s]) for s in tests if s in others]
 
+    def path_distances(self, key, reference):
+        """Largest distance of the cyclic path to reversal 10 from that of the reference, % of p0', seed by seed."""
+        tests, others = self.cyclic[key], self.cyclic.get(reference, {})
+        found = [paths.deviation(tests[s].path, others[s].path) for s in tests if s in others]
+        return [100 * d[1] for d in found if d]
+
     def cycles_table(self):
         header = ["domain", "grains", "setting", "seeds", "liquefied", "cycles", "standard error",
                   "cycles less those of the default", "half 95 % interval", "steps to the onset", "I_R at onset"]
@@ -88,10 +94,7 @@ class Results:
         rows = []
         for domain, grains, setting in self.cyclic:
             for reference in (plan.SLOW, plan.SLOWEST):
-                others = self.cyclic.get((domain, grains, reference), {})
-                tests = self.cyclic[domain, grains, setting]
-                found = [paths.deviation(tests[s].path, others[s].path) for s in tests if s in others]
-                found = [100 * d[1] for d in found if d]
+                found = self.path_distances((domain, grains, setting), (domain, grains, reference))
                 if found and setting is not reference:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
                                  np.mean(found), standard_error(found), np.median(found), np.max(found)])

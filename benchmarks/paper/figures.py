@@ -10,7 +10,7 @@ import numpy as np  # noqa: E402
 
 from paper import lab, plan, states  # noqa: E402
 
-BLUE, ORANGE, GREEN, RED, PINK, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#777777"
+BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
 STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
@@ -25,7 +25,7 @@ class Table:
             self.rows = list(csv.DictReader(file))
 
     def where(self, **conditions):
-        """Rows whose columns, named with _ for anything but letters, have these values."""
+        """Rows whose columns have these values."""
         table = object.__new__(Table)
         table.rows = [row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())]
         return table
@@ -53,10 +53,16 @@ def legend_below(figure, panel, ncols, height):
     figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
 
 
-def band(panel, x, mean, deviation, colour, label=None, style="-"):
-    panel.plot(x, mean, style, color=colour, linewidth=1.1, label=label)
+def band(panel, x, mean, deviation, colour, label=None):
+    panel.plot(x, mean, color=colour, linewidth=1.1, label=label)
     panel.fill_between(x, mean - np.nan_to_num(deviation), mean + np.nan_to_num(deviation), color=colour, alpha=0.18,
                        linewidth=0)
+
+
+def bands(panel, rows, columns):
+    """Of each (column, colour, label) of the table of phases: mean and standard deviation."""
+    for column, colour, label in columns:
+        band(panel, rows["phase"], rows[column], rows[f"{column} s.d."], colour, label)
 
 
 def draw(folder):
@@ -171,7 +177,7 @@ def cycles(table, _):
     return figure
 
 
-def loosest_liquefying(table):
+def densest_liquefying(table):
     """The preparation, by friction, with the most seeds that liquefy; the densest of those."""
     labels = [label for label in table.values("specimen") if "deg" in label]
     most = max((table.where(specimen=label)["seeds"][0] for label in labels), default=0)
@@ -191,14 +197,13 @@ def phase_axis(axes, rows):
 @of_table("cyclic_curves")
 def redundancy(table, _):
     """Figure 3: redundancy index and contact fractions, mean and standard deviation over seeds."""
-    label = loosest_liquefying(table)
+    label = densest_liquefying(table)
     if label is None:
         return None
     rows = table.where(specimen=label)
     figure, axes = panels(3, 1, height=6.2, sharex=True)
     index, ratio, fractions = axes[:, 0]
-    for (column, name), colour in zip(states.COUNTS.items(), (BLUE, ORANGE, GREEN)):
-        band(index, rows["phase"], rows[column], rows[f"{column} s.d."], colour, name)
+    bands(index, rows, zip(states.COUNTS, (BLUE, ORANGE, GREEN), states.COUNTS.values()))
     for level in (1, 0.35):
         index.axhline(level, color=GREY, linewidth=0.8, linestyle="--")
     index.set_ylabel("Redundancy index $I_R$")
@@ -206,8 +211,7 @@ def redundancy(table, _):
     ratio.axhline(0.01, color=GREY, linewidth=0.8, linestyle="--")
     ratio.set_yscale("log")
     ratio.set_ylabel(f"{PRIME}/$p_0^\\prime$")
-    for column, name, colour in (("f_S", "sliding", BLUE), ("f_SR", "both", GREEN), ("f_R", "rolling", ORANGE)):
-        band(fractions, rows["phase"], rows[column], rows[f"{column} s.d."], colour, name)
+    bands(fractions, rows, (("f_S", BLUE, "sliding"), ("f_SR", GREEN, "both"), ("f_R", ORANGE, "rolling")))
     fractions.set_ylabel("Fraction of contacts")
     index.legend(ncols=3, loc="upper right")
     fractions.legend(ncols=3, loc="upper left")
@@ -219,16 +223,14 @@ def redundancy(table, _):
 @of_table("cyclic_curves")
 def fabric(table, folder):
     """Figure 4: fabric and its anisotropy, and the anisotropy of a half cycle against its strain."""
-    label = loosest_liquefying(table)
+    label = densest_liquefying(table)
     if label is None:
         return None
     rows = table.where(specimen=label)
     figure, axes = panels(3, 1, height=6.6)
     normals, anisotropy, against = axes[:, 0]
-    for column, colour in (("Fyy", BLUE), ("Fxx", ORANGE), ("Fzz", GREEN)):
-        band(normals, rows["phase"], rows[column], rows[f"{column} s.d."], colour, f"$F_{{{column[1:]}}}$")
-    band(anisotropy, rows["phase"], rows["F_yx"], rows["F_yx s.d."], ORANGE, "$F_{[y-x]}$")
-    band(anisotropy, rows["phase"], rows["F_yz"], rows["F_yz s.d."], GREEN, "$F_{[y-z]}$")
+    bands(normals, rows, (("Fyy", BLUE, "$F_{yy}$"), ("Fxx", ORANGE, "$F_{xx}$"), ("Fzz", GREEN, "$F_{zz}$")))
+    bands(anisotropy, rows, (("F_yx", ORANGE, "$F_{[y-x]}$"), ("F_yz", GREEN, "$F_{[y-z]}$")))
     normals.axhline(1 / 3, color=GREY, linewidth=0.8, linestyle="--")
     anisotropy.axhline(0, color=GREY, linewidth=0.8, linestyle="--")
     normals.set_ylabel("Contact-normal fabric")

@@ -2,6 +2,8 @@
 """What is run: specimens by relative density or preparation friction, and the scene of each test."""
 import dataclasses
 
+from speed_error import plan as speed_plan
+
 P0 = 200  # kPa, of the paper
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
 LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
@@ -12,24 +14,9 @@ PRESSURES = (50, 200, 400)  # kPa
 AFTER_ONSET = 8  # reversals: four cycles
 MAX_CYCLES = 100
 
-SCENE = """\
-title = "{title}"
-
-[grading]
-curve = "karlsruhe-fine-sand"
-grains = {grains}
-cloud_edge = "{edge:.15g} mm"     # grains of one size for every number of them
-seed = {seed}
-
-[contact]
-young = "{young:g} GPa"
-stiffness_ratio = 0.3
-friction = "18 deg"
-rolling = {{ stiffness = 0.3, limit = 0.5 }}
-twisting = {{ stiffness = 0.3 }}
-
+SCENE = speed_plan.GRADING + speed_plan.CONTACT.replace("10 GPa", "{young:g} GPa") + """
 [specimen]
-domain = "{domain}"
+domain = "rigid-box"
 pressure = "{pressure:g} kPa"
 {density}
 
@@ -61,7 +48,6 @@ class Packing:
     relative_density: float = 0
     degrees: float = 0
     pressure: float = P0
-    domain: str = "rigid-box"
     young: float = 10  # GPa
 
     @property
@@ -71,7 +57,6 @@ class Packing:
     @property
     def label(self):
         more = [self.density, f"{self.pressure:g} kPa"]
-        more += [self.domain] if self.domain != "rigid-box" else []
         more += [f"E {self.young:g} GPa"] if self.young != 10 else []
         return ", ".join(more)
 
@@ -115,7 +100,7 @@ class Run:
         p = self.packing
         large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
         return SCENE.format(title=self.name, grains=p.grains, edge=10 * (p.grains / 10000) ** (1 / 3), seed=p.seed,
-                            young=p.young, domain=p.domain, pressure=p.pressure, density=p.lines(),
+                            young=p.young, pressure=p.pressure, density=p.lines(),
                             motion="damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1",
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 

@@ -12,25 +12,6 @@ PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz"
 UNDRAINED = ("strain (%)", "p' (kPa)", "q (kPa)", "q/p'")
 
 
-def mean(values):
-    values = np.asarray(values, dtype=float)
-    return np.nan if np.all(np.isnan(values)) else np.nanmean(values)
-
-
-def spread(values):
-    """Standard deviation; not a number of fewer than two values."""
-    values = np.asarray(values, dtype=float)
-    values = values[np.isfinite(values)]
-    return values.std(ddof=1) if len(values) > 1 else np.nan
-
-
-def ensemble(values):
-    """Mean, standard error, number."""
-    values = np.asarray([v for v in values if np.isfinite(v)], dtype=float)
-    error = values.std(ddof=1) / len(values)**0.5 if len(values) > 1 else np.nan
-    return (values.mean() if len(values) else np.nan), error, len(values)
-
-
 def identity(run, history):
     """What a row begins with."""
     e = history.e[0]
@@ -112,10 +93,10 @@ class Results:
             for k, phase in enumerate(shortest):
                 row = {"specimen": label, "phase": phase, "seeds": len(found)}
                 ratios = [history.p[rows_[k]] / history.p0 for history, _, rows_ in found]
-                row["p'/p0'"], row["p'/p0' s.d."] = mean(ratios), spread(ratios)
+                row["p'/p0'"], row["p'/p0' s.d."], *_ = paths.ensemble(ratios)
                 for column in PHASED:
                     values = [getattr(history, column)[rows_[k]] for history, _, rows_ in found]
-                    row[column], row[f"{column} s.d."] = mean(values), spread(values)
+                    row[column], row[f"{column} s.d."], *_ = paths.ensemble(values)
                 rows.append(row)
         return rows
 
@@ -134,7 +115,7 @@ def curves(groups, values, names):
         for k, strain in enumerate(grid):
             row = {"test": kind, "specimen": label, "slow": slow, "seeds": len(tests), "|eps_1| (%)": strain}
             for column, name in enumerate(names):
-                row[name], row[f"{name} s.d."] = mean(found[:, column, k]), spread(found[:, column, k])
+                row[name], row[f"{name} s.d."], *_ = paths.ensemble(found[:, column, k])
             rows.append(row)
     return rows
 

@@ -13,7 +13,7 @@ friction = "18 deg"
 rolling = {{ stiffness = 0.3, limit = 0.5 }}
 twisting = {{ stiffness = 0.3 }}
 """  # of format(), as the scenes are
-SCENE = """\
+GRADING = """\
 title = "{title}"
 
 [grading]
@@ -22,7 +22,8 @@ grains = {grains}
 cloud_edge = "{edge:.15g} mm"     # grains of one size for every number of them
 seed = {seed}
 
-""" + CONTACT + """
+"""
+SCENE = GRADING + CONTACT + """
 [specimen]
 domain = "rigid-box"
 pressure = "200 kPa"

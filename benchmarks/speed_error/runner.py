@@ -68,6 +68,26 @@ class Store:
         return path
 
 
+def add_arguments(parser, root, work):
+    """What every campaign takes on its command line."""
+    parser.add_argument("--work", default=str(root / "results" / work), help="folder of runs and records")
+    parser.add_argument("--build", default=str(root / "build/release"), help="build tree with bin/element_test")
+    parser.add_argument("--jobs", type=int, default=2, help="runs side by side, each on a core of its own")
+    parser.add_argument("--minutes", type=float, default=0, help="stop after so many minutes; 0: no limit")
+    parser.add_argument("--dry-run", action="store_true")
+
+
+def run_campaign(options, runs):
+    """Says what is to do, and does it. @return (store, whether all is done); (store, None) of a dry run."""
+    store = Store(options.work)
+    left = [run for run in runs if not store.is_done(run)]
+    print(f"{len(runs)} runs, {len(left)} to do, some {sum(r.estimated_seconds() for r in left) / 60:.0f} CPU minutes")
+    if options.dry_run:
+        return store, None
+    return store, Campaign(store, pathlib.Path(options.build) / "bin/element_test", runs, options.jobs).run_all(
+        options.minutes)
+
+
 def speed(store, runs):
     """Measured over estimated CPU time of the runs that are done; 1 without any."""
     done = [(store.record(run).get("cpu", 0), run.estimated_seconds()) for run in runs if store.is_done(run)]

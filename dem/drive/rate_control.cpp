@@ -11,11 +11,6 @@ namespace isostat
 {
 namespace
 {
-std::optional<double> fixed_rate(const MotionSpec &motion, const StageRate &stage)
-{
-  return stage.fixed ? stage.fixed : motion.strain_rate;
-}
-
 void begin_window(Loading &loading, double load, double slope)
 {
   loading.slope = slope;
@@ -25,23 +20,28 @@ void begin_window(Loading &loading, double load, double slope)
 }
 } // namespace
 
+StageRate rate_in_force(const MotionSpec &motion, const StageRate &stage)
+{
+  return {stage.fixed ? stage.fixed : motion.strain_rate, motion.inertial_number.value_or(stage.inertial_number)};
+}
+
 double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0)
 {
-  if (const auto fixed = fixed_rate(motion, stage))
-    return *fixed;
+  const StageRate rate = rate_in_force(motion, stage);
+  if (rate.fixed)
+    return *rate.fixed;
   if (!(p0 > 0))
     throw RunFailure(
         fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
                     "number goes with its root. Consolidate it first, or give motion.strain_rate.",
                     p0));
-  const double number = motion.inertial_number.value_or(stage.inertial_number);
-  return number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
+  return rate.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }
 
 void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace)
 {
   pace.rate = strain_rate(motion, stage, assembly, p0);
-  pace.load_rate = fixed_rate(motion, stage) ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
+  pace.load_rate = rate_in_force(motion, stage).fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
 }
 
 double bounded_rate(const Pace &pace, const Loading &loading)

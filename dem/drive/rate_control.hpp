@@ -13,7 +13,11 @@ struct StageRate
   double inertial_number = 5e-4;    ///< where the motion names none [-]
 };
 
-/// Strain rate, 1/s: the fixed one of the stage, else of the motion, else that of the inertial number,
+/// What holds where motion and stage both may say it: the fixed rate of the stage, else of the motion; the inertial
+/// number of the motion, else of the stage, of no effect beside a fixed rate.
+StageRate rate_in_force(const MotionSpec &motion, const StageRate &stage);
+
+/// Strain rate in force, 1/s: the fixed one, else that of the inertial number,
 /// I sqrt(p0'/rho)/d50. It stays the same while p' changes: what error that leaves, also in the liquefied state, is
 /// measured in docs/results/free_grains.md.
 /// @param p0  mean effective stress when shearing began, Pa
