@@ -209,6 +209,18 @@ Json shear_json(const ShearExtremes &shear)
           {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};
 }
 
+Json or_null(std::optional<double> value) { return value ? Json(*value) : Json(); }
+
+/// "D_r = 0.640 (e_min 0.568, e_max 0.841)"
+std::string density_text(const TestSummary &s)
+{
+  if (!s.relative_density)
+    return "D_r unknown (no e_min and e_max)";
+  const std::string limits =
+      s.e_min && s.e_max ? fmt::format(" (e_min {:g}, e_max {:g})", *s.e_min, *s.e_max) : std::string();
+  return fmt::format("D_r = {:.3f}{}", *s.relative_density, limits);
+}
+
 Json liquefaction_json(const TestSummary &s)
 {
   if (!s.liquefied)
@@ -233,7 +245,10 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.title = scene.title;
   summary.grains = static_cast<std::size_t>(number("grains", 0));
   summary.void_ratio = number("void_ratio", 0);
-  summary.relative_density = number("relative_density", 0);
+  for (auto &[name, value] :
+       {std::pair{"relative_density", &summary.relative_density}, {"e_min", &summary.e_min}, {"e_max", &summary.e_max}})
+    if (specimen.contains(name))
+      *value = specimen.at(name);
   summary.preparation_friction = number("preparation_friction_deg", -1);
   summary.p0 = state.path.p0();
   summary.seconds = seconds;
@@ -254,8 +269,8 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
 
 std::string to_text(const TestSummary &s, const Scene &scene)
 {
-  std::string text = fmt::format("\n{}\n  specimen                 {} grains, e = {:.4f}, D_r = {:.3f}", s.title,
-                                 s.grains, s.void_ratio, s.relative_density);
+  std::string text = fmt::format("\n{}\n  specimen                 {} grains, e = {:.4f}, {}", s.title, s.grains,
+                                 s.void_ratio, density_text(s));
   if (s.preparation_friction >= 0)
     text += fmt::format(", prepared at {:.2f} deg", s.preparation_friction);
   text += fmt::format(
@@ -293,7 +308,9 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   Json json{{"title", s.title},
             {"grains", s.grains},
             {"void_ratio", s.void_ratio},
-            {"relative_density", s.relative_density},
+            {"relative_density", or_null(s.relative_density)},
+            {"e_min", or_null(s.e_min)},
+            {"e_max", or_null(s.e_max)},
             {"preparation_friction_deg", s.preparation_friction},
             {"p0", s.p0},
             {"steps", std::llround(s.steps)},

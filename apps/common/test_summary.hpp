@@ -25,8 +25,9 @@ struct TestSummary
 {
   std::string title;
   std::size_t grains = 0;
-  double void_ratio = 0, relative_density = 0, preparation_friction = -1; ///< degrees; negative: unknown
-  double p0 = 0;                                                          ///< Pa
+  double void_ratio = 0, preparation_friction = -1;     ///< degrees; negative: unknown
+  std::optional<double> relative_density, e_min, e_max; ///< and the limits that define it, as the specimen has them
+  double p0 = 0;                                        ///< Pa
   double steps = 0;
   double last_steps = 0, seconds = 0; ///< since the run was begun or resumed for the last time
   double reversals = 0, worst_overshoot = 0;

@@ -34,7 +34,12 @@ void describe(const Scene &scene, Specimen &specimen)
   const double e = m.void_ratio;
   auto &numbers = specimen.numbers;
   numbers["void_ratio"] = e;
-  numbers["relative_density"] = relative_density(e, scene.specimen.e_min, scene.specimen.e_max);
+  if (const SpecimenSpec &spec = scene.specimen; spec.has_limits()) // else what the file says of it
+    {
+      numbers["relative_density"] = relative_density(e, *spec.e_min, *spec.e_max);
+      numbers["e_min"] = *spec.e_min;
+      numbers["e_max"] = *spec.e_max;
+    }
   numbers["pressure_Pa"] = m.wall.p;
   numbers["grains"] = static_cast<double>(state.grains.n_grains());
   numbers["coordination"] = m.network.coordination_number();
@@ -50,14 +55,21 @@ void describe(const Scene &scene, Specimen &specimen)
     }
 }
 
+/// e_max - e_min; without them that of an ordinary sand.
+double limits_apart(const SpecimenSpec &spec) { return spec.has_limits() ? *spec.e_max - *spec.e_min : 0.3; }
+
 double target_void_ratio(const SpecimenSpec &spec)
 {
-  return spec.void_ratio ? *spec.void_ratio : void_ratio_at(*spec.relative_density, spec.e_min, spec.e_max);
+  if (spec.void_ratio)
+    return *spec.void_ratio;
+  if (!spec.has_limits())
+    throw InputError(fmt::format("specimen.relative_density = {:g} {}", *spec.relative_density, no_limits));
+  return void_ratio_at(*spec.relative_density, *spec.e_min, *spec.e_max);
 }
 
 double missed_density(const SpecimenSpec &spec, double void_ratio)
 {
-  return std::abs(void_ratio - target_void_ratio(spec)) / (spec.e_max - spec.e_min);
+  return std::abs(void_ratio - target_void_ratio(spec)) / limits_apart(spec);
 }
 
 /// Searches the density on the compressed packing and rebalances it. Where that loses it (K0 consolidation begins
@@ -65,7 +77,7 @@ double missed_density(const SpecimenSpec &spec, double void_ratio)
 Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &prepared, const Preparation &how)
 {
   const SpecimenSpec &spec = scene.specimen;
-  const double tolerance = 0.8 * spec.density_tolerance * (spec.e_max - spec.e_min);
+  const double tolerance = 0.8 * spec.density_tolerance * limits_apart(spec);
   double aim = target_void_ratio(spec), e = 0;
   int compressions = 0;
   for (int attempt = 0; attempt < density_attempts; ++attempt)
@@ -95,6 +107,9 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
                              cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
                              uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
+  if (!spec.has_limits())
+    observer.event(
+        "warning: D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   PreparedDensity prepared;
   Specimen specimen;
   if (spec.preparation_friction)

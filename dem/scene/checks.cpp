@@ -19,6 +19,21 @@ void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, cons
                                       specimen.domain, document.where("specimen.domain"), otherwise));
 }
 
+/// The limits of the void ratio.
+void check_limits(const SceneDocument &document, const SpecimenSpec &specimen)
+{
+  const char *path = document.find("specimen.e_min") ? "specimen.e_min" : "specimen.e_max";
+  if (specimen.e_min.has_value() != specimen.e_max.has_value())
+    document.refuse(path,
+                    "needs the other limit, too: those of Karlsruhe fine sand do not belong to this grading. Give "
+                    "specimen.e_min and specimen.e_max, or neither.");
+  if (specimen.has_limits() && *specimen.e_min >= *specimen.e_max)
+    document.refuse(path, fmt::format("e_min must be below e_max, but they are {} and {}. Correct one of them.",
+                                      number_text(*specimen.e_min), number_text(*specimen.e_max)));
+  if (specimen.relative_density && !specimen.has_limits())
+    document.refuse("specimen.relative_density", no_limits);
+}
+
 void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
 {
   if (specimen.consolidation == "k0")
@@ -30,10 +45,7 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
                                     "consolidation out, or add a stage of kind \"k0-compress\".",
                                     document.where("specimen.file")));
     }
-  if (specimen.e_min >= specimen.e_max)
-    document.refuse(document.find("specimen.e_min") ? "specimen.e_min" : "specimen.e_max",
-                    fmt::format("e_min must be below e_max, but they are {} and {}. Correct one of them.",
-                                number_text(specimen.e_min), number_text(specimen.e_max)));
+  check_limits(document, specimen);
   if (document.find("specimen.file") && specimen.file.empty())
     document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
 }

@@ -11,6 +11,15 @@ namespace isostat
 {
 namespace
 {
+/// The default limits are those of the default grading.
+void forget_default_limits(const SceneDocument &document, SpecimenSpec &specimen)
+{
+  if (!document.find("specimen.e_min"))
+    specimen.e_min.reset();
+  if (!document.find("specimen.e_max"))
+    specimen.e_max.reset();
+}
+
 Scene checked_scene(const SceneDocument &document)
 {
   Scene scene;
@@ -19,6 +28,8 @@ Scene checked_scene(const SceneDocument &document)
     scene.contact->friction = 0;
   if (document.find("grading.table"))
     scene.grading.curve.clear();
+  if (document.find("grading.table") || document.find("specimen.file"))
+    forget_default_limits(document, scene.specimen);
   check_scene(document, scene);
   return scene;
 }

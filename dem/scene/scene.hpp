@@ -35,13 +35,21 @@ struct SpecimenSpec : ServoSpec
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
   std::string file;                           ///< a specimen (.h5), "library.h5#entry", or a folder of text tables
-  double e_min = 0.568, e_max = 0.841;        ///< limits that define the relative density
-  double density_tolerance = 0.01;            ///< on D_r
-  double damping = 0.3;                       ///< local damping during preparation
-  std::string cache = "specimens";            ///< folder of cached specimens, relative to the output folder's parent
+  /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
+  /// of one's own, and a packing from a file, have none unless they are given.
+  std::optional<double> e_min = 0.568, e_max = 0.841;
+  double density_tolerance = 0.01; ///< on D_r
+  double damping = 0.3;            ///< local damping during preparation
+  std::string cache = "specimens"; ///< folder of cached specimens, relative to the output folder's parent
 
+  bool has_limits() const { return e_min && e_max; }
   bool operator==(const SpecimenSpec &) const = default;
 };
+
+/// What to do where a relative density is asked for without its limits; of messages.
+inline constexpr const char *no_limits =
+    "needs e_min and e_max of this grading; those of Karlsruhe fine sand hold for no other. Find them with "
+    "void_ratio_limits and give specimen.e_min and specimen.e_max, or give void_ratio or preparation_friction instead.";
 
 /// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file or folder.
 struct SpecimenPlace

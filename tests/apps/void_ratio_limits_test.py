@@ -32,11 +32,20 @@ class VoidRatioLimits(AppTest):
         self.assert_refused(self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK), "exists", "--overwrite")
         self.assertEqual(contents(self.folder / "out"), before)
 
+    def test_of_a_cell(self):
+        scene = self.write("limits.toml", LIMITS)
+        result = self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK, "--set", "specimen.domain=periodic-cell",
+                              "--set", "grading.grains=400", "--set", "grading.truncate=[10, 90]")
+        self.assert_done(result)
+        limits = json.loads((self.folder / "out/limits.json").read_text(encoding="utf-8"))
+        self.assertEqual(limits["e_min"]["value"], limits["e_min_inside"]["value"])
+        self.assertLess(limits["e_min"]["value"], limits["e_max_inside"]["value"])
+        self.assert_below(limits["dense_unbalanced"]["value"], 5e-5, "at rest, as every specimen")
+
     def test_refusals(self):
         scene = self.write("limits.toml", LIMITS)
         for change, parts in ((["--set", "specimen.preparation_friction=5 deg"], ("preparation_friction", "0 deg")),
                               (["--set", "specimen.relative_density=0.5"], ("preparation_friction", "0 deg")),
-                              (["--set", "specimen.domain=periodic-cell"], ("periodic-cell", "rigid-box")),
                               (["--set", "grading.grain=5"], ("grading.grain", "grading.grains"))):
             self.assert_refused(self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK, *change), *parts)
             self.assertFalse((self.folder / "out").exists())

@@ -201,6 +201,10 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "[motion]\ninertial_number = \"1e-4 1/s\"", {"scene.toml:4: motion.inertial_number"});
   expect_complaint(smallest + "[grading]\ncurve = \"karlsruhe-fine-sand\"\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]",
                    {"grading.table", "excludes grading.curve"});
+  const std::string table = "[grading]\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]\n[specimen]\n";
+  expect_complaint(table + "relative_density = 0.5", {"scene.toml:4: specimen.relative_density = 0.5",
+                                                      "e_min and e_max of this grading", "void_ratio_limits"});
+  expect_complaint(table + "void_ratio = 0.7\ne_min = 0.5", {"scene.toml:5: specimen.e_min = 0.5", "the other limit"});
   expect_complaint(smallest + "e_min = 0.9", {"scene.toml:3: specimen.e_min = 0.9; e_min must be below e_max"});
   expect_complaint(smallest + "[[stage]]\nkind = \"friction\"\nfriction = \"18 deg\"",
                    {"stage.0.friction", "has no effect"});

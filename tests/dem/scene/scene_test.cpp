@@ -183,7 +183,7 @@ strain_rate = "0.5 1/s"
 
 TEST(Scene, GradingTable)
 {
-  const std::string head = smallest + "[grading]\n";
+  const std::string head = "[specimen]\nvoid_ratio = 0.7\n[grading]\n";
   const Scene scene =
       parse_scene(head + "table = [[\"0.0631 mm\", 1.53], [\"125 um\", 28], [\"0.3135 mm\", 100]]", "s");
   const SizeCurve expected{{0.0631e-3, 1.53}, {125e-6, 28}, {0.3135e-3, 100}};
@@ -291,11 +291,24 @@ TEST(Scene, RoundTripToTheBit)
             for (Stage &stage : scene.stages)
               if (key.belongs_to(stage.index()))
                 scramble(key, key.field(scene, stage), random);
-        scene.specimen.e_max = scene.specimen.e_min * 1.37;
+        if (scene.specimen.e_min)
+          scene.specimen.e_max = *scene.specimen.e_min * 1.37;
         for (auto &[diameter, percent] : scene.grading.table)
           diameter *= 1.0 / 3.0;
         EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene) << to_toml(scene);
       }
+}
+
+TEST(Scene, LimitsOfTheVoidRatioBelongToTheGrading)
+{
+  const std::string table = "[grading]\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]\n[specimen]\nvoid_ratio = 0.7\n";
+  EXPECT_TRUE(parse_scene(smallest, "s").specimen.has_limits());
+  EXPECT_FALSE(parse_scene(table, "s").specimen.has_limits());
+  EXPECT_FALSE(parse_scene("[specimen]\nfile = \"a.h5\"\n", "s").specimen.has_limits());
+  const Scene given = parse_scene(table + "e_min = 0.5\ne_max = 0.8\n", "s");
+  EXPECT_EQ(given.specimen.e_max, 0.8);
+  for (const Scene &scene : {parse_scene(table, "s"), given})
+    EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene) << to_toml(scene);
 }
 
 TEST(Scene, RoundTripWithPartsOfTheLawOff)
