@@ -6,7 +6,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
-from free_grains import plan, tables  # noqa: E402
+from free_grains import plan  # noqa: E402
+from speed_error import paths  # noqa: E402
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False}
@@ -54,7 +55,7 @@ def draw_cycles(results, path):
             keys = [(domain, plan.GRAINS, setting) for setting in settings]
             keys = [key for key in keys if len(results.cyclic.get(key, {})) > 1]
             steps = [np.mean([t.steps for t in results.cyclic[key].values()]) for key in keys]
-            found = [tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
+            found = [paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
             if found and not (domain != "rigid-box" and "walls push" in label):
                 mean, half = np.array(found).T
                 panel.errorbar(steps, base + mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)
@@ -74,7 +75,7 @@ def draw_damping(results, path):
         reference = domain, plan.GRAINS, plan.DEFAULT
         for rate, (label, colour, marker) in enumerate(RATES):
             keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
-            rows = [(damping, *tables.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)))
+            rows = [(damping, *paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)))
                     for damping, key in keys.items() if len(results.cyclic.get(key, {})) > 2]
             if rows:
                 damping, mean, half = np.array(rows).T

@@ -8,22 +8,6 @@ from free_grains import plan
 from speed_error import paths
 
 REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
-# two-sided 95 % by number of values
-STUDENT = {2: 12.7, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 8: 2.36, 10: 2.26, 12: 2.20, 15: 2.14, 20: 2.09}
-
-
-def mean_and_interval(values):
-    """Mean, and half the width of its 95 % interval."""
-    values = np.asarray([v for v in values if np.isfinite(v)], dtype=float)
-    if len(values) < 2:
-        return (values.mean() if len(values) else np.nan), np.nan
-    t = STUDENT[max(n for n in STUDENT if n <= len(values))]
-    return values.mean(), t * values.std(ddof=1) / np.sqrt(len(values))
-
-
-def standard_error(values):
-    values = np.asarray(values, dtype=float)
-    return values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
 
 
 class Cyclic:
@@ -82,11 +66,11 @@ class Results:
             cycles = [t.cycles for t in tests.values() if np.isfinite(t.cycles)]
             stress = np.array([d for d in self.differences(key, reference, lambda t: t.p)])
             rows.append([domain, grains, setting.label, len(tests), len(cycles), np.mean(cycles),
-                         standard_error(cycles),
-                         *mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
+                         paths.ensemble(cycles)[2],
+                         *paths.mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
                          np.mean([t.steps for t in tests.values()]),
                          np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0),
-                         *[mean_and_interval(column)[1] for column in stress.T]])
+                         *[paths.mean_and_interval(column)[1] for column in stress.T]])
         return header, rows
 
     def path_table(self):
@@ -97,7 +81,7 @@ class Results:
                 found = self.path_distances((domain, grains, setting), (domain, grains, reference))
                 if found and setting is not reference:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
-                                 np.mean(found), standard_error(found), np.median(found), np.max(found)])
+                                 np.mean(found), paths.ensemble(found)[2], np.median(found), np.max(found)])
         return ["path", "domain", "grains", "setting", "reference", "seeds", "largest distance (% of p0')",
                 "standard error", "median", "largest of a specimen"], rows
 
@@ -112,10 +96,10 @@ class Results:
                          for (some, s) in histories if some == setting and (reference, s) in histories]
                 pairs = [pair for pair in pairs if all(path is not None for path in pair)]
                 if pairs:
-                    signed = mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
+                    signed = paths.mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
                     distances = [100 * paths.deviation(*pair)[1] for pair in pairs]
                     rows.append([setting.label, reference.label, len(pairs), f"{100 * strain:g}", *signed,
-                                 np.mean(distances), standard_error(distances)])
+                                 np.mean(distances), paths.ensemble(distances)[2]])
         return ["setting", "reference", "seeds", "axial strain (%)", "p' less that of the reference (% of p0')",
                 "half 95 % interval", "largest distance of the path (% of p0')", "standard error"], rows
 

@@ -148,7 +148,7 @@ def dense(table, _):
 def cycles(table, _):
     """Figure 2 as an ensemble: cycles to liquefaction against void ratio, at the amplitude of the paper."""
     figure, ((panel, strains),) = panels(1, 2)
-    table = table.where(**{"p0' (kPa)": "200", "q_amp/(2 p0')": "0.15"})
+    table = table.where(**{"p0' (kPa)": "200", "q_amp/(2 p0')": plan.PAPER_RATIO})
     for label in table.values("specimen"):
         rows = table.where(specimen=label)
         paper = label.startswith("D_r")
@@ -238,7 +238,7 @@ def fabric(table, folder):
     normals.legend(ncols=3)
     anisotropy.legend(ncols=2)
     phase_axis([normals, anisotropy], rows)
-    halves = Table(folder / "half_cycles.csv").where(**{"q_amp/(2 p0')": "0.15"})
+    halves = Table(folder / "half_cycles.csv").where(**{"q_amp/(2 p0')": plan.PAPER_RATIO})
     for direction, colour in (("compression", BLUE), ("extension", ORANGE)):
         part = halves.where(direction=direction)
         against.plot(part["strain travelled (%)"], np.abs(part["F_yx at its end"]), "o", color=colour, markersize=3,
@@ -296,5 +296,49 @@ def resistance(table, _):
     return figure
 
 
-FIGURES = {"figure_1": monotonic, "dense": dense, "figure_2": cycles, "figure_3": redundancy, "figure_4": fabric,
-           "drained": drained, "resistance": resistance}
+@of_table("critical_states")
+def critical_states(table, folder):
+    """Ends of monotonic tests with the line through them; strain of liquefied specimens that drain."""
+    figure, ((line, drained_strain),) = panels(1, 2)
+    for kind, marker, colour in (("compression", "o", BLUE), ("extension", "s", ORANGE), ("drained", "^", GREEN)):
+        rows = table.where(test=kind)
+        far = rows["|eps_1| (%)"] > 9.9
+        line.plot(rows["p' (kPa)"][far], rows["e"][far], marker, color=colour, markersize=4, label=kind)
+        line.plot(rows["p' (kPa)"][~far], rows["e"][~far], marker, color=colour, markersize=3, mfc="none", alpha=0.6)
+    if "Gamma" in table.rows[0]:
+        p = np.array(line.get_xlim() if line.get_xscale() == "log" else np.quantile(table["p' (kPa)"], (0, 1)))
+        line.plot(p, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
+                  label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
+    line.plot([], [], "o", color=GREY, mfc="none", markersize=3, label="strained by less than 10 %: not fitted")
+    line.set_xscale("log")
+    line.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
+    line.set_ylabel("Void ratio $e$")
+    line.legend()
+    if (folder / "reconsolidation.csv").exists():
+        rows = Table(folder / "reconsolidation.csv")
+        for label, colour in zip(rows.values("specimen"), (RED, BLUE, ORANGE, GREEN, GREY)):
+            part = rows.where(specimen=label)
+            drained_strain.plot(part["largest gamma (%)"], part["eps_v (%)"], "o", color=colour, markersize=4,
+                                label=label)
+        drained_strain.legend()
+    drained_strain.set_xlabel(r"Largest shear strain $\gamma = 1.5|\varepsilon_1|$ (%)")
+    drained_strain.set_ylabel(r"$\varepsilon_v$ as it drains to $p_0^\prime$ (%)")
+    return figure
+
+
+@of_table("cyclic_path")
+def path(table, _):
+    """Figure 2 as the paper draws it, of one specimen."""
+    figure, ((stress, strain),) = panels(1, 2, sharey=True)
+    stress.plot(table["p' (kPa)"], table["q (kPa)"], color=BLUE, linewidth=0.6)
+    strain.plot(table["eps_1 (%)"], table["q (kPa)"], color=BLUE, linewidth=0.6)
+    stress.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
+    stress.set_ylabel("Deviatoric stress $q$ (kPa)")
+    strain.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    figure.suptitle(f"{table.rows[0]['specimen']}, seed {table.rows[0]['seed']}: one specimen, the one of those that "
+                    f"liquefy whose cycles are nearest to 17", fontsize=9)
+    return figure
+
+
+FIGURES = {"figure_1": monotonic, "dense": dense, "figure_2": cycles, "figure_2_path": path, "figure_3": redundancy,
+           "figure_4": fabric, "drained": drained, "resistance": resistance, "critical_states": critical_states}

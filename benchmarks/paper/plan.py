@@ -5,6 +5,7 @@ import dataclasses
 from speed_error import plan as speed_plan
 
 P0 = 200  # kPa, of the paper
+PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
 LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
 PREPARATIONS = range(5, 12)  # friction, degrees
@@ -73,7 +74,7 @@ class Run:
     kind: str  # prepare, compression, extension, drained, cyclic
     packing: Packing
     strain: float = 0.05
-    ratio: float = 0.15  # q_amp/(2 p0')
+    ratio: float = PAPER_RATIO  # q_amp/(2 p0')
     slow: bool = False
 
     @property
@@ -96,6 +97,12 @@ class Run:
     def one_way(self):
         return self.kind in ("compression", "extension", "drained")
 
+    @property
+    def looks_behind_onset(self):
+        """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others
+        only the cycles to liquefaction are asked."""
+        return self.ratio == PAPER_RATIO and self.packing.pressure == P0
+
     def scene(self):
         p = self.packing
         large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
@@ -109,9 +116,11 @@ class Run:
             return ""
         if self.kind == "cyclic":
             amplitude = 2 * self.ratio * self.packing.pressure
-            until = f"cycles = {MAX_CYCLES}, reversals_after_liquefaction = {AFTER_ONSET}, strain = 0.15"
+            after = AFTER_ONSET if self.looks_behind_onset else 0
+            until = f"cycles = {MAX_CYCLES}, reversals_after_liquefaction = {after}, strain = 0.15"
+            drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
             return (f'[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "{amplitude:g} kPa"\n'
-                    f"until = {{ {until} }}\n")
+                    f"until = {{ {until} }}\n{drained}")
         kind = "drained" if self.kind == "drained" else "undrained-monotonic"
         direction = "extension" if self.kind == "extension" else "compression"
         stage = f'[[stage]]\nkind = "{kind}"\ndirection = "{direction}"\n'
@@ -125,7 +134,8 @@ class Run:
         first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN
         fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01 * (10 if self.slow else 1)
         search = 1.5e5 if self.packing.relative_density else 5e4
-        steps = {"prepare": search, "cyclic": 1.2e5}.get(self.kind, first + max(0, fast))
+        cyclic = 5e5 if self.looks_behind_onset else 8e4
+        steps = {"prepare": search, "cyclic": cyclic}.get(self.kind, first + max(0, fast))
         return 1.2e-4 * steps * self.packing.grains / 2000
 
 

@@ -68,12 +68,27 @@ def cyclic_numbers(history):
         numbers[f"I_R at onset, {name}"] = np.nan if onset is None else count[onset]
         below = np.flatnonzero(count < 1)
         numbers[f"p'/p0' where I_R falls below 1, {name}"] = ratio[below[0]] if below.size else np.nan
+    numbers.update(fabric_numbers(history, before))
     for column in FRACTIONS:
         numbers[f"{column} before"] = getattr(history, column)[before].mean()
         numbers[f"{column} after"] = np.nan if onset is None else strain_mean(history, column, onset)
     if onset is not None:
         numbers["largest strain after, compression (%)"] = 100 * history.eps_y[onset:].max()
         numbers["largest strain after, extension (%)"] = -100 * history.eps_y[onset:].min()
+    return numbers
+
+
+def fabric_numbers(history, before):
+    """Largest anisotropies up to the onset, in the first and the last third of those reversals, and after it."""
+    anisotropy = np.abs(history.F_yx)
+    third = history.reversals[before][-1] / 3
+    reversals = history.reversals[before]
+    numbers = {"largest |F_xx - F_zz| before": np.abs(history.Fxx - history.Fzz)[before].max(),
+               "largest |F_yx| before": anisotropy[before].max(),
+               "largest |F_yx| in the first third": anisotropy[before][reversals <= third].max(),
+               "largest |F_yx| in the last third": anisotropy[before][reversals >= 2 * third].max()}
+    if history.onset is not None:
+        numbers["largest |F_yx| after"] = anisotropy[history.onset:].max()
     return numbers
 
 

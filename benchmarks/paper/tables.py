@@ -4,11 +4,12 @@ import csv
 
 import numpy as np
 
-from paper import lab, states
+from paper import claims, lab, plan, resistance, states
 from speed_error import paths
 
 STRAINS = np.concatenate([np.arange(0, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
 PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz")
+PAPER_CYCLES = 17
 UNDRAINED = ("strain (%)", "p' (kPa)", "q (kPa)", "q/p'")
 
 
@@ -19,9 +20,22 @@ def identity(run, history):
             "D_r (paper's limits)": (0.841 - e) / (0.841 - 0.568)}
 
 
+def history_of(run, folder):
+    """The history; that of a cyclic test without its last stage, which drains the specimen, and with its volumetric
+    strain, `drained_strain`."""
+    history = paths.History(folder)
+    if run.kind == "cyclic":
+        history.drained_strain = (history.e[0] - history.e[-1]) / (1 + history.e[0])
+        rows = history.stage == history.stage[0]
+        for name, column in vars(history).items():
+            if isinstance(column, np.ndarray):
+                setattr(history, name, column[rows])
+    return history
+
+
 class Results:
     def __init__(self, store, runs):
-        self.tests = [(run, paths.History(store.folder(run))) for run in runs
+        self.tests = [(run, history_of(run, store.folder(run))) for run in runs
                       if run.kind != "prepare" and store.is_done(run)]
 
     def of(self, *kinds):
@@ -35,10 +49,14 @@ class Results:
         return found
 
     def tables(self):
-        return {"undrained_states": self.undrained_states(), "undrained_curves": self.undrained_curves(),
-                "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
-                "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
-                "cyclic_curves": self.cyclic_curves()}
+        tables = {"undrained_states": self.undrained_states(), "undrained_curves": self.undrained_curves(),
+                  "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
+                  "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
+                  "cyclic_curves": self.cyclic_curves(), "cyclic_path": self.cyclic_path(),
+                  "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
+                  "critical_states": resistance.critical_states(self.of("compression", "extension", "drained"))}
+        tables["resistance"] = resistance.curves(tables["cyclic_tests"])
+        return {**tables, "claims": claims.table(tables)}
 
     def undrained_states(self):
         rows = []
@@ -87,7 +105,7 @@ class Results:
         rows = []
         for (_, label, _, ratio), tests in self.groups("cyclic").items():
             found = [(history, *states.phases(history)) for _, history in tests if history.onset is not None]
-            if ratio != 0.15 or not found:
+            if ratio != plan.PAPER_RATIO or not found:
                 continue
             shortest = min((x for _, x, _ in found), key=len)
             for k, phase in enumerate(shortest):
@@ -98,6 +116,21 @@ class Results:
                     values = [getattr(history, column)[rows_[k]] for history, _, rows_ in found]
                     row[column], row[f"{column} s.d."], *_ = paths.ensemble(values)
                 rows.append(row)
+        return rows
+
+    def cyclic_path(self):
+        """Of the test of the paper that takes nearest to its 17 cycles: every row up to the onset, then so many that
+        strain changes by 0.01 % at least between them."""
+        found = [(run, h) for run, h in self.of("cyclic") if run.looks_behind_onset and h.onset is not None]
+        if not found:
+            return []
+        run, h = min(found, key=lambda test: abs(test[1].reversals[test[1].onset] / 2 - PAPER_CYCLES))
+        rows, last = [], -1.0
+        for k in range(len(h.p)):
+            if k <= h.onset or k in h.reversal_rows or abs(h.eps_y[k] - last) >= 1e-4:
+                last = h.eps_y[k]
+                rows.append({"specimen": run.packing.label, "seed": run.seed, "p' (kPa)": h.p[k] / 1e3,
+                             "q (kPa)": h.q[k] / 1e3, "eps_1 (%)": 100 * h.eps_y[k]})
         return rows
 
 

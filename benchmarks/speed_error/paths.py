@@ -5,6 +5,8 @@ import json
 
 import numpy as np
 
+# two-sided 95 % by number of values
+STUDENT = {2: 12.7, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 8: 2.36, 10: 2.26, 12: 2.20, 15: 2.14, 20: 2.09}
 Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, stand in the reversal itself
 STRAIN_SPACING = 1e-5
 
@@ -104,3 +106,9 @@ def ensemble(values):
         return float("nan"), float("nan"), float("nan"), 0
     deviation_ = values.std(ddof=1) if n > 1 else float("nan")
     return float(values.mean()), float(deviation_), float(deviation_ / np.sqrt(n)), n
+
+
+def mean_and_interval(values):
+    """Mean, and half the width of its 95 % interval."""
+    mean, _, error, n = ensemble(values)
+    return mean, STUDENT[max(k for k in STUDENT if k <= n)] * error if n > 1 else float("nan")

@@ -11,7 +11,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests/apps")]
-from paper import lab, states  # noqa: E402  (the folders come first)
+from paper import claims, lab, resistance, states  # noqa: E402  (the folders come first)
 from support import ToleranceTest  # noqa: E402
 
 
@@ -27,7 +27,7 @@ def cyclic_history():
     index[p == 20e3] = 1.2
     strain = np.cumsum(np.roll(direction, 1) * np.where(rows < 40, 1e-6, 1e-4))
     ends = [10, 30, 50, 70, 90]
-    columns = dict.fromkeys(("f_S", "f_R", "f_SR", "f_NSR", "F_yx"), 0.1 * np.ones(101))
+    columns = dict.fromkeys(("f_S", "f_R", "f_SR", "f_NSR", "F_yx", "Fxx", "Fzz"), 0.1 * np.ones(101))
     return types.SimpleNamespace(p=p, p0=200e3, q=60e3 * np.roll(direction, 1), eps_y=strain, reversals=reversals,
                                  onset=40, reversal_rows=ends, IR=index, IR_no_twist=index - 0.2,
                                  IR_sliding=index - 0.6, **columns)
@@ -74,6 +74,46 @@ class States(ToleranceTest):
         self.assertEqual((x[0], rows[0]), (0, 0))
         self.assertTrue(np.all(np.diff(rows) >= 0))
         self.assertEqual((rows[x >= 1][1], rows[-1]), (70, 90))  # the first is that of the onset
+
+    def test_verdicts(self):
+        number = claims.Claim("a number", None, 17)
+        for values, verdict in (([], "not tested"), ([16, 18], "same"), ([18.0, 18.1, 18.2], "ours is higher"),
+                                ([9.0, 9.1, 9.2], "ours is lower"), ([10.0, 30.0, 16.5], "same")):
+            self.assertEqual(claims.verdict(number, values), verdict, values)
+        sentence = claims.Claim("a sentence", None)
+        for values, verdict in (([1.0] * 9 + [0.5], "holds"), ([0.0, 0.1], "does not hold"), ([1, 0], "in some tests")):
+            self.assertEqual(claims.verdict(sentence, values), verdict, values)
+
+    def test_claims_take_the_tests_they_speak_of(self):
+        halves = [{"specimen": "9 deg, 200 kPa", "q_amp/(2 p0')": ratio, "seed": 1, "half cycle": k, "least I_R": least,
+                   "strain travelled (%)": k, "F_yx at its end": -0.1 * k}
+                  for ratio in (0.15, 0.2) for k, least in ((1, 0.2), (2, 0.4), (3, np.nan))]
+        tests = claims.Tests({"half_cycles": halves})
+        self.assertEqual(len(tests.halves()), 1, "one test at the amplitude of the paper")
+        self.assert_near(claims.of_halves(lambda row: row["least I_R"])(tests)[0], 0.3, 1e-12, "round-off of a mean")
+        self.assertEqual(claims.correlated("half cycle", "F_yx at its end", 0)(tests), [1.0])
+        halves[0]["F_yx at its end"] = -0.9
+        self.assertEqual(claims.correlated("half cycle", "F_yx at its end", 0)(tests), [0.0])
+
+    def test_a_power_law_and_its_error(self):
+        ratios = np.array([0.12, 0.15, 0.2])
+        tests = [(seed, ratio, factor * (ratio / 0.4)**(-1 / 0.3)) for seed, factor in ((1, 1), (2, 1), (3, 1))
+                 for ratio in ratios]
+        b, at_15 = resistance.power_law([test[1:] for test in tests])
+        self.assert_near(b, 0.3, 1e-12, "round-off of a fit")
+        self.assert_near(at_15, 0.4 * 15**-0.3, 1e-12, "round-off of a fit")
+        self.assert_near(resistance.without_each_seed(tests, resistance.power_law)[1], 0, 1e-12, "equal seeds")
+        means = resistance.without_each_seed([(1, 0.1, 4.0), (2, 0.1, 7.0), (3, 0.1, 10.0)],
+                                             lambda left: (np.mean([cycles for _, cycles in left]),))
+        self.assert_near(means[0], 3 / 3**0.5, 1e-12, "of a mean the jackknife is its standard error")
+        self.assertIsNone(resistance.power_law([(0.2, 5)] * 3), "one ratio has no slope")
+
+    def test_a_line_of_states(self):
+        rows = [{"e": 0.9 - 0.02 * np.log(p), "p' (kPa)": p} for p in (10.0, 100.0, 1000.0)]
+        gamma, slope = resistance.state_line(rows)
+        self.assert_near(gamma, 0.9, 1e-12, "round-off of a fit")
+        self.assert_near(slope, 0.02, 1e-12, "round-off of a fit")
+        self.assertIsNone(resistance.state_line(rows[:2]))
 
 
 if __name__ == "__main__":

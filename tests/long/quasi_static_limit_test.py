@@ -12,7 +12,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "benchmarks"))
 from free_grains import plan, tables  # noqa: E402  (the folder comes first)
-from speed_error import runner  # noqa: E402
+from speed_error import paths, runner  # noqa: E402
 
 BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
 SEEDS = range(1, 21)
@@ -40,7 +40,7 @@ class SlowTests(unittest.TestCase):
                 default, slow = ((domain, plan.GRAINS, setting) for setting in (plan.DEFAULT, plan.SLOW))
                 tests = self.results.cyclic[default].values()
                 self.assertEqual(sum(np.isfinite(t.cycles) for t in tests), len(SEEDS), "all liquefy")
-                cycles, half = tables.mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
+                cycles, half = paths.mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
                 steps = np.mean([t.steps for t in tests])
                 path = np.mean(self.results.path_distances(default, slow))
                 print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, path {path:.2f} % of p0' "

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sentences of the paper that can be true or false, each with what the tests say of it."""
+import dataclasses
+
+import numpy as np
+
+from paper import plan, states
+from speed_error import paths
+
+SURE = 0.9  # share of tests in which a sentence must hold to be called so, and below 1 - SURE to be called wrong
+
+
+@dataclasses.dataclass(frozen=True)
+class Claim:
+    """`values(tests)`: one number for each test, of half cycles their mean over the test. `expected`: the number of
+    the paper or the laboratory; None of a sentence that holds (1) or does not (0)."""
+
+    text: str
+    values: object
+    expected: float | None = None
+    unit: str = ""
+
+
+def verdict(claim, values):
+    """Of a number: whether the paper's lies between the smallest and the largest of the tests, or within the 95 %
+    interval of their mean. Of a sentence: whether it holds in nearly all tests, in nearly none, or in some."""
+    if not values:
+        return "not tested"
+    mean, half = paths.mean_and_interval(values)
+    if claim.expected is None:
+        return "holds" if mean >= SURE else "does not hold" if mean <= 1 - SURE else "in some tests"
+    inside = min(values) <= claim.expected <= max(values) or abs(mean - claim.expected) <= half
+    return "same" if inside else "ours is higher" if mean > claim.expected else "ours is lower"
+
+
+class Tests:
+    """The tables, asked for the numbers of the specimens of the paper."""
+
+    def __init__(self, tables):
+        self.tables = tables
+
+    def undrained(self, density, direction, column, young=None):
+        label = f"D_r {density:.2f}, {plan.P0} kPa" + (f", E {young:g} GPa" if young else "")
+        return [row[column] for row in self.tables["undrained_states"]
+                if row["specimen"] == label and row["direction"] == direction and not row["slow"]]
+
+    def cyclic(self, label):
+        return [row for row in self.tables["cyclic_tests"]
+                if row["specimen"] == label and row["q_amp/(2 p0')"] == plan.PAPER_RATIO]
+
+    def paper(self):
+        """Cyclic tests at the density of the paper."""
+        return self.cyclic(f"D_r {plan.PAPER[1]:.2f}, {plan.P0} kPa")
+
+    def liquefied(self):
+        """Cyclic tests at the amplitude of the paper that liquefied, of all preparations."""
+        return [row for row in self.tables["cyclic_tests"] if row["q_amp/(2 p0')"] == plan.PAPER_RATIO
+                and row["p0' (kPa)"] == plan.P0 and np.isfinite(row["cycles"])]
+
+    def halves(self, least=1):
+        """Half cycles after the onset of those tests, test by test, where there are so many."""
+        tests = {}
+        for row in self.tables["half_cycles"]:
+            if row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["specimen"].endswith(f", {plan.P0} kPa"):
+                tests.setdefault((row["specimen"], row["seed"]), []).append(row)
+        return [rows for rows in tests.values() if len(rows) >= least]
+
+
+def of_loose(state, column, direction="compression"):
+    return lambda t: t.undrained(plan.PAPER[0], direction, f"{state}: {column}")
+
+
+def of_liquefied(*columns):
+    return lambda t: [row[columns[0]] if len(columns) == 1 else [row[c] for c in columns] for row in t.liquefied()]
+
+
+def each(values, holds):
+    """1 where it holds, 0 where not, without what is not a number."""
+    return lambda t: [float(holds(v)) for v in values(t) if np.all(np.isfinite(v))]
+
+
+def of_halves(number):
+    """number(row), averaged over the half cycles of a test in which it is one."""
+    return lambda t: [paths.ensemble([number(row) for row in rows])[0] for rows in t.halves()]
+
+
+def correlated(one, other, least):
+    """Whether the rank correlation of |one| and |other| over the half cycles of a test is above `least`."""
+    def value(rows):
+        ranks = [np.argsort(np.argsort([abs(row[name]) for row in rows])) for name in (one, other)]
+        return float(np.corrcoef(ranks)[0, 1] > least)
+    return lambda t: [value(rows) for rows in t.halves(3)]
+
+
+def contracts(density):
+    """Whether p' falls by more than 5 % before it rises."""
+    return lambda t: [float(p < 0.95 * plan.P0) for p in t.undrained(density, "compression", "least p': p' (kPa)")]
+
+
+def dilates(density):
+    return lambda t: [1 - value for value in contracts(density)(t)]
+
+
+PRIME_IR, LAST_IR = "I_R at onset, Eq. 2", "I_R as it last does"
+NO_TWIST = "I_R at onset, without twisting"
+
+MONOTONIC = (
+    Claim("D_r = 0.30: p' falls before it rises (compression)", contracts(0.30)),
+    Claim("D_r = 0.30: q at the instability state (laboratory)", of_loose("instability", "q (kPa)"), 77.9, "kPa"),
+    Claim("D_r = 0.30: q/p' at the least p' (laboratory)", of_loose("least p'", "q/p'"), 61.6 / 46.4),
+    Claim("D_r = 0.30: q/p' of the steady state, compression (laboratory)", of_loose("end", "q/p'"), 1.335),
+    Claim("D_r = 0.30: q/p' of the steady state, extension (laboratory)", of_loose("end", "q/p'", "extension"), 0.924),
+    Claim("D_r = 0.64: dilates from the start", dilates(0.64)),
+    Claim("D_r = 0.88: dilates from the start", dilates(0.88)),
+    Claim("D_r = 0.64: least p' (laboratory)", lambda t: t.undrained(0.64, "compression", "least p': p' (kPa)"), 96.1,
+          "kPa"),
+    Claim("D_r = 0.88: least p' (laboratory)", lambda t: t.undrained(0.88, "compression", "least p': p' (kPa)"), 143.5,
+          "kPa"),
+    Claim("D_r = 0.88: q at 5 % strain beyond 1 MPa",
+          lambda t: [float(q > 1e3) for q in t.undrained(0.88, "compression", "end: q (kPa)")]))
+CYCLIC = (
+    Claim("D_r = 0.64: liquefies", lambda t: [float(np.isfinite(row["cycles"])) for row in t.paper()]),
+    Claim("D_r = 0.64: cycles to liquefaction", lambda t: [r["cycles"] for r in t.paper() if np.isfinite(r["cycles"])],
+          17),
+    Claim("Strain before liquefaction, all preparations that liquefy", of_liquefied("largest strain before (%)"), 0.05,
+          "%"),
+    Claim("More strain in extension than in compression after the onset",
+          each(of_liquefied("largest strain after, compression (%)", "largest strain after, extension (%)"),
+               lambda v: v[1] > v[0])),
+    Claim("I_R above 1 at the start", each(of_liquefied("IR at the start"), lambda v: v > 1)),
+    Claim("I_R below 1 at the onset (Eq. 2)", each(of_liquefied(PRIME_IR), lambda v: v < 1)),
+    Claim("I_R below 1 at the onset (without twisting)", each(of_liquefied(NO_TWIST), lambda v: v < 1)),
+    Claim("I_R passes 1 at the onset: p'/p0' where it first does so",
+          of_liquefied("p'/p0' where I_R falls below 1, Eq. 2"), states.LIQUEFIED),
+    Claim("I_R as p'/p0' comes back above 0.01", of_halves(lambda r: r[LAST_IR]), 1.3),
+    Claim("Least I_R of a half cycle after the onset", of_halves(lambda r: r["least I_R"]), 0.35),
+    Claim("More contacts slide than roll, before",
+          each(of_liquefied("f_S before", "f_R before"), lambda v: v[0] > v[1])),
+    Claim("More contacts slide than roll, after", each(of_liquefied("f_S after", "f_R after"), lambda v: v[0] > v[1])),
+    Claim("More contacts roll after the onset than before",
+          each(of_liquefied("f_R before", "f_R after"), lambda v: v[1] > v[0])),
+    Claim("The sliding fraction is largest where p'/p0' passes 0.01",
+          of_halves(lambda r: r["p'/p0' at the most sliding"]), states.LIQUEFIED),
+    Claim("The sliding fraction falls afterwards",
+          of_halves(lambda r: float(r["sliding contacts at its end"] < r["sliding contacts at most"]))),
+    Claim("F_xx and F_zz evolve alike: largest difference below a tenth of the largest anisotropy, before",
+          each(of_liquefied("largest |F_xx - F_zz| before", "largest |F_yx| before"), lambda v: v[0] < 0.1 * v[1])),
+    Claim("Anisotropy grows before the onset: last third of the cycles above the first",
+          each(of_liquefied("largest |F_yx| in the first third", "largest |F_yx| in the last third"),
+               lambda v: v[1] > v[0])),
+    Claim("Anisotropy is larger after the onset than before",
+          each(of_liquefied("largest |F_yx| before", "largest |F_yx| after"), lambda v: v[1] > v[0])),
+    Claim("Contacts turn with the load: F_yy - F_xx has its sign at the end of a half cycle",
+          of_halves(lambda r: float((r["F_yx at its end"] > 0) == (r["direction"] == "compression")))),
+    Claim("Anisotropy falls as the network forms anew: less at the end of a half cycle than at its largest",
+          of_halves(lambda r: float(abs(r["F_yx at its end"]) < 0.95 * r["largest |F_yx|"]))),
+    Claim("Anisotropy grows with the half cycles after the onset (rank correlation > 0)",
+          correlated("half cycle", "F_yx at its end", 0)),
+    Claim("Anisotropy depends on the strain of the half cycle (rank correlation > 0.5)",
+          correlated("strain travelled (%)", "F_yx at its end", 0.5)))
+
+
+def table(tables):
+    """Rows of claims.csv."""
+    tests, rows = Tests(tables), []
+    for claim in MONOTONIC + CYCLIC:
+        values = [v for v in claim.values(tests) if np.isfinite(v)]
+        mean, _, error, n = paths.ensemble(values)
+        rows.append({"claim": claim.text, "paper": "" if claim.expected is None else claim.expected,
+                     "unit": claim.unit if claim.expected is not None else "share of tests", "ours": mean,
+                     "standard error": error, "n": n, "verdict": verdict(claim, values)})
+    return rows
