@@ -214,9 +214,10 @@ def redundancy(table, _):
     bands(fractions, rows, (("f_S", BLUE, "sliding"), ("f_SR", GREEN, "both"), ("f_R", ORANGE, "rolling")))
     fractions.set_ylabel("Fraction of contacts")
     index.legend(ncols=3, loc="upper right")
+    fractions.set_ylim(0, 0.85)
     fractions.legend(ncols=3, loc="upper left")
     phase_axis(axes[:, 0], rows)
-    figure.suptitle(f"{label}, {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    figure.suptitle(f"{label}, n = {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
     return figure
 
 
@@ -246,7 +247,7 @@ def fabric(table, folder):
     against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%), all preparations")
     against.set_ylabel("$|F_{[y-x]}|$ at its end")
     against.legend()
-    figure.suptitle(f"{label}, {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    figure.suptitle(f"{label}, n = {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
     return figure
 
 

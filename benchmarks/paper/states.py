@@ -110,14 +110,14 @@ def half_cycles(history):
         ratio, index = history.p[part] / history.p0, history.IR[part]
         recovered = crossings(ratio, LIQUEFIED)
         first, last = (index[recovered[k]] if recovered.size else np.nan for k in (0, -1))
-        sliding = history.f_S[part] + history.f_SR[part]
+        sliding = history.f_S[part]
         rows.append({"direction": "compression" if history.q[end] > 0 else "extension",
                      "strain travelled (%)": 100 * abs(history.eps_y[end] - history.eps_y[begin]),
                      "strain at its end (%)": 100 * history.eps_y[end], "least I_R": index.min(),
                      "I_R as p'/p0' first passes 0.01": first, "I_R as it last does": last,
                      "largest |F_yx|": np.abs(history.F_yx[part]).max(), "F_yx at its end": history.F_yx[end],
                      "p'/p0' at the most sliding": ratio[int(np.argmax(sliding))],
-                     "sliding contacts at most": sliding.max(), "sliding contacts at its end": sliding[-1]})
+                     "largest f_S": sliding.max(), "f_S at its end": sliding[-1]})
     return rows
 
 
