@@ -203,7 +203,7 @@ def redundancy(table, _):
     rows = table.where(specimen=label)
     figure, axes = panels(3, 1, height=6.2, sharex=True)
     index, ratio, fractions = axes[:, 0]
-    bands(index, rows, zip(states.COUNTS, (BLUE, ORANGE, GREEN), states.COUNTS.values()))
+    bands(index, rows, zip(states.COUNTS, (BLUE, ORANGE, GREEN, GREY), states.COUNTS.values()))
     for level in (1, 0.35):
         index.axhline(level, color=GREY, linewidth=0.8, linestyle="--")
     index.set_ylabel("Redundancy index $I_R$")
@@ -213,7 +213,7 @@ def redundancy(table, _):
     ratio.set_ylabel(f"{PRIME}/$p_0^\\prime$")
     bands(fractions, rows, (("f_S", BLUE, "sliding"), ("f_SR", GREEN, "both"), ("f_R", ORANGE, "rolling")))
     fractions.set_ylabel("Fraction of contacts")
-    index.legend(ncols=3, loc="upper right")
+    index.legend(ncols=4, loc="upper right")
     fractions.set_ylim(0, 0.85)
     fractions.legend(ncols=3, loc="upper left")
     phase_axis(axes[:, 0], rows)

@@ -3,8 +3,15 @@
 import numpy as np
 
 LIQUEFIED = 0.01  # p'/p0'
-COUNTS = {"IR": "Eq. 2", "IR_no_twist": "without twisting", "IR_sliding": "sliding only"}
+COUNTS = {"IR": "Eq. 2", "IR_no_twist": "without twisting", "IR_sliding": "sliding only",
+          "IR_walls": "Eq. 2 with walls"}
 FRACTIONS = ("f_S", "f_R", "f_SR", "f_NSR")
+
+
+def redundancy_with_walls(history, grains):
+    """Eq. 2 with contacts of frictionless walls: one constraint each, and grains that only walls touch are active."""
+    constraints = 6 * (grains - history.N0) * history.IR + history.C_wall
+    return constraints / (6 * (grains - history.N_floating))
 
 
 def undrained_states(strain, p, q):

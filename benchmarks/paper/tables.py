@@ -26,6 +26,7 @@ def history_of(run, folder):
     history = paths.History(folder)
     if run.kind == "cyclic":
         history.drained_strain = (history.e[0] - history.e[-1]) / (1 + history.e[0])
+        history.IR_walls = states.redundancy_with_walls(history, run.packing.grains)
         rows = history.stage == history.stage[0]
         for name, column in vars(history).items():
             if isinstance(column, np.ndarray):

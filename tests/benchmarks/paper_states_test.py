@@ -30,7 +30,7 @@ def cyclic_history():
     columns = dict.fromkeys(("f_S", "f_R", "f_SR", "f_NSR", "F_yx", "Fxx", "Fzz"), 0.1 * np.ones(101))
     return types.SimpleNamespace(p=p, p0=200e3, q=60e3 * np.roll(direction, 1), eps_y=strain, reversals=reversals,
                                  onset=40, reversal_rows=ends, IR=index, IR_no_twist=index - 0.2,
-                                 IR_sliding=index - 0.6, **columns)
+                                 IR_sliding=index - 0.6, IR_walls=index, **columns)
 
 
 class States(ToleranceTest):
@@ -54,6 +54,11 @@ class States(ToleranceTest):
         self.assert_near(dense["peak friction (deg)"], peak, 0.2, "the cell pressure drifts by a few kPa")
         self.assert_near(dense["dilatancy"], 0.8, 0.1, "read off the curve between 2 and 5 %")
         self.assert_near(loose["dilatancy"], 0.05, 0.05, "eps_v hardly falls behind 10 %")
+
+    def test_walls_count_as_constraints(self):
+        history = types.SimpleNamespace(N0=np.array([20]), N_floating=np.array([10]), IR=np.array([1.5]),
+                                        C_wall=np.array([60]))  # 720 + 60 constraints of 90 grains
+        self.assert_near(states.redundancy_with_walls(history, 100)[0], 780 / 540, 1e-12, "round-off")
 
     def test_crossings_are_those_upwards(self):
         self.assertEqual(list(states.crossings(np.array([0, 2, 0, 0, 3, 3, 0.0]), 1)), [1, 4])
