@@ -164,7 +164,7 @@ def cycles(table, _):
     panel.set_yscale("log")
     panel.set_xlabel("Void ratio $e$")
     panel.set_ylabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
-    for marker, colour, text in (("D", RED, "$D_r$ = 0.64 (paper's limits)"), ("o", BLUE, "5 to 11 deg"),
+    for marker, colour, text in (("D", RED, "$D_r$ = 0.64"), ("o", BLUE, "5 to 11 deg"),
                                  ("^", GREY, "not liquefied when the test ended")):
         panel.plot([], [], marker, color=colour, markersize=4, label=text, mfc="none" if marker == "^" else colour)
     panel.plot([], [], "--", color=GREY, label="paper: 17")

@@ -17,7 +17,12 @@ def identity(run, history):
     """What a row begins with."""
     e = history.e[0]
     return {"specimen": run.packing.label, "grains": run.packing.grains, "seed": run.seed, "e": e,
-            "D_r (paper's limits)": (0.841 - e) / (0.841 - 0.568)}
+            "D_r (paper's limits)": relative_density(e, plan.PAPER_LIMITS),
+            "D_r (limits of its scene)": relative_density(e, run.packing.limits)}
+
+
+def relative_density(e, limits):
+    return (limits[1] - e) / (limits[1] - limits[0])
 
 
 def history_of(run, folder):
@@ -81,7 +86,7 @@ class Results:
                          **states.drained_numbers(h.eps_y, volume, axial, radial)})
         for test in lab.drained_tests():
             rows.append({"specimen": f"laboratory, {test.pressure:g} kPa", "e": test.void_ratio,
-                         "D_r (paper's limits)": test.relative_density, "laboratory test": test.name,
+                         "D_r (limits of its scene)": test.relative_density, "laboratory test": test.name,
                          **states.drained_numbers(test.strain, test.volume_strain, test.axial, test.radial)})
         return rows
 
