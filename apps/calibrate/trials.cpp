@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-constexpr int by_the_system = 126; ///< exit codes from here on: stopped, killed or crashed
+constexpr double quiet_seconds = 60; ///< then a line says what is at work
+constexpr int by_the_system = 126;   ///< exit codes from here on: stopped, killed or crashed
 
 fs::path with_ending(const fs::path &place, const char *ending) { return place.string() + ending; }
 
@@ -142,21 +143,26 @@ void Trials::execute(const std::vector<std::size_t> &trials, bool blind)
   for (const Run &run : todo)
     children.push_back(element_test_run(with_ending(place(run), ".toml"), place(run), with_ending(place(run), ".log")));
   std::string ended;
-  const ChildEvents events = {[&](std::size_t k, int code, double) {
-                                if (code >= by_the_system)
-                                  {
-                                    ended = fmt::format("{}: ended with code {}: {}", place(todo[k]).string(), code,
-                                                        last_line(children[k].log));
-                                    return;
-                                  }
-                                take(todo[k], code);
-                                if (--left[todo[k].trial] == 0)
-                                  {
-                                    ++n_computed_;
-                                    conclude(todo[k].trial, blind);
-                                  }
-                              },
-                              [](const std::vector<std::size_t> &) {}};
+  const ChildEvents events = {
+      [&](std::size_t k, int code, double) {
+        if (code >= by_the_system)
+          {
+            ended =
+                fmt::format("{}: ended with code {}: {}", place(todo[k]).string(), code, last_line(children[k].log));
+            return;
+          }
+        take(todo[k], code);
+        if (--left[todo[k].trial] == 0)
+          {
+            ++n_computed_;
+            conclude(todo[k].trial, blind);
+          }
+      },
+      [&](const std::vector<std::size_t> &running) {
+        if (since_line_.seconds() > quiet_seconds && !running.empty())
+          say(fmt::format("       {} runs at work, the first in {}: {}", running.size(),
+                          place(todo[running[0]]).string(), last_line(children[running[0]].log)));
+      }};
   if (!run_children(children, jobs_, events))
     throw Interrupted("interrupted; what has been run is kept, the same command goes on");
   if (!ended.empty())
@@ -204,7 +210,13 @@ void Trials::conclude(std::size_t number, bool blind)
   trial.misfit = total_misfit(misfits, plan_.curves);
   trial.done = true;
   write_replacing(folder_ / "trials.csv", to_csv(*this, plan_, scenes_.parameters()));
-  say_(progress(number));
+  say(progress(number));
+}
+
+void Trials::say(const std::string &line)
+{
+  say_(line);
+  since_line_.restart();
 }
 
 /// " 12 %  trial 7 of at most 60: misfit 0.132, best 0.098 in trial 4, ETA 20 min"

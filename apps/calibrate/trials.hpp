@@ -73,6 +73,7 @@ private:
   CurveOutcome outcome(std::size_t trial, std::size_t curve) const;
   void execute(const std::vector<std::size_t> &trials, bool blind);
   std::string progress(std::size_t trial) const;
+  void say(const std::string &line);
 
   CalibrationPlan plan_;
   const SceneMaker &scenes_;
@@ -82,7 +83,7 @@ private:
   std::vector<Curve> laboratory_;
   std::vector<Trial> trials_;
   std::size_t n_runs_ = 0, n_computed_ = 0; ///< runs and trials of this call
-  Stopwatch watch_;
+  Stopwatch watch_, since_line_;
 };
 
 /// trials.csv: number, values in the units of the keys, misfits, folder.

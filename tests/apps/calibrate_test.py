@@ -131,6 +131,25 @@ class Results(Calibrate):
         self.assert_near(float(row["misfit of fitted (-)"]), np.sqrt(np.mean(np.square(off))), 1e-6,
                          "six digits in the table")
 
+    def test_undrained_extension(self):
+        """The model's strains grow in the direction of the test; p' stands in the place of the volume."""
+        self.write("lab.csv", "eps_a[%],p[kPa],q[kPa]\n0,200,0\n-0.5,150,-60\n-1,140,-70\n-2,150,-90\n")
+        text = plan_text(1).replace('"drained"', '"undrained"\ndirection = "extension"')
+        self.assert_done(self.run_it("-o", "out", plan=self.write("plan.toml", text)))
+        with open(self.folder / "out/curves.csv", newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["curve"] == "fitted"]
+        self.assertEqual({row["second"] for row in rows}, {"p' (Pa)"})
+        column = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]
+                  if name not in ("curve", "second")}
+        self.assert_near(column["eps_1 (-)"], 0.002 * np.arange(1, 11), 1e-9, "six digits of shares of 0.02")
+        self.assertTrue((column["q best (Pa)"] < 0).all())
+        self.assertTrue((column["second best"] > 0).all())
+        off = [(column[f"{name} best{unit}"] - column[f"{name} laboratory{unit}"]) /
+               np.abs(column[f"{name} laboratory{unit}"]).max() for name, unit in (("q", " (Pa)"), ("second", ""))]
+        misfit = np.sqrt(np.mean(np.square(off)))
+        self.assert_near(self.result()["misfit_best"], misfit, 1e-5, "six digits in the table")
+        self.assertIn('direction = "extension"', (self.folder / "out/best/fitted.toml").read_text(encoding="utf-8"))
+
     def test_failed_trials_end_nothing(self):
         plan = self.write("dense.toml", plan_text(4, key="specimen.relative_density", bounds="[0.05, 0.99]")
                           .replace("density\"\n", "density\"\nstart = 0.1\n"))
