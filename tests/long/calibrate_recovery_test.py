@@ -1,8 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """calibrate finds known parameters again: drained tests at a known angle of friction, rolling limit and modulus, on
-specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, some ten minutes on
-two cores."""
+specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, some forty minutes on
+two cores.
+
+First a search over wide bounds with few specimens, then one around what it found with many. Specimens of 1,000 grains
+scatter: with these two curves one per curve tells friction to 1.4 deg, the rolling limit to 27 % and the modulus to 7 %
+(standard deviations, from derivatives of the curves), and n of them to that over sqrt(n), the laboratory's included.
+The rolling limit shows below some 0.3 only, where moments reach it, and the more the stiffer rolling is (alpha_r = 1
+here; with 0.3 a limit of 0.35 and one of 1 have the same curves)."""
 import concurrent.futures
 import csv
 import json
@@ -18,11 +24,15 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BINARIES = pathlib.Path(sys.argv.pop(1)).resolve()
 SCENE = ROOT / "apps/scenes/calibrate/sand.toml"
-TRUTH = {"contact.friction": 22.0, "contact.rolling.limit": 0.35, "contact.young": 0.2}  # deg, -, GPa
-START = {"contact.friction": 15.0, "contact.rolling.limit": 0.7, "contact.young": 0.8}
+TRUTH = {"contact.friction": 22.0, "contact.rolling.limit": 0.2, "contact.young": 0.2}  # deg, -, GPa
+ROLLING_STIFFNESS = 1.0
+START = {"contact.friction": 18.0, "contact.rolling.limit": 0.4, "contact.young": 0.4}
+WIDE = {"contact.friction": (10, 35), "contact.rolling.limit": (0.05, 0.8), "contact.young": (0.05, 1.5)}
+AROUND = {"contact.friction": (-4, 4), "contact.rolling.limit": (1 / 1.6, 1.6), "contact.young": (1 / 1.4, 1.4)}
 CURVES = {"dense": 4, "loose": 20}  # preparation friction, deg
-GRAINS, STRAIN, RATE = 1000, 0.06, 4e-3
-LABORATORY_SEEDS, TRIAL_SEEDS = range(101, 113), 6  # those of the trials are 1 to 6
+GRAINS, STRAIN, RATE = 1000, 0.08, 4e-3
+LABORATORY_SEEDS = range(101, 181)  # those of the trials begin with 1
+FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 40, "trials": 14, "design": 0}
 CORES = len(os.sched_getaffinity(0))
 
 PLAN = """title = "Known parameters, found again"
@@ -32,27 +42,20 @@ grains = {grains}
 seeds = {seeds}
 inertial_number = {rate}
 [budget]
-trials = 40
+trials = {trials}
 [optimiser]
-design = 8
+design = {design}
 tolerance = 0.01
 [misfit]
 spacing = "quadratic"
-[[parameter]]
-key = "contact.friction"
-bounds = ["10 deg", "35 deg"]
-start = "{phi} deg"
-[[parameter]]
-key = "contact.rolling.limit"
-bounds = [0.1, 1.0]
-start = {eta}
-scale = "log"
-[[parameter]]
-key = "contact.young"
-bounds = ["50 MPa", "1.5 GPa"]
-start = "{young} GPa"
-scale = "log"
 """
+PARAMETER = """[[parameter]]
+key = "{key}"
+bounds = [{low}, {high}]
+start = {start}
+scale = "{scale}"
+"""
+UNITS = {"contact.friction": "deg", "contact.rolling.limit": "", "contact.young": "GPa"}
 CURVE = """[[curve]]
 name = "{name}"
 file = "{name}.csv"
@@ -64,11 +67,32 @@ columns = {{ strain = "eps_1 (-)", volume = "eps_v (-)", axial = "sigma_1 (Pa)",
 """
 
 
+def text(key, value):
+    """As it stands in a plan."""
+    return f'"{value:g} {UNITS[key]}"' if UNITS[key] else f"{value:g}"
+
+
+def plan_text(scene, start, bounds, sizes):
+    parameters = "".join(PARAMETER.format(key=key, low=text(key, bounds[key][0]), high=text(key, bounds[key][1]),
+                                          start=text(key, start[key]),
+                                          scale="linear" if key == "contact.friction" else "log") for key in TRUTH)
+    curves = "".join(CURVE.format(name=name, preparation=preparation, strain=STRAIN)
+                     for name, preparation in CURVES.items())
+    return PLAN.format(scene=scene, grains=GRAINS, rate=RATE, **sizes) + parameters + curves
+
+
+def around(found):
+    friction, *others = found
+    low, high = AROUND[friction]
+    return {friction: (found[friction] + low, found[friction] + high),
+            **{key: (found[key] * AROUND[key][0], found[key] * AROUND[key][1]) for key in others}}
+
+
 def run_one(folder, name, preparation, seed):
     settings = {"grading.grains": GRAINS, "grading.cloud_edge": f"{10 * (GRAINS / 10000) ** (1 / 3)} mm",
                 "grading.seed": seed, "contact.friction": f"{TRUTH['contact.friction']} deg",
                 "contact.rolling.limit": TRUTH["contact.rolling.limit"],
-                "contact.young": f"{TRUTH['contact.young']} GPa",
+                "contact.rolling.stiffness": ROLLING_STIFFNESS, "contact.young": f"{TRUTH['contact.young']} GPa",
                 "specimen.preparation_friction": f"{preparation} deg", "stage.0.strain": STRAIN,
                 "motion.inertial_number": RATE}
     out = folder / "truth" / f"{name}_{seed}"
@@ -102,23 +126,28 @@ class Recovery(unittest.TestCase):
             self.addCleanup(lambda: subprocess.run(["rm", "-r", self.folder], check=True))
         if not all((self.folder / f"{name}.csv").exists() for name in CURVES):
             write_laboratory(self.folder)
-        curves = "".join(CURVE.format(name=name, preparation=preparation, strain=STRAIN)
-                         for name, preparation in CURVES.items())
-        plan = PLAN.format(scene=SCENE, grains=GRAINS, seeds=TRIAL_SEEDS, rate=RATE, phi=START["contact.friction"],
-                           eta=START["contact.rolling.limit"], young=START["contact.young"])
-        (self.folder / "plan.toml").write_text(plan + curves, encoding="utf-8")
+        self.scene = self.folder / "sand.toml"
+        rolling = "rolling = {{ stiffness = {}"
+        self.scene.write_text(SCENE.read_text(encoding="utf-8").replace(rolling.format("0.3"),
+                                                                        rolling.format(ROLLING_STIFFNESS)),
+                              encoding="utf-8")
+
+    def calibrate(self, name, start, bounds, sizes):
+        plan, out = self.folder / f"{name}.toml", self.folder / name
+        plan.write_text(plan_text(self.scene, start, bounds, sizes), encoding="utf-8")
+        subprocess.run([BINARIES / "calibrate", plan, "-j", str(CORES), "-o", out], check=True)
+        result = json.loads((out / "calibrate.json").read_text(encoding="utf-8"))
+        found = {p["key"]: float(p["best"].split()[0]) for p in result["parameters"]}
+        print(name, {key: (found[key], TRUTH[key]) for key in TRUTH}, result["misfit_start"], result["misfit_best"])
+        return found
 
     def test_known_parameters_are_found_again(self):
-        subprocess.run([BINARIES / "calibrate", self.folder / "plan.toml", "-j", str(CORES), "-o", self.folder / "out"],
-                       check=True)
-        result = json.loads((self.folder / "out/calibrate.json").read_text(encoding="utf-8"))
-        found = {p["key"]: float(p["best"].split()[0]) for p in result["parameters"]}
-        print({key: (found[key], TRUTH[key]) for key in TRUTH}, "misfit", result["misfit_start"], result["misfit_best"])
-        self.assertLess(result["misfit_best"], result["misfit_start"])
+        few = self.calibrate("few", START, WIDE, FEW)
+        many = self.calibrate("many", few, around(few), MANY)
         for key, limit in (("contact.friction", 0.5), ("contact.rolling.limit", 0.1 * TRUTH["contact.rolling.limit"]),
                            ("contact.young", 0.2 * TRUTH["contact.young"])):
             with self.subTest(key):
-                self.assertLessEqual(abs(found[key] - TRUTH[key]), limit)
+                self.assertLessEqual(abs(many[key] - TRUTH[key]), limit)
 
 
 if __name__ == "__main__":
