@@ -77,7 +77,10 @@ std::vector<std::size_t> Trials::evaluate(const std::vector<Point> &points)
   return numbers;
 }
 
-void Trials::evaluate_blind(const std::vector<std::size_t> &trials) { execute(trials, true); }
+void Trials::evaluate_blind(const std::set<std::size_t> &trials)
+{
+  execute(std::vector<std::size_t>(trials.begin(), trials.end()), true);
+}
 
 fs::path Trials::place(const Run &run) const
 {

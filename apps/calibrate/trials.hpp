@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,7 @@ public:
   /// @throws Interrupted, RunFailure (a child crashed or was killed)
   std::vector<std::size_t> evaluate(const std::vector<Point> &points);
   /// Runs the blind curves of trials.   @throws as evaluate()
-  void evaluate_blind(const std::vector<std::size_t> &trials);
+  void evaluate_blind(const std::set<std::size_t> &trials);
 
   /// The curves behind an outcome.   @pre it did not fail
   Comparison comparison(std::size_t trial, std::size_t curve) const;

@@ -148,6 +148,7 @@ class Results(Calibrate):
                np.abs(column[f"{name} laboratory{unit}"]).max() for name, unit in (("q", " (Pa)"), ("second", ""))]
         misfit = np.sqrt(np.mean(np.square(off)))
         self.assert_near(self.result()["misfit_best"], misfit, 1e-5, "six digits in the table")
+        self.assertEqual([curve["failure"] for curve in self.result()["curves"]], ["", ""])  # the start is the best
         self.assertIn('direction = "extension"', (self.folder / "out/best/fitted.toml").read_text(encoding="utf-8"))
 
     def test_failed_trials_end_nothing(self):
