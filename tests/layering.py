@@ -80,6 +80,7 @@ INNER = {
     "apps": {
         "common": set(),
         "deposit": {"common"},
+        "calibrate": {"common"},
         "element_test": {"common"},
         "liquefaction_resistance": {"common"},
         "micromechanics": {"common"},

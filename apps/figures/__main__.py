@@ -10,7 +10,8 @@ import importlib
 import pathlib
 import sys
 
-PROGRAMS = ("element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay", "biaxial")
+PROGRAMS = ("calibrate", "element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay",
+            "biaxial")
 
 
 def main():

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/campaign.hpp"
 
+#include "apps/common/element_test_runs.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_program.hpp"
 #include "base/error.hpp"
@@ -157,12 +158,7 @@ void Campaign::open()
     write_replacing(scene_file(preparation), to_toml(preparation.scene));
 }
 
-bool Campaign::is_finished(const Run &run) const
-{
-  const fs::path folder = run_folder(run);
-  return fs::exists(folder / "summary.json") && fs::exists(folder / "scene.toml") &&
-         read_text(folder / "scene.toml") == to_toml(run.scene);
-}
+bool Campaign::is_finished(const Run &run) const { return is_finished_run(run_folder(run), run.scene); }
 
 std::vector<Campaign::Run> Campaign::preparations() const
 {

@@ -11,18 +11,15 @@
 //   liquefaction_resistance apps/scenes/quick_cyclic_simple_shear.toml --ratios 0.10,0.13,0.16,0.20,0.25
 //   liquefaction_resistance apps/scenes/quick_cyclic_dr64_periodic.toml --ratios 0.1,0.15,0.2 --realisations 5 --jobs 2
 #include "apps/common/command_line.hpp"
+#include "apps/common/element_test_runs.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
 #include "apps/liquefaction_resistance/campaign.hpp"
-#include "apps/liquefaction_resistance/child_runs.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
 
 #include <algorithm>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace
 {
@@ -38,38 +35,10 @@ struct Options
   bool overwrite = false, quiet = false, no_figures = false;
 };
 
-/// Keeps a second program out of a folder while this one works in it. Goes with the process, however it ends.
-/// @throws InputError  another program has it
-void lock(const fs::path &folder)
+ChildRun child_of(const Campaign &campaign, const Campaign::Run &run)
 {
-  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
-    throw InputError(fmt::format("{}: another liquefaction_resistance is at work in it. Wait for it, or give another "
-                                 "--output.",
-                                 folder.string()));
-}
-
-fs::path element_test()
-{
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "element_test";
-  if (access(program.c_str(), X_OK) != 0)
-    throw InputError(fmt::format("{}: is not there; liquefaction_resistance runs it. Build it: cmake --build --preset "
-                                 "release --target element_test.",
-                                 program.string()));
-  return program;
-}
-
-ChildRun child_of(const Campaign &campaign, const Campaign::Run &run, const fs::path &program)
-{
-  const fs::path folder = campaign.run_folder(run);
-  std::vector<std::string> command = {
-      program.string(), campaign.scene_file(run).string(), "--output", folder.string(), "--threads", "1",
-      "--no-figures"};
-  if (fs::exists(folder / "checkpoint" / "last.h5"))
-    command.push_back("--resume");
-  else
-    fs::remove_all(folder); // of a run that ended before its first checkpoint
-  return {command, campaign.folder() / "logs" / (run.name + ".log")};
+  return element_test_run(campaign.scene_file(run), campaign.run_folder(run),
+                          campaign.folder() / "logs" / (run.name + ".log"));
 }
 
 /// What came of a child that ended by itself.
@@ -133,10 +102,9 @@ std::string state(const std::vector<RunResult> &results, int jobs)
 /// fails is noted and does not stop the rest.   @return false if stopped
 bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo, const Options &options)
 {
-  const fs::path program = element_test();
   std::vector<ChildRun> children;
   for (const Campaign::Run *run : todo)
-    children.push_back(child_of(campaign, *run, program));
+    children.push_back(child_of(campaign, *run));
   Stopwatch since_line;
   const auto say = [&](const std::string &line) {
     if (!options.quiet)
@@ -190,11 +158,9 @@ void open_folder(const Campaign &campaign, const Options &options)
   else
     check_result_folder(campaign.folder(), FolderUse::overwrite);
   make_writable_folder(campaign.folder());
-  lock(campaign.folder());
+  lock_folder(campaign.folder());
   if (options.overwrite)
-    for (const auto &entry : fs::directory_iterator(campaign.folder()))
-      if (entry.path().filename() != "lock")
-        fs::remove_all(entry.path());
+    empty_folder(campaign.folder());
 }
 
 void find_resistance(Options options)
@@ -202,7 +168,7 @@ void find_resistance(Options options)
   options.plan.ratios = parse_ratios(options.ratios);
   const Scene scene = read_scene(options.scene, options.set);
   Campaign campaign(scene, options.plan, output_folder(options.output, scene.output.folder + "_resistance"));
-  element_test();
+  element_test_program();
   open_folder(campaign, options);
   write_provenance(campaign.folder(), campaign.shared(), options.command_line);
   campaign.open();

@@ -23,7 +23,9 @@ enum class Kind
   table,         ///< { ... }; its being there may switch physics on
   quantity_list, ///< ["1 m", "2 m"]
   percent_pair,  ///< [low, high], percent
-  size_curve     ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
+  size_curve,    ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
+  value,         ///< of a key of another scene, in the form it has there: "18 deg" or 0.3; kept as text
+  value_pair     ///< two of these, [low, high]
 };
 
 enum class Presence

@@ -72,6 +72,17 @@ struct Reading
       refuse("must end at 100 percent, or the largest grains are unknown");
   }
 
+  void operator()(const ValueText &value) const { *value.text = plain(node); }
+
+  void operator()(const ValuePair &pair) const
+  {
+    const auto *array = node.as_array();
+    if (!array || array->size() != 2)
+      refuse("must be two values, [low, high]");
+    *pair.low = plain(*array->get(0));
+    *pair.high = plain(*array->get(1));
+  }
+
   [[noreturn]] void refuse(const std::string &must) const
   {
     document.refuse(path, *key.value ? fmt::format("{}. Give for example {}.", must, example(key)) : must + ".");
@@ -120,6 +131,16 @@ struct Reading
       refuse("must be a plain number without unit or quotes");
     check_range(value);
     return value;
+  }
+
+  /// A quantity or number of a key that is not of this scene: whoever knows that key reads it.
+  std::string plain(const toml::node &node) const
+  {
+    if (const auto *text = node.as_string())
+      return text->get();
+    if (node.is_number())
+      return number_text(*node.value<double>());
+    refuse("must be a number, or a quantity with its unit in quotes");
   }
 
   std::uint64_t integer() const

@@ -4,6 +4,7 @@
 
 #include "base/scene/reader.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -62,6 +63,18 @@ struct WriteValue
   std::string operator()(const PercentPair &pair) const
   {
     return fmt::format("[{}, {}]", real_text(*pair.low), real_text(*pair.high));
+  }
+  /// A number without quotes, all else with them.
+  static std::string plain(const std::string &text)
+  {
+    double ignored = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), ignored);
+    return text.empty() || read.ptr == text.data() + text.size() ? text : "\"" + text + "\"";
+  }
+  std::string operator()(const ValueText &value) const { return plain(*value.text); }
+  std::string operator()(const ValuePair &pair) const
+  {
+    return pair.low->empty() ? "" : fmt::format("[{}, {}]", plain(*pair.low), plain(*pair.high));
   }
   std::string operator()(const SizeCurve *curve) const
   {

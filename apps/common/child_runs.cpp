@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/liquefaction_resistance/child_runs.hpp"
+#include "apps/common/child_runs.hpp"
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"

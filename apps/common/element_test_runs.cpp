@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/element_test_runs.hpp"
+
+#include "base/error.hpp"
+#include "base/files/csv_table.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+fs::path own_path() { return fs::read_symlink("/proc/self/exe"); }
+} // namespace
+
+void lock_folder(const fs::path &folder)
+{
+  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
+    throw InputError(fmt::format("{}: another {} is at work in it. Wait for it, or give another --output.",
+                                 folder.string(), own_path().filename().string()));
+}
+
+void empty_folder(const fs::path &folder)
+{
+  for (const auto &entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != "lock")
+      fs::remove_all(entry.path());
+}
+
+fs::path element_test_program()
+{
+  const fs::path own = own_path(), program = own.parent_path() / "element_test";
+  if (access(program.c_str(), X_OK) != 0)
+    throw InputError(fmt::format("{}: is not there; {} runs it. Build it: cmake --build --preset release --target "
+                                 "element_test.",
+                                 program.string(), own.filename().string()));
+  return program;
+}
+
+ChildRun element_test_run(const fs::path &scene_file, const fs::path &folder, const fs::path &log)
+{
+  std::vector<std::string> command = {element_test_program().string(),
+                                      scene_file.string(),
+                                      "--output",
+                                      folder.string(),
+                                      "--threads",
+                                      "1",
+                                      "--no-figures"};
+  if (fs::exists(folder / "checkpoint" / "last.h5"))
+    command.push_back("--resume");
+  else
+    fs::remove_all(folder);
+  return {command, log};
+}
+
+bool is_finished_run(const fs::path &folder, const Scene &scene)
+{
+  return fs::exists(folder / "summary.json") && fs::exists(folder / "scene.toml") &&
+         read_text(folder / "scene.toml") == to_toml(scene);
+}
+} // namespace isostat

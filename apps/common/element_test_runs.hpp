@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What programs share that run element_test many times below one folder.
+// tested: tests/apps/liquefaction_resistance_test.py, tests/apps/calibrate_test.py
+#pragma once
+#include "apps/common/child_runs.hpp"
+#include "dem/scene/scene.hpp"
+
+namespace isostat
+{
+/// Keeps a second program out of a folder while this one works in it. Goes with the process, however it ends.
+/// @throws InputError  another program has it
+void lock_folder(const std::filesystem::path &folder);
+
+/// Removes all of a folder but its lock.
+void empty_folder(const std::filesystem::path &folder);
+
+/// The element_test beside the running program.   @throws InputError  it is not there
+std::filesystem::path element_test_program();
+
+/// The command that does a run on one thread, or the rest of it where there is a checkpoint. What a run has left that
+/// ended before its first checkpoint is removed.
+/// @param folder  of the results   @param log  what it prints
+ChildRun element_test_run(const std::filesystem::path &scene_file, const std::filesystem::path &folder,
+                          const std::filesystem::path &log);
+
+/// True if the folder holds the results of this scene, to its end.
+bool is_finished_run(const std::filesystem::path &folder, const Scene &scene);
+} // namespace isostat

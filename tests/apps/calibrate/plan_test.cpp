@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans: what they say, what they may have wrong, and what the user is told.
+#include "apps/calibrate/plan.hpp"
+
+#include "base/error.hpp"
+#include "tests/apps/calibrate/plan_texts.hpp"
+#include "tests/support/refusal.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+using test::plan_text;
+
+void expect_complaint(const std::string &text, const std::vector<std::string> &parts)
+{
+  test::expect_parts(test::refusal([&] { parse_plan(text, "plan.toml"); }), parts);
+}
+
+TEST(CalibrationPlan, IsReadWithItsDefaults)
+{
+  const CalibrationPlan plan = parse_plan(plan_text(), "plan.toml");
+  EXPECT_EQ(plan.scene, "sand.toml");
+  EXPECT_EQ(plan.specimens.grains, 1000u);
+  EXPECT_EQ(plan.search.method, SearchMethod::bobyqa);
+  ASSERT_EQ(plan.parameters.size(), 2u);
+  EXPECT_EQ(plan.parameters[0].low, "10 deg");
+  EXPECT_EQ(plan.parameters[1].high, "0.9");
+  EXPECT_TRUE(plan.parameters[1].start.empty());
+  EXPECT_EQ(plan.parameters[1].where, "plan.toml:7");
+  ASSERT_EQ(plan.curves.size(), 1u);
+  EXPECT_EQ(plan.curves[0].name, "TMD3");
+  EXPECT_EQ(plan.curves[0].columns.axial, "sigma_v[kPa]");
+  EXPECT_EQ(plan.curves[0].where, "plan.toml:11");
+}
+
+TEST(CalibrationPlan, ReadsBackFromItsText)
+{
+  const std::string more = "[[curve]]\nfile = \"u.csv\"\ntest = \"undrained\"\nblind = true\nvoid_ratio = 0.7\n"
+                           "direction = \"extension\"\nstrains = \"logarithmic\"\ncolumns = { p = \"p' (kPa)\" }\n";
+  const std::string text = to_toml(parse_plan(plan_text("start = 0.3\nscale = \"log\"\n") + more, "plan.toml"));
+  EXPECT_EQ(to_toml(parse_plan(text, "again.toml")), text);
+  const CalibrationPlan plan = parse_plan(text, "again.toml");
+  EXPECT_EQ(plan.parameters[1].start, "0.3");
+  EXPECT_TRUE(plan.parameters[1].logarithmic);
+  EXPECT_EQ(plan.curves[1].direction, LoadDirection::extension);
+  EXPECT_EQ(plan.curves[1].columns.p, "p' (kPa)");
+  EXPECT_TRUE(plan.curves[1].logarithmic && plan.curves[1].blind);
+}
+
+TEST(CalibrationPlan, DefaultsArePrintedForEveryKey)
+{
+  const std::string text = default_plan();
+  for (const char *part : {"[specimens]", "[budget]", "[optimiser]", "[misfit]", "[[parameter]]", "[[curve]]", "bounds",
+                           "columns.radial", "Required."})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST(CalibrationPlan, RefusesWhatItDoesNotKnow)
+{
+  expect_complaint(plan_text() + "wieght = 2\n", {"plan.toml:13", "wieght", "Did you mean curve.weight?"});
+  expect_complaint(plan_text() + "[budget]\ntrials = 0\n", {"plan.toml:14: budget.trials = 0", "in [1, 1000000]"});
+  expect_complaint(plan_text() + "[optimiser]\nmethod = \"bobby\"\n",
+                   {"plan.toml:14", "bobby", "\"sbplx\" or \"crs2\""});
+  expect_complaint(plan_text("scale = \"square\"\n"), {"plan.toml:9", "square", "\"linear\" or \"log\""});
+}
+
+TEST(CalibrationPlan, RefusesValuesThatAreNone)
+{
+  expect_complaint(plan_text("start = [1, 2]\n"),
+                   {"plan.toml:9: parameter.1.start = [1, 2]", "must be a number, or a"});
+  expect_complaint("scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = \"1 GPa\"\n" +
+                       test::curve_text,
+                   {"plan.toml:4: parameter.0.bounds = 1 GPa", "two values, [low, high]"});
+}
+
+TEST(CalibrationPlan, NeedsParametersAndCurves)
+{
+  expect_complaint("scene = \"s.toml\"\n" + test::curve_text, {"plan.toml", "at least one parameter", "[[parameter]]"});
+  expect_complaint("scene = \"s.toml\"\n" + test::parameter_texts, {"plan.toml", "at least one curve", "[[curve]]"});
+  expect_complaint(plan_text() + "blind = true\n", {"plan.toml:13: curve.0.blind = true", "no curve to fit"});
+}
+
+TEST(CalibrationPlan, RefusesOneParameterForBobyqa)
+{
+  const std::string one =
+      "scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = [\"1 GPa\", \"2 GPa\"]\n";
+  expect_complaint(one + test::curve_text, {"\"bobyqa\" needs two parameters", "\"sbplx\""});
+  EXPECT_EQ(parse_plan(one + test::curve_text + "[optimiser]\nmethod = \"sbplx\"\n", "p").parameters.size(), 1u);
+}
+
+TEST(CalibrationPlan, RefusesWhatStandsTwice)
+{
+  expect_complaint(plan_text() + test::curve_text, {"plan.toml:14", "names two curves \"TMD3\"", "plan.toml:11"});
+  expect_complaint(plan_text() + "relative_density = 0.6\nvoid_ratio = 0.7\n",
+                   {"plan.toml:14: curve.0.void_ratio", "excludes curve.0.relative_density (plan.toml:13)"});
+  expect_complaint(plan_text() + "[[parameter]]\nkey = \"contact.friction\"\nbounds = [\"1 deg\", \"2 deg\"]\n",
+                   {"plan.toml:14: parameter.2.key = contact.friction", "a parameter twice", "plan.toml:4"});
+}
+
+TEST(CalibrationPlan, RefusesNamesThatAreNone)
+{
+  expect_complaint(plan_text() + "name = \"a/b\"\n", {"plan.toml:13: curve.0.name = a/b", "name a folder"});
+  expect_complaint(plan_text("curve = \"dense\"\n"), {"plan.toml:9: parameter.1.curve = dense", "name of no curve"});
+}
+
+TEST(CalibrationPlan, RefusesColumnsOfTheOtherTest)
+{
+  expect_complaint(plan_text() + "columns = { p = \"p[kPa]\" }\n",
+                   {"plan.toml:13: curve.0.columns.p", "only to undrained"});
+}
+} // namespace
+} // namespace isostat
