@@ -29,11 +29,11 @@ constexpr double max_grain_step = 0.05;
                         "from was not one; look at the last checkpoint.",
                         step, packing.id[i]));
       if (speed >= speed_limit)
-        throw RunFailure(
-            fmt::format("step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (5 % of the smallest radius per "
-                        "step of {:.3g} s): the packing explodes. Lower motion.time_step_safety, the strain rate or "
-                        "the fixed time step.",
-                        step, packing.id[i], speed, speed_limit, time_step));
+        throw RunFailure(fmt::format(
+            "step {}: grain {} moves at {:.3g} m/s, more than {:.3g} m/s (5 % of the smallest radius per "
+            "step of {:.3g} s): the packing explodes. Lower motion.time_step_safety, the strain rate (while a "
+            "specimen is prepared: specimen.compaction_rate) or the fixed time step.",
+            step, packing.id[i], speed, speed_limit, time_step));
     }
   throw RunFailure(fmt::format("step {}: the packing explodes", step)); // not reached: leapfrog found one
 }
