@@ -113,10 +113,12 @@ constexpr Key specimen_keys[] = {
    .group = "preparation", .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables.",
    .field = [](Scene &s) -> Field { return &s.specimen.file; }},
   {.path = "specimen.e_min", .value = "0.568", .range = positive,
-   .text = "Void ratio at D_r = 1. The default is that of Karlsruhe fine sand; no default with `table` or `file`.",
+   .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
+           "`table` or `file`.",
    .field = [](Scene &s) -> Field { return &s.specimen.e_min; }},
   {.path = "specimen.e_max", .value = "0.841", .range = positive,
-   .text = "Void ratio at D_r = 0. The default is that of Karlsruhe fine sand; no default with `table` or `file`.",
+   .text = "Void ratio at D_r = 0. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
+           "`table` or `file`.",
    .field = [](Scene &s) -> Field { return &s.specimen.e_max; }},
   {.path = "specimen.density_tolerance", .value = "0.01", .range = fraction,
    .text = "Error allowed in the D_r reached; without e_min and e_max, e may be off by 0.3 times it.",
