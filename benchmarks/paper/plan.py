@@ -30,7 +30,7 @@ pressure = "{pressure:g} kPa"
 [output]
 snapshots = "none"
 paraview = false
-record_stress = "5 kPa"
+record_stress = "1 kPa"
 record_strain = {record_strain}
 """
 # the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)

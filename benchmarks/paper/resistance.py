@@ -54,8 +54,9 @@ def curves(cyclic_tests):
 
 
 def critical_states(tests):
-    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain, and by which
-    e = Gamma - lambda ln(p'/kPa), fitted to those strained by 10 % or more, lies above the void ratio."""
+    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain; the line
+    e = Gamma - lambda ln(p'/kPa) fitted to those strained by 10 % or more, taken as critical; and the state parameter
+    psi = e - (Gamma - lambda ln p0') of the specimens."""
     rows = []
     for run, h in tests:
         if run.packing.young == 10 and not run.slow:

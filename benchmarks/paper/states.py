@@ -73,12 +73,12 @@ def cyclic_numbers(history):
     for column, name in COUNTS.items():
         count = getattr(history, column)
         numbers[f"I_R at onset, {name}"] = np.nan if onset is None else count[onset]
-        below = np.flatnonzero(count < 1)
+        below = np.flatnonzero(count[before] < 1)
         numbers[f"p'/p0' where I_R falls below 1, {name}"] = ratio[below[0]] if below.size else np.nan
     numbers.update(fabric_numbers(history, before))
     for column in FRACTIONS:
-        numbers[f"{column} before"] = getattr(history, column)[before].mean()
-        numbers[f"{column} after"] = np.nan if onset is None else strain_mean(history, column, onset)
+        numbers[f"{column} before"] = strain_mean(history, column, before)
+        numbers[f"{column} after"] = np.nan if onset is None else strain_mean(history, column, slice(onset, None))
     if onset is not None:
         numbers["largest strain after, compression (%)"] = 100 * history.eps_y[onset:].max()
         numbers["largest strain after, extension (%)"] = -100 * history.eps_y[onset:].min()
@@ -99,10 +99,10 @@ def fabric_numbers(history, before):
     return numbers
 
 
-def strain_mean(history, column, onset):
-    """Mean after the onset by the strain travelled."""
-    weights = np.abs(np.gradient(history.eps_y[onset:])) + 1e-15
-    return np.average(getattr(history, column)[onset:], weights=weights)
+def strain_mean(history, column, rows):
+    """Mean by the strain travelled."""
+    weights = np.abs(np.gradient(history.eps_y[rows])) + 1e-15
+    return np.average(getattr(history, column)[rows], weights=weights)
 
 
 def half_cycles(history):

@@ -82,8 +82,9 @@ class States(ToleranceTest):
 
     def test_verdicts(self):
         number = claims.Claim("a number", None, 17)
-        for values, verdict in (([], "not tested"), ([16, 18], "same"), ([18.0, 18.1, 18.2], "ours is higher"),
-                                ([9.0, 9.1, 9.2], "ours is lower"), ([10.0, 30.0, 16.5], "same")):
+        for values, verdict in (([], "not tested"), ([16.9, 17.0, 17.1], "the same within 20 %"),
+                                ([28.0, 28.1, 28.2], "ours is higher"), ([9.0, 9.1, 9.2], "ours is lower"),
+                                ([10.0, 30.0, 16.5], "undecided"), ([17.0], "undecided")):
             self.assertEqual(claims.verdict(number, values), verdict, values)
         sentence = claims.Claim("a sentence", None)
         for values, verdict in (([1.0] * 9 + [0.5], "holds"), ([0.0, 0.1], "does not hold"), ([1, 0], "in some tests")):
