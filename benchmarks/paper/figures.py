@@ -307,7 +307,7 @@ def critical_states(table, folder):
         line.plot(rows["p' (kPa)"][far], rows["e"][far], marker, color=colour, markersize=4, label=kind)
         line.plot(rows["p' (kPa)"][~far], rows["e"][~far], marker, color=colour, markersize=3, mfc="none", alpha=0.6)
     if "Gamma" in table.rows[0]:
-        p = np.array(line.get_xlim() if line.get_xscale() == "log" else np.quantile(table["p' (kPa)"], (0, 1)))
+        p = np.quantile(table["p' (kPa)"], (0, 1))
         line.plot(p, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
                   label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
     line.plot([], [], "o", color=GREY, mfc="none", markersize=3, label="strained by less than 10 %: not fitted")
