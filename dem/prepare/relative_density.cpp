@@ -17,13 +17,13 @@ constexpr double bracket = 2e-3; // of tan phi, 0.1 deg: finer differences drown
 
 double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
 
-/// The next friction on the way to the end of what is possible, 0 or the loosest. A box goes there at once. A cell goes
-/// by halves or doubles: without friction it has no wall to lean on and creeps for a million steps before it rests.
-double further(double friction, double end, bool at_once)
+/// The next friction on the way to the end of what is possible, 0 or the loosest, by halves or doubles: without
+/// friction a packing rests late, a cell, which has no wall to lean on, only after a million steps.
+double further(double friction, double end)
 {
   const double next = end == 0 ? 0.5 * friction : 2 * friction;
   const bool arrived = end == 0 ? next < 0.01 : next > end;
-  return at_once || arrived ? end : next;
+  return arrived ? end : next;
 }
 
 /// Void ratio error as a function of preparation friction; keeps the best compression.
@@ -72,12 +72,11 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
   if (at_guess == 0)
     return search.best;
   const double end = at_guess > 0 ? 0.0 : loosest;
-  const bool at_once = how.specimen.domain != "periodic-cell";
   double near = guess, at_near = at_guess;
-  double other = further(near, end, at_once), at_other = search(other);
+  double other = further(near, end), at_other = search(other);
   while (at_other * at_near > 0 && other != end)
     {
-      near = std::exchange(other, further(other, end, at_once));
+      near = std::exchange(other, further(other, end));
       at_near = std::exchange(at_other, search(other));
     }
   if (at_other == 0)
