@@ -109,7 +109,7 @@ def correlated(one, other, least):
     def value(rows):
         ranks = [np.argsort(np.argsort([abs(row[name]) for row in rows])) for name in (one, other)]
         return float(np.corrcoef(ranks)[0, 1] > least)
-    return lambda t: by_seed((rows[0]["seed"], value(rows)) for rows in t.halves(3))
+    return lambda t: by_seed((rows[0]["seed"], value(rows)) for rows in t.halves(5))
 
 
 LEAST, END = "least p': p' (kPa)", "end: p' (kPa)"

@@ -7,8 +7,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
 
 from paper import lab, plan, states  # noqa: E402
+from paper.resistance import REFERENCE  # noqa: E402
 
 BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
 STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
@@ -277,8 +279,9 @@ def drained(table, _):
 
 
 @of_table("cyclic_tests")
-def resistance(table, _):
-    """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure."""
+def resistance(table, folder):
+    """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
+    fits = Table(folder / "resistance.csv") if (folder / "resistance.csv").exists() else None
     figure, (row,) = panels(1, 2, sharey=True)
     colours = (RED, GREEN, BLUE)
     for panel, labels, names in (
@@ -289,6 +292,11 @@ def resistance(table, _):
             rows = table.where(specimen=label)
             if rows:
                 panel.plot(rows["cycles"], rows["q_amp/(2 p0')"], "o", color=colour, markersize=4, label=name)
+            fit = fits and fits.where(specimen=label)
+            if fit:
+                cycles = np.nanquantile(rows["cycles"], (0, 1))
+                law = fit["CSR at 15 cycles"][0] * (cycles / REFERENCE)**-fit["b"][0]
+                panel.plot(cycles, law, color=colour, linewidth=0.9)
         panel.set_xscale("log")
         panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
         if panel.lines:
@@ -312,6 +320,9 @@ def critical_states(table, folder):
                   label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
     line.plot([], [], "o", color=GREY, mfc="none", markersize=3, label="strained by less than 10 %: not fitted")
     line.set_xscale("log")
+    line.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    line.xaxis.set_major_formatter("{x:g}")
+    line.xaxis.set_minor_formatter(NullFormatter())
     line.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
     line.set_ylabel("Void ratio $e$")
     line.legend()

@@ -9,63 +9,83 @@ REFERENCE = 15  # cycles: a magnitude 7.5 earthquake
 
 def power_law(tests):
     """(b, CSR at 15 cycles) of tests (ratio, cycles): least squares of log N against log CSR, because N scatters at a
-    given CSR. Nothing of fewer than two ratios, or of a curve that does not fall."""
-    ratio, cycles = (np.log([test[k] for test in tests]) for k in (0, 1))
-    if len(set(ratio)) < 2:
+    given CSR. Only of ratios at which every specimen liquefied: the others would count by their weakest specimens
+    alone. Nothing of fewer than two ratios, or of a curve that does not fall."""
+    spared = {ratio for ratio, n in tests if not np.isfinite(n)}
+    tests = [test for test in tests if test[0] not in spared]
+    if len({ratio for ratio, _ in tests}) < 2:
         return None
+    ratio, cycles = (np.log([test[k] for test in tests]) for k in (0, 1))
     slope, intercept = np.polyfit(ratio, cycles, 1)
     if slope >= 0:
         return None
     return -1 / slope, float(np.exp((np.log(REFERENCE) - intercept) / slope))
 
 
-def without_each_seed(tests, value):
-    """Standard error by the jackknife over seeds: all tests of a specimen are left out together."""
-    seeds = sorted({seed for seed, *_ in tests})
-    found = [value([test[1:] for test in tests if test[0] != seed]) for seed in seeds]
-    if len(seeds) < 2 or any(f is None for f in found):
-        return (np.nan, np.nan)
+def with_error(seeds, value):
+    """value(seeds), a tuple, and its standard errors by the jackknife: all tests of a cloud are left out together,
+    because they are not independent. Nothing where there is no value; errors not a number where one is missing."""
+    seeds = sorted(seeds)
+    whole = value(seeds)
+    if whole is None:
+        return None
+    found = [value([s for s in seeds if s != seed]) for seed in seeds]
+    if len(seeds) < 2 or None in found:
+        return whole, (np.nan,) * len(whole)
     n = len(seeds)
-    return tuple(np.sqrt((n - 1) / n * ((np.array(column) - np.mean(column))**2).sum()) for column in zip(*found))
+    return whole, tuple(np.sqrt((n - 1) / n * ((np.array(c) - np.mean(c))**2).sum()) for c in zip(*found))
 
 
 def curves(cyclic_tests):
-    """A row for each preparation and pressure: the fit with its error over seeds, and K_sigma, the resistance at 15
-    cycles over that of the same preparation at 200 kPa."""
+    """A row for each preparation and pressure: the fit, and K_sigma, the resistance at 15 cycles over that of the same
+    preparation and the same clouds at 200 kPa; both with their errors over seeds."""
     groups = {}
     for row in cyclic_tests:
         if "deg" in row["specimen"]:
             groups.setdefault(row["specimen"], []).append(row)
+
+    def law(label, seeds):
+        tests = [(row["q_amp/(2 p0')"], row["cycles"]) for row in groups[label] if row["seed"] in seeds]
+        return power_law(tests)
+
+    def k_sigma(label, reference, seeds):
+        laws = law(label, seeds), law(reference, seeds)
+        return None if None in laws else (laws[0][1] / laws[1][1],)
+
     rows = []
     for label, tests in groups.items():
-        liquefied = [(row["seed"], row["q_amp/(2 p0')"], row["cycles"]) for row in tests if np.isfinite(row["cycles"])]
-        law = power_law([test[1:] for test in liquefied]) if liquefied else None
-        if law is None:
+        seeds = {row["seed"] for row in tests}
+        fit = with_error(seeds, lambda some, label=label: law(label, some))
+        if fit is None:
             continue
-        error = without_each_seed(liquefied, power_law)
+        reference = f"{label.split(',')[0]}, {plan.P0} kPa"
+        ratio = None
+        if label != reference and reference in groups:
+            ratio = with_error(seeds, lambda some, label=label: k_sigma(label, reference, some))
+        (b, resistance), (b_error, error) = fit
         rows.append({"specimen": label, "p0' (kPa)": tests[0]["p0' (kPa)"], "e": np.mean([row["e"] for row in tests]),
-                     "tests": len(tests), "not liquefied": len(tests) - len(liquefied), "b": law[0],
-                     "b s.e.": error[0], "CSR at 15 cycles": law[1], "CSR at 15 cycles s.e.": error[1]})
-    at_reference = {row["specimen"]: row["CSR at 15 cycles"] for row in rows}
-    for row in rows:
-        reference = at_reference.get(f"{row['specimen'].split(',')[0]}, {plan.P0} kPa")
-        row["K_sigma"] = row["CSR at 15 cycles"] / reference if reference else np.nan
+                     "tests": len(tests), "not liquefied": sum(not np.isfinite(row["cycles"]) for row in tests),
+                     "b": b, "b s.e.": b_error, "CSR at 15 cycles": resistance, "CSR at 15 cycles s.e.": error,
+                     "K_sigma": ratio[0][0] if ratio else np.nan, "K_sigma s.e.": ratio[1][0] if ratio else np.nan})
     return rows
 
 
 def critical_states(tests):
     """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain; the line
-    e = Gamma - lambda ln(p'/kPa) fitted to those strained by 10 % or more, taken as critical; and the state parameter
-    psi = e - (Gamma - lambda ln p0') of the specimens."""
+    e = Gamma - lambda ln(p'/kPa) fitted to those strained by 10 % or more; and the state parameter
+    psi = e - (Gamma - lambda ln p0') of the specimens. How far these ends are from critical, the change over the last
+    tenth of the strain says."""
     rows = []
     for run, h in tests:
         if run.packing.young == 10 and not run.slow:
             strain = np.abs(h.eps_y)
             last = strain > 0.95 * strain[-1]
+            before = (strain > 0.85 * strain[-1]) & (strain < 0.9 * strain[-1])
             rows.append({"test": run.kind, "specimen": run.packing.label, "seed": run.seed,
                          "|eps_1| (%)": 100 * strain[-1], "e": h.e[last].mean(), "p' (kPa)": h.p[last].mean() / 1e3,
                          "q/p'": (np.abs(h.q[last]) / h.p[last]).mean(), "p0' (kPa)": run.packing.pressure,
-                         "e0": h.e[0]})
+                         "e0": h.e[0], "p' against a tenth of the strain before": h.p[last].mean() / h.p[before].mean(),
+                         "e less a tenth of the strain before": h.e[last].mean() - h.e[before].mean()})
     line = state_line([row for row in rows if row["|eps_1| (%)"] > 9.9])
     for row in rows:
         if line:

@@ -3,6 +3,7 @@
 import numpy as np
 
 LIQUEFIED = 0.01  # p'/p0'
+FABRIC_FLOOR = 0.001  # p'/p0' below which contacts are too few for a fabric
 COUNTS = {"IR": "Eq. 2", "IR_no_twist": "without twisting", "IR_sliding": "sliding only",
           "IR_walls": "Eq. 2 with walls"}
 FRACTIONS = ("f_S", "f_R", "f_SR", "f_NSR")
@@ -95,8 +96,15 @@ def fabric_numbers(history, before):
                "largest |F_yx| in the first third": anisotropy[before][reversals <= third].max(),
                "largest |F_yx| in the last third": anisotropy[before][reversals >= 2 * third].max()}
     if history.onset is not None:
-        numbers["largest |F_yx| after"] = anisotropy[history.onset:].max()
+        after = slice(history.onset, None)
+        numbers["largest |F_yx| after"] = largest_anisotropy(history, after)
     return numbers
+
+
+def largest_anisotropy(history, rows):
+    """Where enough contacts carry."""
+    anisotropy, ratio = np.abs(history.F_yx[rows]), history.p[rows] / history.p0
+    return anisotropy[ratio > FABRIC_FLOOR].max(initial=0)
 
 
 def strain_mean(history, column, rows):
@@ -122,7 +130,7 @@ def half_cycles(history):
                      "strain travelled (%)": 100 * abs(history.eps_y[end] - history.eps_y[begin]),
                      "strain at its end (%)": 100 * history.eps_y[end], "least I_R": index.min(),
                      "I_R as p'/p0' first passes 0.01": first, "I_R as it last does": last,
-                     "largest |F_yx|": np.abs(history.F_yx[part]).max(), "F_yx at its end": history.F_yx[end],
+                     "largest |F_yx|": largest_anisotropy(history, part), "F_yx at its end": history.F_yx[end],
                      "p'/p0' at the most sliding": ratio[int(np.argmax(sliding))],
                      "largest f_S": sliding.max(), "f_S at its end": sliding[-1]})
     return rows

@@ -93,7 +93,7 @@ class States(ToleranceTest):
     def test_claims_take_the_tests_they_speak_of(self):
         halves = [{"specimen": "9 deg, 200 kPa", "q_amp/(2 p0')": ratio, "seed": 1, "half cycle": k, "least I_R": least,
                    "strain travelled (%)": k, "F_yx at its end": -0.1 * k}
-                  for ratio in (0.15, 0.2) for k, least in ((1, 0.2), (2, 0.4), (3, np.nan))]
+                  for ratio in (0.15, 0.2) for k, least in ((1, 0.2), (2, 0.4), (3, np.nan), (4, np.nan), (5, np.nan))]
         tests = claims.Tests({"half_cycles": halves})
         self.assertEqual(len(tests.halves()), 1, "one test at the amplitude of the paper")
         self.assert_near(claims.of_halves(lambda row: row["least I_R"])(tests)[0], 0.3, 1e-12, "round-off of a mean")
@@ -108,11 +108,26 @@ class States(ToleranceTest):
         b, at_15 = resistance.power_law([test[1:] for test in tests])
         self.assert_near(b, 0.3, 1e-12, "round-off of a fit")
         self.assert_near(at_15, 0.4 * 15**-0.3, 1e-12, "round-off of a fit")
-        self.assert_near(resistance.without_each_seed(tests, resistance.power_law)[1], 0, 1e-12, "equal seeds")
-        means = resistance.without_each_seed([(1, 0.1, 4.0), (2, 0.1, 7.0), (3, 0.1, 10.0)],
-                                             lambda left: (np.mean([cycles for _, cycles in left]),))
-        self.assert_near(means[0], 3 / 3**0.5, 1e-12, "of a mean the jackknife is its standard error")
         self.assertIsNone(resistance.power_law([(0.2, 5)] * 3), "one ratio has no slope")
+        spared = [(0.1, np.inf), (0.1, 20)]
+        self.assertEqual(resistance.power_law([test[1:] for test in tests] + spared), (b, at_15),
+                         "a ratio at which a specimen was spared is left out")
+
+    def test_an_error_over_seeds(self):
+        cycles = {1: 4.0, 2: 7.0, 3: 10.0}
+        mean, error = resistance.with_error(cycles, lambda some: (np.mean([cycles[s] for s in some]),))
+        self.assertEqual(mean, (7.0,))
+        self.assert_near(error[0], 3 / 3**0.5, 1e-12, "of a mean the jackknife is its standard error")
+        self.assertIsNone(resistance.with_error(cycles, lambda some: None))
+
+    def test_what_pressure_does_to_the_resistance(self):
+        rows = [{"specimen": f"9 deg, {p} kPa", "p0' (kPa)": p, "e": 0.7, "seed": seed, "q_amp/(2 p0')": ratio,
+                 "cycles": (ratio / strength)**-4 * 15} for p, strength in ((200, 0.2), (400, 0.15)) for seed in (1, 2)
+                for ratio in (0.15, 0.2)]
+        at_200, at_400 = resistance.curves(rows)
+        self.assert_near(at_400["K_sigma"], 0.75, 1e-12, "round-off of a fit")
+        self.assert_near(at_400["K_sigma s.e."], 0, 1e-12, "equal seeds")
+        self.assertTrue(np.isnan(at_200["K_sigma"]), "of the reference nothing is said")
 
     def test_a_line_of_states(self):
         rows = [{"e": 0.9 - 0.02 * np.log(p), "p' (kPa)": p} for p in (10.0, 100.0, 1000.0)]
