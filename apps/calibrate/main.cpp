@@ -154,20 +154,14 @@ void calibrate(const Options &options)
   if (!options.no_figures)
     fmt::print("  {}\n", draw_figures(folder, "calibrate"));
 }
-
-/// The plan itself, or the one of this name in the installation.
-std::string shipped_plan(const std::string &file)
-{
-  const fs::path shipped = shared_folder() / "scenes" / "calibrate" / file;
-  return !fs::exists(file) && fs::is_regular_file(shipped) ? shipped.string() : file;
-}
 } // namespace
 
 int main(int argc, char **argv)
 {
   CLI::App line("Calibration: finds parameters of a scene from laboratory curves with small element tests");
   Options options;
-  line.add_option("plan", options.plan, "plan file (TOML); see apps/calibrate/README.md")->transform(shipped_plan);
+  line.add_option("plan", options.plan, "plan file (TOML); see apps/calibrate/README.md")
+      ->transform([](const std::string &file) { return shipped_file("scenes/calibrate", file); });
   line.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
       ->check(CLI::Range(1, 1024));
   line.add_option("-o,--output", options.output, "results folder (default: results/<plan name>)");

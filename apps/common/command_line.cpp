@@ -49,9 +49,11 @@ int guarded(const std::function<void()> &program)
 
 std::string command_text(int argc, char **argv) { return fmt::format("{}", fmt::join(argv, argv + argc, " ")); }
 
-std::string shipped_scene(const std::string &file)
+std::string shipped_file(const std::filesystem::path &folder, const std::string &file)
 {
-  const std::filesystem::path shipped = shared_folder() / "scenes" / file;
+  const std::filesystem::path shipped = shared_folder() / folder / file;
   return !std::filesystem::exists(file) && std::filesystem::is_regular_file(shipped) ? shipped.string() : file;
 }
+
+std::string shipped_scene(const std::string &file) { return shipped_file("scenes", file); }
 } // namespace isostat

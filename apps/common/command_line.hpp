@@ -16,6 +16,8 @@ int guarded(const std::function<void()> &program);
 /// The command as it was typed, for the provenance.
 std::string command_text(int argc, char **argv);
 
-/// The file itself, or the scene of this name in the installation (base/record/installation.hpp): for transform().
+/// The file itself, or the one of this name in a folder of the installation (base/record/installation.hpp).
+std::string shipped_file(const std::filesystem::path &folder, const std::string &file);
+/// Of scenes: for transform().
 std::string shipped_scene(const std::string &file);
 } // namespace isostat

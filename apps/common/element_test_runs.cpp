@@ -4,38 +4,16 @@
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 namespace isostat
 {
 namespace fs = std::filesystem;
 
-namespace
-{
-fs::path own_path() { return fs::read_symlink("/proc/self/exe"); }
-} // namespace
-
-void lock_folder(const fs::path &folder)
-{
-  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
-    throw InputError(fmt::format("{}: another {} is at work in it. Wait for it, or give another --output.",
-                                 folder.string(), own_path().filename().string()));
-}
-
-void empty_folder(const fs::path &folder)
-{
-  for (const auto &entry : fs::directory_iterator(folder))
-    if (entry.path().filename() != "lock")
-      fs::remove_all(entry.path());
-}
-
 fs::path element_test_program()
 {
-  const fs::path own = own_path(), program = own.parent_path() / "element_test";
+  const fs::path own = fs::read_symlink("/proc/self/exe"), program = own.parent_path() / "element_test";
   if (access(program.c_str(), X_OK) != 0)
     throw InputError(fmt::format("{}: is not there; {} runs it. Build it: cmake --build --preset release --target "
                                  "element_test.",

@@ -7,13 +7,6 @@
 
 namespace isostat
 {
-/// Keeps a second program out of a folder while this one works in it. Goes with the process, however it ends.
-/// @throws InputError  another program has it
-void lock_folder(const std::filesystem::path &folder);
-
-/// Removes all of a folder but its lock.
-void empty_folder(const std::filesystem::path &folder);
-
 /// The element_test beside the running program.   @throws InputError  it is not there
 std::filesystem::path element_test_program();
 

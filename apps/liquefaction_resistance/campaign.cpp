@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/liquefaction_resistance/campaign.hpp"
 
+#include "apps/common/campaign_folder.hpp"
 #include "apps/common/element_test_runs.hpp"
 #include "apps/common/result_folder.hpp"
-#include "apps/common/scene_program.hpp"
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
@@ -121,31 +121,12 @@ Campaign::Run Campaign::make_run(std::string name, double ratio, std::uint64_t s
   return run;
 }
 
-void Campaign::check_folder() const
+void Campaign::open(bool overwrite, const std::string &command_line)
 {
-  if (!fs::exists(folder_))
-    return;
-  if (!fs::is_directory(folder_))
-    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder_.string()));
   const fs::path scene = folder_ / "scene.toml";
-  const bool empty = std::all_of(fs::directory_iterator(folder_), fs::directory_iterator(),
-                                 [](const fs::directory_entry &entry) { return entry.path().filename() == "lock"; });
-  if (empty)
-    return;
-  if (!fs::exists(scene) || !fs::exists(folder_ / "runs"))
-    throw InputError(
-        fmt::format("{}: holds something else than runs of liquefaction_resistance (no scene.toml and runs "
-                    "in it). Choose another --output.",
-                    folder_.string()));
-  const std::string text = to_toml(shared_), there = read_text(scene);
-  if (text != there)
-    throw InputError(fmt::format("{}: in use by another scene: it has `{}` where this one has `{}`. Choose another "
-                                 "--output, or --overwrite to start anew.",
-                                 folder_.string(), first_difference(text, there), first_difference(there, text)));
-}
-
-void Campaign::open()
-{
+  open_campaign_folder(
+      folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); }, overwrite);
+  write_provenance(folder_, shared_, command_line);
   for (const char *part : {"scenes", "runs", "logs"})
     fs::create_directories(folder_ / part);
   for (Run &run : runs)

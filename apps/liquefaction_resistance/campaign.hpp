@@ -46,10 +46,9 @@ public:
   std::size_t stage() const { return stage_; }
   const CyclicConstantVolume &cyclic() const { return *as<CyclicConstantVolume>(shared_.stages[stage_]); }
 
-  /// Throws InputError if the folder holds the runs of another scene, or other things than a campaign.
-  void check_folder() const;
-  /// Writes the scenes of the runs, and reads what earlier calls have finished.
-  void open();
+  /// Opens the folder, writes the scenes of the runs, and reads what earlier calls have finished.
+  /// @throws InputError  it holds the runs of another scene and not `overwrite`, or other things than a campaign
+  void open(bool overwrite, const std::string &command_line);
   bool is_finished(const Run &run) const;
   std::filesystem::path run_folder(const Run &run) const { return folder_ / "runs" / run.name; }
   std::filesystem::path scene_file(const Run &run) const { return folder_ / "scenes" / (run.name + ".toml"); }

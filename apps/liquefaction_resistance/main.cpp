@@ -151,27 +151,13 @@ bool run_campaign(Campaign &campaign, const Options &options)
   return run_all(campaign, then, options);
 }
 
-void open_folder(const Campaign &campaign, const Options &options)
-{
-  if (!options.overwrite)
-    campaign.check_folder();
-  else
-    check_result_folder(campaign.folder(), FolderUse::overwrite);
-  make_writable_folder(campaign.folder());
-  lock_folder(campaign.folder());
-  if (options.overwrite)
-    empty_folder(campaign.folder());
-}
-
 void find_resistance(Options options)
 {
   options.plan.ratios = parse_ratios(options.ratios);
   const Scene scene = read_scene(options.scene, options.set);
   Campaign campaign(scene, options.plan, output_folder(options.output, scene.output.folder + "_resistance"));
   element_test_program();
-  open_folder(campaign, options);
-  write_provenance(campaign.folder(), campaign.shared(), options.command_line);
-  campaign.open();
+  campaign.open(options.overwrite, options.command_line);
   catch_signals();
   const bool complete = run_campaign(campaign, options);
   const std::string text = write_report(campaign);

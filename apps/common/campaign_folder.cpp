@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/campaign_folder.hpp"
+
+#include "apps/common/result_folder.hpp"
+#include "apps/common/scene_program.hpp"
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+bool is_kept(const fs::directory_entry &entry) { return entry.path().filename() != "lock"; }
+
+bool keeps_anything(const fs::path &folder, const std::string &mark)
+{
+  if (!fs::exists(folder))
+    return false;
+  if (!fs::is_directory(folder))
+    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
+  if (std::none_of(fs::directory_iterator(folder), fs::directory_iterator(), is_kept))
+    return false;
+  if (!fs::exists(folder / mark))
+    throw InputError(fmt::format("{}: holds something else than runs of {} (no {} in it). Choose another "
+                                 "--output.",
+                                 folder.string(), program_invocation_short_name, mark));
+  return true;
+}
+
+void lock(const fs::path &folder)
+{
+  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
+    throw InputError(fmt::format("{}: another {} is at work in it. Wait for it, or give another --output.",
+                                 folder.string(), program_invocation_short_name));
+}
+} // namespace
+
+void check_kept_text(const fs::path &there, const std::string &kept, const std::string &text, const char *what)
+{
+  if (kept != text)
+    throw InputError(fmt::format("{}: belongs to another {}: it has `{}` where this one has `{}`. Choose another "
+                                 "--output, or --overwrite to start anew.",
+                                 there.string(), what, first_difference(text, kept), first_difference(kept, text)));
+}
+
+void open_campaign_folder(const fs::path &folder, const std::string &mark, const std::function<void()> &check_kept,
+                          bool overwrite)
+{
+  const bool kept = keeps_anything(folder, mark);
+  if (kept && !overwrite)
+    check_kept();
+  make_writable_folder(folder);
+  lock(folder);
+  for (const auto &entry : fs::directory_iterator(folder))
+    if (overwrite && is_kept(entry))
+      fs::remove_all(entry.path());
+}
+} // namespace isostat
