@@ -32,6 +32,9 @@ DEFAULT = of("default")
 TENTH, HUNDREDTH = {"inertial_number": 7e-5, "load_per_wave": 0.01}, {"inertial_number": 7e-6, "load_per_wave": 1e-3}
 SLOW = of("rate / 10", 2.5e5, **TENTH)
 SLOWEST = of("rate / 100", 2.5e6, **HUNDREDTH)
+# of first cycles only: four decades of the rate, and what the brake on free grains does at a slow one
+EARLY = [DEFAULT, SLOW, SLOWEST, of("rate / 1000", 2.5e7, inertial_number=7e-7, load_per_wave=1e-4),
+         *[of(f"c = {c:g}, rate / 100", 2.5e6, **HUNDREDTH, free_grain_damping=c) for c in (0.01, 1)]]
 # monotonic tests have a default of their own, I = 4e-5
 ONE_WAY = [DEFAULT, of("I of cyclic tests", inertial_number=7e-4), of("I / 10", 2.5e6, inertial_number=4e-6)]
 LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": "false"}
@@ -58,7 +61,7 @@ DAMPING = {value: at_two_rates(f"local damping {value:g}", damping=value) for va
 class Run:
     """One run, as runner.Campaign takes it."""
 
-    kind: str  # prepare, cyclic, monotonic, liquefied, hold, hold-late
+    kind: str  # prepare, cyclic, early, monotonic, liquefied, hold, hold-late
     seed: int
     domain: str
     setting: Setting = DEFAULT
@@ -90,8 +93,10 @@ class Run:
     def stages(self):
         cyclic = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "60 kPa"\nuntil = {{ {} }}\n'
         hold = f'[[stage]]\nkind = "hold"\nbalance = 1e-14\nmax_steps = {HELD_STEPS}\n'
+        rest = hold.replace("1e-14", "1e-9")
         return {"prepare": "",
                 "cyclic": cyclic.format("cycles = 100, reversals_after_liquefaction = 0"),
+                "early": rest + cyclic.format("cycles = 1"),
                 "liquefied": cyclic.format("cycles = 100, reversals_after_liquefaction = 6"),
                 "monotonic": '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.005\n',
                 "hold": cyclic.format("cycles = 5") + hold,
@@ -99,6 +104,7 @@ class Run:
 
     def estimated_seconds(self):
         of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.4 * max(self.setting.steps, 2.5e5),
+                   "early": 0.02 * self.setting.steps,
                    "liquefied": 18 * self.setting.steps, "hold": HELD_STEPS, "hold-late": 4e5}
         return 1.1e-4 * of_kind[self.kind] * self.grains / GRAINS
 
@@ -127,6 +133,7 @@ def runs(n_seeds):
     cyclic(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
     cyclic(PUSHED, few, box)
     result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
-    cyclic([SLOWEST], few)
+    cyclic([SLOWEST])
     cyclic([slow for _, slow in DAMPING.values()], few)
+    result += [Run("early", s, domain, setting) for s in half for domain in DOMAINS for setting in EARLY]
     return result

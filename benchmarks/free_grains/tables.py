@@ -41,7 +41,7 @@ class Results:
     def tables(self):
         return {"cycles": self.cycles_table(), "path": self.path_table(),
                 "monotonic": self.monotonic_table(), "hold": self.hold_table(),
-                "liquefied": self.liquefied_table()}
+                "liquefied": self.liquefied_table(), "early": self.early_table()}
 
     def differences(self, key, reference, value):
         """value(test) less that of the reference, seed by seed where both are there."""
@@ -84,6 +84,23 @@ class Results:
                                  np.mean(found), paths.ensemble(found)[2], np.median(found), np.max(found)])
         return ["path", "domain", "grains", "setting", "reference", "seeds", "largest distance (% of p0')",
                 "standard error", "median", "largest of a specimen"], rows
+
+    def early_table(self):
+        """p' at the end of the first cycle, less that of the default, of specimens brought to rest before it."""
+        p = {(run.domain, run.setting, run.seed): self.end_of_first_cycle(run) for run in self.of("early")}
+        rows = []
+        for domain, setting in dict.fromkeys((domain, setting) for domain, setting, _ in p):
+            found = [p[domain, setting, s] - p[domain, plan.DEFAULT, s] for d, other, s in p
+                     if (d, other) == (domain, setting) and (domain, plan.DEFAULT, s) in p]
+            if setting is not plan.DEFAULT and found:
+                rows.append([domain, setting.label, len(found), *paths.mean_and_interval(found), np.median(found),
+                             np.min(found), np.max(found)])
+        return ["domain", "setting", "seeds", "p' at reversal 2 less that of the default (kPa)", "half 95 % interval",
+                "median", "least", "largest"], rows
+
+    def end_of_first_cycle(self, run):
+        history = paths.History(self.store.folder(run))
+        return history.p[history.reversal_rows[1]] / 1e3
 
     def monotonic_table(self):
         """At each strain p' less that of the slow test, and the largest distance of the path up to it; over p0'."""

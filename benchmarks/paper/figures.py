@@ -139,6 +139,7 @@ def dense(table, _):
             ratio.plot(rows["|eps_1| (%)"], rows["q (kPa)"] / rows["p' (kPa)"], color=colour, linewidth=1.1)
     stress.set_ylabel("Deviatoric stress $q$ (MPa)")
     stress.set_yscale("log")
+    stress.set_ylim(bottom=1e-2)
     ratio.set_ylabel(f"$q$/{PRIME}")
     for panel in (stress, ratio):
         panel.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")

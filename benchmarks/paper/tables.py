@@ -7,7 +7,7 @@ import numpy as np
 from paper import claims, lab, plan, resistance, states
 from speed_error import paths
 
-STRAINS = np.concatenate([np.arange(0, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
+STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
 PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz")
 PAPER_CYCLES = 17
 UNDRAINED = ("strain (%)", "p' (kPa)", "q (kPa)", "q/p'")
