@@ -56,18 +56,20 @@ class Results:
 
     def cycles_table(self):
         header = ["domain", "grains", "setting", "seeds", "liquefied", "cycles", "standard error",
-                  "cycles less those of the default", "half 95 % interval", "steps to the onset", "I_R at onset"]
+                  "cycles less those of the default", "half 95 % interval", "cycles less those at rate / 10",
+                  "half 95 % interval of these", "steps to the onset", "I_R at onset"]
         header += [f"p' at reversal {k} less that of the default (kPa)" for k in REVERSALS]
         header += [f"half 95 % interval at {k}" for k in REVERSALS]
         rows = []
         for key, tests in self.cyclic.items():
             domain, grains, setting = key
-            reference = domain, grains, plan.DEFAULT
+            reference, slow = (domain, grains, plan.DEFAULT), (domain, grains, plan.SLOW)
             cycles = [t.cycles for t in tests.values() if np.isfinite(t.cycles)]
             stress = np.array([d for d in self.differences(key, reference, lambda t: t.p)])
             rows.append([domain, grains, setting.label, len(tests), len(cycles), np.mean(cycles),
                          paths.ensemble(cycles)[2],
                          *paths.mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
+                         *paths.mean_and_interval(self.differences(key, slow, lambda t: t.cycles)),
                          np.mean([t.steps for t in tests.values()]),
                          np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0),
                          *[paths.mean_and_interval(column)[1] for column in stress.T]])

@@ -51,7 +51,8 @@ constexpr Key chosen[] = {
    .field = [](MotionSpec &m) -> Field { return &m.load_per_wave; }},
   {.path = "carry_grains", .kind = Kind::boolean, .value = "true",
    .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "
-           "which start or turn round send no waves; false: walls push.",
+           "which start or turn round send no waves; false: walls push. Walls that only follow a pressure (compress, "
+           "rebalance) always push.",
    .field = [](MotionSpec &m) -> Field { return &m.carry_grains; }},
   {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",

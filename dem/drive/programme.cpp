@@ -109,8 +109,9 @@ RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveSt
   while (state.place.stage < programme.stages.size())
     {
       set_damping(programme.motion, assembly.settings);
-      assembly.settings.carry_grains = programme.motion.carry_grains;
-      StageRun run(programme, behaviour(programme.stages[state.place.stage]), assembly, state, observer);
+      const StageBehaviour &stage = behaviour(programme.stages[state.place.stage]);
+      assembly.settings.carry_grains = programme.motion.carry_grains && stage.may_carry_grains();
+      StageRun run(programme, stage, assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)
         return RunOutcome::interrupted;
       state.place = {state.place.stage + 1, 0};

@@ -115,6 +115,25 @@ TEST(ServoStages, SetFrictionReachTheirPressureAndComeToRest)
   EXPECT_NEAR_BECAUSE(highest, 220e3, 5e3, "compress ends within 1 %, and the servo may overshoot by as much");
 }
 
+/// With grains that are carried by a servo that answers to them, packings of this size tremble for ever.
+TEST(ServoStages, ComeToRestWithLittleDamping)
+{
+  Compress compress;
+  compress.max_steps = 20'000;
+  for (std::uint64_t grains : {300, 400, 500})
+    {
+      Assembly assembly(test::specimen(grains, 3));
+      DriveState state;
+      Watcher watcher;
+      Programme programme{.record = {}, .stages = {cycles(1), compress}};
+      programme.motion.damping = 0.02;
+      run_programme(programme, assembly, state, watcher);
+      assembly.compute_forces();
+      EXPECT_BELOW_BECAUSE(assembly.unbalanced_force_ratio(), 2 * compress.balance,
+                           "the stage ends by itself, not by max_steps; one step later the forces are others");
+    }
+}
+
 TEST(Hold, EndsAtRestWithTheBoxUnchanged)
 {
   const Snapshot &start = test::specimen(1000, 10);

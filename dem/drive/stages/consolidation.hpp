@@ -49,6 +49,7 @@ public:
   double pressure = 0; ///< Pa; 0: that of the specimen
 
   bool operator==(const ServoStage &) const = default;
+  bool may_carry_grains() const final { return false; }
   RigidBox next_box(const StageContext &c, const Observation &seen) const final;
   Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;
 
