@@ -4,7 +4,8 @@
 drained tests beside the laboratory, resistance curves.
 
     paper.py                       2,000 grains, three seeds; tables and figures in results/paper
-    paper.py --grains 10000        as many grains as the paper's
+    paper.py --grains 10000 --whole --parts monotonic cyclic drained      as many grains as the paper's
+    paper.py --whole --parts resistance                                   three densities at three pressures
     paper.py --dry-run             the number of runs and their estimated time
     paper.py --figures FOLDER      draws the figures of a folder of tables anew
 
@@ -25,13 +26,15 @@ def main():
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=3, help="specimens of each kind; two more at D_r = 0.64")
     runner.add_arguments(parser, ROOT, "paper")
+    parser.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.PARTS), help="default: all")
+    parser.add_argument("--whole", action="store_true", help="all states, not what 20 minutes allow")
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
     parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
     options = parser.parse_args()
     if options.figures:
         figures.draw(pathlib.Path(options.figures))
         return 0
-    runs = plan.runs_of(options.grains, options.seeds)
+    runs = plan.runs_of(options.grains, options.seeds, options.whole, options.parts)
     store, complete = runner.run_campaign(options, runs)
     if complete is None:
         return 0

@@ -3,14 +3,19 @@
 # The tests of the paper as ensembles, with the release build of scripts/demo.sh or test.sh.
 #
 #   scripts/paper.sh            2,000 grains, three seeds: some 20 minutes on two cores, estimated
-#   scripts/paper.sh --whole    10,000 grains as in the paper: some hours; interrupted, it goes on where it stopped
+#   scripts/paper.sh --whole    10,000 grains as in the paper, and resistance curves of 2,000 at every density and
+#                               pressure: some hours; interrupted, it goes on where it stopped
 #
 # Further arguments go to benchmarks/paper.py. Tables and figures are left in results/paper_*/tables.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+paper() { /usr/bin/python3 benchmarks/paper.py "$@"; }
+
 if [[ "${1:-}" == --whole ]]; then
   shift
-  exec /usr/bin/python3 benchmarks/paper.py --grains 10000 --work results/paper_10000 "$@"
+  paper --grains 10000 --whole --parts monotonic cyclic drained --work results/paper_10000 "$@"
+  paper --whole --parts resistance --work results/paper_resistance "$@"
+else
+  paper --work results/paper_2000 "$@"
 fi
-exec /usr/bin/python3 benchmarks/paper.py --work results/paper_2000 "$@"

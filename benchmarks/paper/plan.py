@@ -170,9 +170,9 @@ def drained(grains, seeds, whole):
             for seed in seeds for density in LABORATORY for pressure in ((100, 200) if whole else (P0,))]
 
 
-def cyclic(grains, seeds, many, whole):
-    """Figures 2 to 4: the density of the paper, and a row of preparations, in boxes."""
-    runs = [Run("cyclic", Packing(grains, seed, PAPER[1])) for seed in many]
+def cyclic(grains, seeds, whole):
+    """Figures 2 to 4: the density of the paper with two more seeds, and a row of preparations, in boxes."""
+    runs = [Run("cyclic", Packing(grains, seed, PAPER[1])) for seed in range(1, len(seeds) + 3)]
     return runs + [Run("cyclic", Packing(grains, seed, degrees=d)) for seed in seeds
                    for d in PREPARATIONS if whole or d % 2 or d == 10]
 
@@ -184,11 +184,11 @@ def resistance(grains, seeds, whole):
             for seed in seeds for d, p in states for ratio in RATIOS if whole or ratio > RATIOS[0]]
 
 
-def runs_of(grains, n_seeds):
-    """All runs, each once, specimens first. Few grains: fewer states, what 20 minutes allow."""
-    seeds, many, whole = range(1, n_seeds + 1), range(1, n_seeds + 3), grains > 2000
-    tests = [*figure_1(grains, seeds, whole), *cyclic(grains, seeds, many, whole), *drained(grains, seeds, whole),
-             *resistance(grains, seeds, whole)]
-    tests = list(dict.fromkeys(tests))
+PARTS = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained, "resistance": resistance}
+
+
+def runs_of(grains, n_seeds, whole=False, parts=tuple(PARTS)):
+    """All runs, each once, specimens first. Not the whole: fewer states, what 20 minutes allow."""
+    tests = list(dict.fromkeys(run for part in parts for run in PARTS[part](grains, range(1, n_seeds + 1), whole)))
     packings = list(dict.fromkeys(run.packing for run in tests))
     return [Run("prepare", packing) for packing in packings] + tests

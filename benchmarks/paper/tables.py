@@ -62,7 +62,9 @@ class Results:
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
                   "critical_states": resistance.critical_states(self.of("compression", "extension", "drained"))}
         tables["resistance"] = resistance.curves(tables["cyclic_tests"])
-        return {**tables, "claims": claims.table(tables)}
+        if tables["undrained_states"] and tables["cyclic_tests"]:
+            tables["claims"] = claims.table(tables)
+        return tables
 
     def undrained_states(self):
         rows = []
