@@ -43,10 +43,10 @@ class Results:
                 "monotonic": self.monotonic_table(), "hold": self.hold_table(),
                 "liquefied": self.liquefied_table(), "early": self.early_table()}
 
-    def differences(self, key, reference, value):
-        """value(test) less that of the reference, seed by seed where both are there."""
+    def differences(self, key, reference, value, seeds=None):
+        """value(test) less that of the reference, seed by seed where both are there; of `seeds` alone if given."""
         tests, others = self.cyclic[key], self.cyclic.get(reference, {})
-        return [value(tests[s]) - value(others[s]) for s in tests if s in others]
+        return [value(tests[s]) - value(others[s]) for s in tests if s in others and (not seeds or s in seeds)]
 
     def path_distances(self, key, reference):
         """Largest distance of the cyclic path to reversal 10 from that of the reference, % of p0', seed by seed."""
@@ -79,7 +79,7 @@ class Results:
         """Largest distance in the p'-q plane over p0', of the cyclic path to reversal 10."""
         rows = []
         for domain, grains, setting in self.cyclic:
-            for reference in (plan.SLOW, plan.SLOWEST):
+            for reference in (plan.SLOW, plan.SLOWEST, *([plan.LARGE[1]] if grains == plan.MANY else [])):
                 found = self.path_distances((domain, grains, setting), (domain, grains, reference))
                 if found and setting is not reference:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
