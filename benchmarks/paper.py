@@ -27,7 +27,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=3, help="specimens of each kind; two more at D_r = 0.64")
     runner.add_arguments(parser, ROOT, "paper")
     parser.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.PARTS), help="default: all")
-    parser.add_argument("--whole", action="store_true", help="all states, not what 20 minutes allow")
+    parser.add_argument("--whole", action="store_true", help="all states, not what half an hour allows")
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
     parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
     options = parser.parse_args()

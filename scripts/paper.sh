@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The tests of the paper as ensembles, with the release build of scripts/demo.sh or test.sh.
 #
-#   scripts/paper.sh            2,000 grains, three seeds: some 20 minutes on two cores, estimated
+#   scripts/paper.sh            2,000 grains, three seeds: half an hour on two cores
 #   scripts/paper.sh --whole    10,000 grains as in the paper, and resistance curves of 2,000 at every density and
 #                               pressure: some hours; interrupted, it goes on where it stopped
 #

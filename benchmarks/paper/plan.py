@@ -189,7 +189,7 @@ PARTS = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained, "resistanc
 
 
 def runs_of(grains, n_seeds, whole=False, parts=tuple(PARTS)):
-    """All runs, each once, specimens first. Not the whole: fewer states, what 20 minutes allow."""
+    """All runs, each once, specimens first. Not the whole: fewer states, for half an hour."""
     tests = list(dict.fromkeys(run for part in parts for run in PARTS[part](grains, range(1, n_seeds + 1), whole)))
     packings = list(dict.fromkeys(run.packing for run in tests))
     return [Run("prepare", packing) for packing in packings] + tests
