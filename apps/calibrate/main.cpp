@@ -17,7 +17,6 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
 #include "base/error.hpp"
-#include "base/record/installation.hpp"
 #include "base/record/progress.hpp"
 #include "base/scene/reader.hpp"
 

@@ -21,11 +21,7 @@ bool is_kept(const fs::directory_entry &entry) { return entry.path().filename() 
 
 bool keeps_anything(const fs::path &folder, const std::string &mark)
 {
-  if (!fs::exists(folder))
-    return false;
-  if (!fs::is_directory(folder))
-    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
-  if (std::none_of(fs::directory_iterator(folder), fs::directory_iterator(), is_kept))
+  if (!folder_exists(folder) || std::none_of(fs::directory_iterator(folder), fs::directory_iterator(), is_kept))
     return false;
   if (!fs::exists(folder / mark))
     throw InputError(fmt::format("{}: holds something else than runs of {} (no {} in it). Choose another "
@@ -59,8 +55,10 @@ void open_campaign_folder(const fs::path &folder, const std::string &mark, const
     check_kept();
   make_writable_folder(folder);
   lock(folder);
+  if (!overwrite)
+    return;
   for (const auto &entry : fs::directory_iterator(folder))
-    if (overwrite && is_kept(entry))
+    if (is_kept(entry))
       fs::remove_all(entry.path());
 }
 } // namespace isostat

@@ -33,6 +33,15 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
+bool folder_exists(const fs::path &folder)
+{
+  std::error_code failure;
+  const bool exists = fs::exists(folder, failure);
+  if (exists && !fs::is_directory(folder))
+    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
+  return exists;
+}
+
 void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
@@ -64,10 +73,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
                                      folder.string()));
       return;
     }
-  const bool exists = fs::exists(folder, failure);
-  if (exists && !fs::is_directory(folder))
-    throw InputError(fmt::format("{}: is a file, not a folder. Choose another --output.", folder.string()));
-  const bool used = exists && !fs::is_empty(folder);
+  const bool used = folder_exists(folder) && !fs::is_empty(folder);
   if (used && use == FolderUse::fresh)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),

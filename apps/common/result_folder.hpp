@@ -32,6 +32,9 @@ void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// survive a run that never does.      @pre check_result_folder()
 void open_result_folder(const std::filesystem::path &folder, FolderUse use);
 
+/// Whether the folder is there.     @throws InputError  it is a file
+bool folder_exists(const std::filesystem::path &folder);
+
 /// Makes a folder with those above it.     @throws InputError  it cannot be made, or not be written to
 void make_writable_folder(const std::filesystem::path &folder);
 
