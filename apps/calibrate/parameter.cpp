@@ -49,8 +49,7 @@ const Key &known_key(const CalibrationPlan &plan, const PlanParameter &parameter
     refuse(parameter, fmt::format("is set by {} of the plan. Give another key.", owner));
   if (std::string_view(key->group) == "preparation")
     for (const PlanCurve &curve : plan.curves)
-      if ((parameter.curve.empty() || parameter.curve == curve.name) &&
-          (curve.relative_density || curve.void_ratio || curve.preparation_friction))
+      if (concerns(parameter, curve) && (curve.relative_density || curve.void_ratio || curve.preparation_friction))
         refuse(parameter, fmt::format("but curve \"{}\" ({}) says how dense its specimens are. Remove one of them.",
                                       curve.name, curve.where));
   return *key;
@@ -147,6 +146,14 @@ std::string Parameter::number(double value) const
 }
 
 std::string Parameter::override_(double value) const { return fmt::format("{}={}", plan_.key, text(value)); }
+
+std::size_t label_width(const std::vector<Parameter> &parameters)
+{
+  std::size_t width = 0;
+  for (const Parameter &parameter : parameters)
+    width = std::max(width, parameter.label().size());
+  return width;
+}
 
 std::vector<Parameter> parameters_of(const CalibrationPlan &plan, const std::string &scene)
 {

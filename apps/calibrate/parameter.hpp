@@ -23,8 +23,9 @@ public:
   Parameter(const CalibrationPlan &plan, const PlanParameter &parameter, const std::string &scene);
 
   const std::string &key() const { return plan_.key; }
-  const std::string &curve() const { return plan_.curve; } ///< empty: of all
-  std::string label() const;                               ///< "contact.friction (deg)", with its curve if it has one
+  const std::string &curve() const { return plan_.curve; } ///< or group; empty: of all
+  bool concerns(const PlanCurve &curve) const { return isostat::concerns(plan_, curve); }
+  std::string label() const; ///< "contact.friction (deg)", with its curve or group if it has one
 
   double start() const { return start_; } ///< share
   /// The value at a share, with seven digits, so that tables and scenes show what was run.
@@ -40,6 +41,9 @@ private:
   const Key *key_;
   double low_ = 0, high_ = 1, start_ = 0.5;
 };
+
+/// Of the longest label, for tables.
+std::size_t label_width(const std::vector<Parameter> &parameters);
 
 /// The parameters of a plan.   @throws InputError  as Parameter does
 std::vector<Parameter> parameters_of(const CalibrationPlan &plan, const std::string &scene);

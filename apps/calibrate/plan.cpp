@@ -8,6 +8,7 @@
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -106,7 +107,7 @@ constexpr Key parameter_keys[] = {
    .text = "log: equal steps are equal ratios; for moduli over decades.",
    .field = [](Plan &, PlanParameter &p) -> Field { return &p.logarithmic; }},
   {.path = "parameter.curve", .kind = Kind::text, .presence = Presence::optional, .value = "dense",
-   .text = "Name of the only curve that it belongs to (a density, say); left out: all.",
+   .text = "Name of the only curve, or group of curves, that it belongs to (a density, say); left out: all.",
    .field = [](Plan &, PlanParameter &p) -> Field { return &p.curve; }},
 };
 
@@ -119,6 +120,9 @@ constexpr Key curve_keys[] = {
   {.path = "curve.name", .kind = Kind::text, .presence = Presence::optional, .value = "loose",
    .text = "Names it in tables and folders; left out: the file without its ending.",
    .field = [](Plan &, PlanCurve &c) -> Field { return &c.name; }},
+  {.path = "curve.group", .kind = Kind::text, .presence = Presence::optional, .value = "loose",
+   .text = "Of curves that share parameters, blind ones among them: those of specimens made alike.",
+   .field = [](Plan &, PlanCurve &c) -> Field { return &c.group; }},
   {.path = "curve.direction", .kind = Kind::choice, .value = "compression", .choices = directions,
    .text = "Of the axial strain.", .field = [](Plan &, PlanCurve &c) -> Field { return EnumField(&c.direction); }},
   {.path = "curve.relative_density", .presence = Presence::optional, .value = "0.64", .range = {0, 1},
@@ -194,22 +198,28 @@ void check_names(const SceneDocument &document, CalibrationPlan &plan)
         if (plan.curves[k].name == curve.name)
           document.refuse(key, fmt::format("names two curves \"{}\" (the other: {}). Give one of them another name.",
                                            curve.name, plan.curves[k].where));
+      if (curve.group.empty())
+        curve.group = curve.name;
       curve.where = document.where(at("curve", i, "file"));
     }
 }
 
 void check_parameters(const SceneDocument &document, CalibrationPlan &plan)
 {
+  const auto share_a_curve = [&](const PlanParameter &a, const PlanParameter &b) {
+    return std::any_of(plan.curves.begin(), plan.curves.end(),
+                       [&](const PlanCurve &curve) { return concerns(a, curve) && concerns(b, curve); });
+  };
   for (std::size_t i = 0; i < plan.parameters.size(); ++i)
     {
       PlanParameter &parameter = plan.parameters[i];
       parameter.where = document.where(at("parameter", i, "key"));
-      const auto is_it = [&](const PlanCurve &c) { return c.name == parameter.curve; };
-      if (!parameter.curve.empty() && std::none_of(plan.curves.begin(), plan.curves.end(), is_it))
-        document.refuse(at("parameter", i, "curve"), "is the name of no curve. Give the name of a [[curve]].");
+      const auto fits = [&](const PlanCurve &curve) { return concerns(parameter, curve) && !curve.blind; };
+      if (!parameter.curve.empty() && std::none_of(plan.curves.begin(), plan.curves.end(), fits))
+        document.refuse(at("parameter", i, "curve"),
+                        "is the name or group of no curve that is fitted. Give that of a [[curve]] without blind.");
       for (std::size_t k = 0; k < i; ++k)
-        if (plan.parameters[k].key == parameter.key && (plan.parameters[k].curve == parameter.curve ||
-                                                        parameter.curve.empty() || plan.parameters[k].curve.empty()))
+        if (plan.parameters[k].key == parameter.key && share_a_curve(parameter, plan.parameters[k]))
           document.refuse(at("parameter", i, "key"),
                           fmt::format("is a parameter twice (the other: {}). Remove one, or give each its own curve.",
                                       plan.parameters[k].where));
@@ -228,6 +238,11 @@ void check(const SceneDocument &document, CalibrationPlan &plan)
     document.refuse("optimiser.method", "\"bobyqa\" needs two parameters or more. Take \"sbplx\" for one.");
 }
 } // namespace
+
+bool concerns(const PlanParameter &parameter, const PlanCurve &curve)
+{
+  return parameter.curve.empty() || parameter.curve == curve.name || parameter.curve == curve.group;
+}
 
 CalibrationPlan parse_plan(const std::string &text, const std::string &name)
 {

@@ -61,8 +61,8 @@ struct PlanParameter
   std::string key;              ///< "contact.friction"
   std::string low, high, start; ///< in the form of that key; no start: what the scene has, or the middle
   bool logarithmic = false;     ///< the search goes along the logarithm
-  std::string curve;            ///< name of the one curve it belongs to; none: all, and the scene that is left
-  std::string where;            ///< "plan.toml:14", for messages about it
+  std::string curve; ///< name of the one curve, or group, it belongs to; none: all, and the scene that is left
+  std::string where; ///< "plan.toml:14", for messages about it
 };
 
 enum class LaboratoryTest
@@ -81,7 +81,8 @@ struct CurveColumns
 /// A laboratory curve and the test that it comes from.
 struct PlanCurve
 {
-  std::string name; ///< left out: the name of its file
+  std::string name;  ///< left out: the name of its file
+  std::string group; ///< of curves that share parameters, such as a density; left out: its name
   std::string file;
   LaboratoryTest test = LaboratoryTest::drained;
   LoadDirection direction = LoadDirection::compression;
@@ -95,6 +96,9 @@ struct PlanCurve
   std::string path;  ///< where the file is; set by read_plan()
   std::string where; ///< "plan.toml:20"
 };
+
+/// Whether the tests of a curve have this parameter.
+bool concerns(const PlanParameter &parameter, const PlanCurve &curve);
 
 struct CalibrationPlan
 {

@@ -20,18 +20,20 @@ constexpr double at_bound = 0.01; ///< share of the bounds within which a value 
 std::string place_text(double share)
 {
   if (share < at_bound)
-    return "AT THE LOWER BOUND";
-  return share > 1 - at_bound ? "AT THE UPPER BOUND" : "";
+    return "  AT THE LOWER BOUND";
+  return share > 1 - at_bound ? "  AT THE UPPER BOUND" : "";
 }
 
 std::string parameter_table(const CalibrationResult &r)
 {
   const Trial &start = r.trials.all()[r.start], &best = r.trials.all()[r.best];
-  std::string text = fmt::format("\n  {:<44} {:>14} {:>14}\n", "parameter", "start", "best");
   const std::vector<Parameter> &parameters = r.scenes.parameters();
+  const std::size_t width = label_width(parameters);
+  std::string text = fmt::format("\n  {:<{}} {:>14} {:>14}\n", "parameter", width, "start", "best");
   for (std::size_t k = 0; k < parameters.size(); ++k)
-    text += fmt::format("  {:<44} {:>14} {:>14}  {}\n", parameters[k].label(), parameters[k].number(start.values[k]),
-                        parameters[k].number(best.values[k]), place_text(parameters[k].share(best.values[k])));
+    text +=
+        fmt::format("  {:<{}} {:>14} {:>14}{}\n", parameters[k].label(), width, parameters[k].number(start.values[k]),
+                    parameters[k].number(best.values[k]), place_text(parameters[k].share(best.values[k])));
   return text;
 }
 

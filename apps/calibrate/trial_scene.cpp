@@ -60,7 +60,7 @@ std::vector<std::string> SceneMaker::overrides(const std::vector<double> &values
   std::vector<std::string> set = {fmt::format("grading.grains={}", grains),
                                   "grading.cloud_edge=" + format_quantity(edge, Dimension::length, "mm")};
   for (std::size_t k = 0; k < parameters_.size(); ++k)
-    if (parameters_[k].curve().empty() || (curve && parameters_[k].curve() == curve->name))
+    if (curve ? parameters_[k].concerns(*curve) : parameters_[k].curve().empty())
       set.push_back(parameters_[k].override_(values[k]));
   if (!curve)
     return set;

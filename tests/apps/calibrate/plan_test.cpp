@@ -103,7 +103,27 @@ TEST(CalibrationPlan, RefusesWhatStandsTwice)
 TEST(CalibrationPlan, RefusesNamesThatAreNone)
 {
   expect_complaint(plan_text() + "name = \"a/b\"\n", {"plan.toml:13: curve.0.name = a/b", "name a folder"});
-  expect_complaint(plan_text("curve = \"dense\"\n"), {"plan.toml:9: parameter.1.curve = dense", "name of no curve"});
+  expect_complaint(plan_text("curve = \"dense\"\n"),
+                   {"plan.toml:9: parameter.1.curve = dense", "no curve that is fitted"});
+}
+
+TEST(CalibrationPlan, ParametersBelongToCurvesOrGroups)
+{
+  const std::string limit = "[[parameter]]\nkey = \"contact.rolling.limit\"\nbounds = [0.2, 0.3]\n";
+  const std::string blind = "group = \"loose\"\n[[curve]]\nfile = \"b.csv\"\ntest = \"drained\"\nblind = true\n";
+  const CalibrationPlan plan =
+      parse_plan(plan_text("curve = \"loose\"\n") + blind + "group = \"loose\"\n", "plan.toml");
+  EXPECT_TRUE(concerns(plan.parameters[1], plan.curves[0]) && concerns(plan.parameters[1], plan.curves[1]));
+  EXPECT_EQ(to_toml(parse_plan(to_toml(plan), "again.toml")), to_toml(plan));
+  expect_complaint(plan_text("curve = \"b\"\n") + blind,
+                   {"plan.toml:9: parameter.1.curve = b", "no curve that is fitted"});
+  expect_complaint(plan_text("curve = \"loose\"\n") + blind + limit + "curve = \"TMD3\"\n",
+                   {"parameter.2.key = contact.rolling.limit", "a parameter twice"});
+  EXPECT_EQ(
+      parse_plan(plan_text("curve = \"TMD3\"\n") + test::curve_text + "name = \"c\"\n" + limit + "curve = \"c\"\n",
+                 "plan.toml")
+          .parameters.size(),
+      3u); // one key, two curves
 }
 
 TEST(CalibrationPlan, RefusesColumnsOfTheOtherTest)

@@ -96,6 +96,19 @@ TEST(TrialScene, IsThatOfThePlanWithItsValues)
   EXPECT_EQ(parse_scene(to_toml(scene), "again"), scene);
 }
 
+TEST(TrialScene, HasTheParametersOfItsGroup)
+{
+  const std::string group = "group = \"loose\"\n", more = test::curve_text + "name = \"second\"\n";
+  const CalibrationPlan plan =
+      plan_of(test::plan_text("curve = \"loose\"\n") + group + more + group + test::curve_text + "name = \"dense\"\n");
+  const SceneMaker maker(plan);
+  const auto has = [&](std::size_t curve, const char *limit) {
+    return to_toml(maker.trial({20, 0.25}, plan.curves[curve], 1)).find(limit) != std::string::npos;
+  };
+  EXPECT_TRUE(has(0, "rolling.limit = 0.25") && has(1, "rolling.limit = 0.25"));
+  EXPECT_TRUE(has(2, "rolling.limit = 0.5")); // that of the scene
+}
+
 TEST(TrialScene, OfFullSizeKeepsTheMotion)
 {
   CalibrationPlan plan = plan_of(test::plan_text("curve = \"TMD3\"\n"));
