@@ -10,19 +10,21 @@ PAPER = (0.30, 0.64, 0.88)  # its relative densities
 # (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (docs/results/paper/limits.csv);
 # at the paper's limits no box of 2,000 grains is as dense as D_r = 0.88
 PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.632, 0.896)}
+CELL_LIMITS = (0.518, 0.802)  # of 2,000 grains, the loosest away from walls
 LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
 PREPARATIONS = range(5, 12)  # friction, degrees
 RATIOS = (0.10, 0.15, 0.20, 0.25)  # q_amp/(2 p0')
 RESISTANCE = (8, 9, 10)  # preparation friction, degrees
 PRESSURES = (50, 200, 400)  # kPa
+CRITICAL = (50, 200, 800)  # kPa: loose packings drained to their critical state
+LOOSE = 11  # preparation friction of those, degrees
 AFTER_ONSET = 8  # reversals: four cycles
-MAX_CYCLES = 100
+FRICTION = 18  # degrees
 
-SCENE = speed_plan.GRADING + speed_plan.CONTACT.replace("10 GPa", "{young:g} GPa") + """
+SCENE = speed_plan.GRADING.replace("{seed}", "{seed}{sizes}") + speed_plan.CONTACT.replace(
+    "10 GPa", "{young:g} GPa").replace("18 deg", "{friction:g} deg") + """
 [specimen]
-domain = "rigid-box"
-pressure = "{pressure:g} kPa"
-{density}
+{specimen}
 
 [motion]
 {motion}
@@ -44,6 +46,25 @@ def strain_rate(inertial_number, pressure):
 
 
 @dataclasses.dataclass(frozen=True)
+class Way:
+    """What differs as a specimen is made."""
+
+    specimen: str = ""  # a line of [specimen]
+    sizes: str = ""  # a line of [grading]
+    pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
+    cell: bool = False  # no walls
+    at_once: bool = False  # friction is raised as the test begins, without a new balance
+
+
+WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
+        "compacted at 100/s": Way('compaction_rate = "100 1/s"'), "damping 0.05": Way("damping = 0.05"),
+        "damping 0.7": Way("damping = 0.7"), "friction raised at 20 kPa": Way(pressure=20),
+        "friction raised as the test begins": Way(at_once=True),
+        "sizes of 10 to 90 %": Way(sizes="truncate = [10, 90]"), "thin cloud": Way(sizes="solid_fraction = 0.2"),
+        "periodic cell": Way(cell=True)}
+
+
+@dataclasses.dataclass(frozen=True)
 class Packing:
     """One specimen. Either density or friction says how dense it is."""
 
@@ -53,6 +74,7 @@ class Packing:
     degrees: float = 0
     pressure: float = P0
     young: float = 10  # GPa
+    way: str = ""  # of WAYS
 
     @property
     def density(self):
@@ -61,23 +83,41 @@ class Packing:
     @property
     def limits(self):
         """By which its relative density is meant."""
-        return OWN_LIMITS.get(self.grains, PAPER_LIMITS)
+        return CELL_LIMITS if WAYS[self.way].cell else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
 
     @property
     def label(self):
         more = [self.density, f"{self.pressure:g} kPa"]
         more += [f"E {self.young:g} GPa"] if self.young != 10 else []
+        more += [self.way] if self.way else []
         return ", ".join(more)
 
-    def lines(self):
-        slowly = '\ncompaction_rate = "10 1/s"' if self.young < 1 else ""  # at 30 1/s some soft packings explode
-        if self.relative_density:
+    def settings(self):
+        """Of the scene: how it is made."""
+        way = WAYS[self.way]
+        lines = [f'domain = "{"periodic-cell" if way.cell else "rigid-box"}"',
+                 f'pressure = "{way.pressure or self.pressure:g} kPa"']
+        if self.degrees:
+            lines.append(f'preparation_friction = "{self.degrees:g} deg"')
+        else:
             e_min, e_max = self.limits
             # a search costs more than a test, and small boxes scatter; the loosest give way when friction is raised
             tolerance = 0.01 if self.grains > 2000 else 0.03 if self.relative_density > 0.25 else 0.10
-            return (f"relative_density = {self.relative_density}\ne_min = {e_min}\ne_max = {e_max}\n"
-                    f"density_tolerance = {tolerance}{slowly}")
-        return f'preparation_friction = "{self.degrees:g} deg"'
+            lines += [f"relative_density = {self.relative_density}", f"e_min = {e_min}", f"e_max = {e_max}",
+                      f"density_tolerance = {tolerance}"]
+        lines += ['compaction_rate = "10 1/s"'] if self.young < 1 else []  # at 30 1/s some soft packings explode
+        lines += [way.specimen] if way.specimen else []
+        return {"grains": self.grains, "edge": 10 * (self.grains / 10000) ** (1 / 3), "seed": self.seed,
+                "sizes": f"\n{way.sizes}" if way.sizes else "", "young": self.young,
+                "friction": self.degrees if way.at_once else FRICTION,
+                "specimen": "\n".join(lines)}
+
+    def stages(self):
+        """With which its making ends, as stages of a test."""
+        way = WAYS[self.way]
+        if way.at_once:
+            return [f'[[stage]]\nkind = "friction"\nfriction = "{FRICTION} deg"\n']
+        return [f'[[stage]]\nkind = "compress"\npressure = "{self.pressure:g} kPa"\n'] if way.pressure else []
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,6 +129,7 @@ class Run:
     strain: float = 0.05
     ratio: float = PAPER_RATIO  # q_amp/(2 p0')
     slow: bool = False
+    max_cycles: int = 100
 
     @property
     def seed(self):
@@ -104,7 +145,8 @@ class Run:
         how += f"_{100 * self.strain:g}%" if self.one_way else ""
         how += "_slow" if self.slow else ""
         p = self.packing
-        return f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}".replace(", ", "_").replace(" ", "")
+        name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
+        return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
 
     @property
     def one_way(self):
@@ -114,13 +156,12 @@ class Run:
     def looks_behind_onset(self):
         """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others
         only the cycles to liquefaction are asked."""
-        return self.ratio == PAPER_RATIO and self.packing.pressure == P0
+        return self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
 
     def scene(self):
         p = self.packing
         large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
-        return SCENE.format(title=self.name, grains=p.grains, edge=10 * (p.grains / 10000) ** (1 / 3), seed=p.seed,
-                            young=p.young, pressure=p.pressure, density=p.lines(),
+        return SCENE.format(title=self.name, **p.settings(),
                             motion="damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1",
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 
@@ -130,9 +171,10 @@ class Run:
         if self.kind == "cyclic":
             amplitude = 2 * self.ratio * self.packing.pressure
             after = AFTER_ONSET if self.looks_behind_onset else 0
-            until = f"cycles = {MAX_CYCLES}, reversals_after_liquefaction = {after}, strain = 0.15"
+            until = f"cycles = {self.max_cycles}, reversals_after_liquefaction = {after}, strain = 0.15"
             drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
-            return (f'[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "{amplitude:g} kPa"\n'
+            return (f'{"".join(self.packing.stages())}[[stage]]\nkind = "undrained-cyclic"\n'
+                    f'deviator_amplitude = "{amplitude:g} kPa"\n'
                     f"until = {{ {until} }}\n{drained}")
         kind = "drained" if self.kind == "drained" else "undrained-monotonic"
         direction = "extension" if self.kind == "extension" else "compression"
@@ -152,15 +194,21 @@ class Run:
         return 1.2e-4 * steps * self.packing.grains / 2000
 
 
+def most_cycles(whole):
+    return 100 if whole else 50
+
+
 def figure_1(grains, seeds, whole):
     """Monotonic tests at the three densities of the paper; the dense one with softer contacts, too."""
     runs = []
     for seed in seeds:
         for density in PAPER:
             for kind in ("compression", "extension"):
-                strain = 0.20 if density == PAPER[0] else 0.05
+                strain = (0.20 if whole else 0.10) if density == PAPER[0] else (0.05 if whole else 0.03)
                 runs.append(Run(kind, Packing(grains, seed, density), strain))
-        runs += [Run("compression", Packing(grains, seed, PAPER[2], young=young), 0.05) for young in (1, 0.1)]
+        if whole or seed == seeds[0]:
+            runs += [Run("compression", Packing(grains, seed, PAPER[2], young=young), 0.05 if whole else 0.03)
+                     for young in (1, 0.1)]
     if whole:
         runs += [Run("compression", Packing(grains, seeds[0], density), 0.03, slow=True) for density in PAPER]
     return runs
@@ -173,22 +221,37 @@ def drained(grains, seeds, whole):
 
 def cyclic(grains, seeds, whole):
     """Figures 2 to 4: the density of the paper with two more seeds, and a row of preparations, in boxes."""
-    runs = [Run("cyclic", Packing(grains, seed, PAPER[1])) for seed in range(1, len(seeds) + 3)]
-    return runs + [Run("cyclic", Packing(grains, seed, degrees=d)) for seed in seeds
-                   for d in PREPARATIONS if whole or d % 2 or d == 10]
+    packings = [Packing(grains, seed, PAPER[1]) for seed in range(1, len(seeds) + 3)]
+    packings += [Packing(grains, seed, degrees=d) for seed in seeds for d in PREPARATIONS
+                 if whole or d % 2 or d == 10]
+    return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
 
 
 def resistance(grains, seeds, whole):
-    """Densities at 200 kPa, pressures at 9 deg; or all densities at all pressures."""
-    states = [(d, p) for d in RESISTANCE for p in PRESSURES if whole or d == RESISTANCE[1] or p == P0]
-    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio)
-            for seed in seeds for d, p in states for ratio in RATIOS if whole or ratio > RATIOS[0]]
+    """All densities at all pressures."""
+    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio, max_cycles=most_cycles(whole))
+            for seed in seeds for d in RESISTANCE for p in PRESSURES for ratio in RATIOS]
 
 
-PARTS = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained, "resistance": resistance}
+def critical(grains, seeds, _):
+    """Loose packings at three pressures, and a denser one that has to end on the same line."""
+    loose = [Run("drained", Packing(grains, seed, degrees=LOOSE, pressure=pressure), 0.30)
+             for seed in seeds for pressure in CRITICAL]
+    return loose + [Run("drained", Packing(grains, seed, PAPER[1]), 0.40) for seed in seeds]
 
 
-def runs_of(grains, n_seeds, whole=False, parts=tuple(PARTS)):
+def ways(grains, seeds, whole):
+    """Specimens of the density of the paper, made in other ways."""
+    packings = [Packing(grains, seed, degrees=5, way=name) if way.at_once else
+                Packing(grains, seed, PAPER[1], way=name) for seed in seeds for name, way in WAYS.items()]
+    return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
+
+
+FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained}
+PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways}
+
+
+def runs_of(grains, n_seeds, whole=False, parts=tuple(FIGURES)):
     """All runs, each once, specimens first. Not the whole: fewer states, for half an hour."""
     tests = list(dict.fromkeys(run for part in parts for run in PARTS[part](grains, range(1, n_seeds + 1), whole)))
     packings = list(dict.fromkeys(run.packing for run in tests))

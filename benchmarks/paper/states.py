@@ -108,9 +108,11 @@ def largest_anisotropy(history, rows):
 
 
 def strain_mean(history, column, rows):
-    """Mean by the strain travelled."""
-    weights = np.abs(np.gradient(history.eps_y[rows])) + 1e-15
-    return np.average(getattr(history, column)[rows], weights=weights)
+    """Mean by the strain travelled; not a number of a test that ends at the onset."""
+    strain = history.eps_y[rows]
+    if len(strain) < 2:
+        return np.nan
+    return np.average(getattr(history, column)[rows], weights=np.abs(np.gradient(strain)) + 1e-15)
 
 
 def half_cycles(history):

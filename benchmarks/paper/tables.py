@@ -26,13 +26,15 @@ def relative_density(e, limits):
 
 
 def history_of(run, folder):
-    """The history; that of a cyclic test without its last stage, which drains the specimen, and with its volumetric
-    strain, `drained_strain`."""
+    """The history; that of a cyclic test without the stages that make and drain the specimen, with the volumetric
+    strain of the latter, `drained_strain`."""
     history = paths.History(folder)
     if run.kind == "cyclic":
-        history.drained_strain = (history.e[0] - history.e[-1]) / (1 + history.e[0])
         history.IR_walls = states.redundancy_with_walls(history, run.packing.grains)
-        rows = history.stage == history.stage[0]
+        rows = history.stage == len(run.packing.stages())
+        begin = history.e[rows][0]
+        history.drained_strain = (begin - history.e[-1]) / (1 + begin)
+        history.p0 = history.p[rows][0]
         for name, column in vars(history).items():
             if isinstance(column, np.ndarray):
                 setattr(history, name, column[rows])
