@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
-drained tests beside the laboratory, resistance curves.
+drained tests beside the laboratory. And what they leave open: resistance curves, critical states, specimens made in
+other ways, tests run at the usual rates.
 
-    paper.py                       2,000 grains, three seeds; tables and figures in results/paper
-    paper.py --grains 10000 --whole --parts monotonic cyclic drained      as many grains as the paper's
-    paper.py --whole --parts resistance                                   three densities at three pressures
+    paper.py                       2,000 grains, three seeds; tables and figures in results/paper/tables
+    paper.py --whole               the same to larger strains and over more states
+    paper.py --whole --parts resistance critical ways rates               what the figures leave open
     paper.py --dry-run             the number of runs and their estimated time
     paper.py --figures FOLDER      draws the figures of a folder of tables anew
 
@@ -15,7 +16,7 @@ import argparse
 import pathlib
 import sys
 
-from paper import figures, plan, tables
+from paper import claims, figures, plan, tables
 from speed_error import runner
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -26,8 +27,9 @@ def main():
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=3, help="specimens of each kind; two more at D_r = 0.64")
     runner.add_arguments(parser, ROOT, "paper")
-    parser.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.PARTS), help="default: all")
-    parser.add_argument("--whole", action="store_true", help="all states, not what half an hour allows")
+    parser.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.FIGURES),
+                        help=f"default: {' '.join(plan.FIGURES)}")
+    parser.add_argument("--whole", action="store_true", help="all states, not what twenty minutes allow")
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
     parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
     options = parser.parse_args()
@@ -43,6 +45,8 @@ def main():
     for name, rows in tables.Results(store, runs).tables().items():
         if rows:
             tables.write_csv(folder / f"{name}.csv", rows)
+        if name == "claims":
+            (folder / "claims.md").write_text(claims.markdown(rows), encoding="utf-8")
     figures.draw(folder)
     return 0 if complete else 1
 

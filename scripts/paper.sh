@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The tests of the paper as ensembles, with the release build of scripts/demo.sh or test.sh.
 #
-#   scripts/paper.sh            2,000 grains, three seeds: half an hour on two cores
-#   scripts/paper.sh --whole    10,000 grains as in the paper, and resistance curves of 2,000 at every density and
-#                               pressure: some hours; interrupted, it goes on where it stopped
+#   scripts/paper.sh            its figures with 2,000 grains and three seeds: twenty minutes on two cores
+#   scripts/paper.sh --whole    with 10,000 grains as in the paper (three hours); then, with 2,000, resistance curves,
+#                               critical states, specimens made in other ways, usual rates (an hour)
 #
-# Further arguments go to benchmarks/paper.py. Tables and figures are left in results/paper_*/tables.
+# Interrupted, the same command goes on where it stopped. Further arguments go to benchmarks/paper.py. Tables and figures
+# are left in results/paper_*/tables.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -14,8 +15,8 @@ paper() { /usr/bin/python3 benchmarks/paper.py "$@"; }
 
 if [[ "${1:-}" == --whole ]]; then
   shift
-  paper --grains 10000 --whole --parts monotonic cyclic drained --work results/paper_10000 "$@"
-  paper --whole --parts resistance --work results/paper_resistance "$@"
+  paper --grains 10000 --whole --work results/paper_10000 "$@"
+  paper --whole --parts resistance critical ways rates --work results/paper_more "$@"
 else
   paper --work results/paper_2000 "$@"
 fi

@@ -21,6 +21,7 @@ class Claim:
     values: object
     expected: float | None = None
     unit: str = ""
+    why: str = ""  # the cause of what differs, as far as it is known
 
 
 def verdict(claim, values):
@@ -134,6 +135,8 @@ NO_TWIST = "I_R at onset, without twisting"
 MONOTONIC = (
     Claim("D_r = 0.30: p' falls before it rises (compression)", contracts(0.30)),
     Claim("D_r = 0.30: q at the instability state (laboratory)", of_loose("instability", "q (kPa)"), 77.9, "kPa"),
+    Claim("D_r = 0.30: least p' (laboratory)", of_loose("least p'", "p' (kPa)"), 46.4, "kPa"),
+    Claim("D_r = 0.30: least p' in extension (laboratory)", of_loose("least p'", "p' (kPa)", "extension"), 7.9, "kPa"),
     Claim("D_r = 0.30: q/p' at the least p' (laboratory)", of_loose("least p'", "q/p'"), 61.6 / 46.4),
     Claim("D_r = 0.30: q/p' of the steady state, compression (laboratory)", of_loose("end", "q/p'"), 1.335),
     Claim("D_r = 0.30: q/p' of the steady state, extension (laboratory)", of_loose("end", "q/p'", "extension"), 0.924),
@@ -193,3 +196,18 @@ def table(tables):
                      "unit": claim.unit if claim.expected is not None else "share of tests", "ours": mean,
                      "standard error": error, "n": n, "verdict": verdict(claim, values)})
     return rows
+
+
+def markdown(rows):
+    """The table for people, with the causes."""
+    whys = {claim.text: claim.why for claim in MONOTONIC + CYCLIC}
+    lines = ["| claim | paper | ours | n | verdict | why |", "|---|---|---|---|---|---|"]
+    for row in rows:
+        number = row["unit"] != "share of tests"
+        unit = f" {row['unit']}" if number and row["unit"] else ""
+        paper = f"{row['paper']:.3g}{unit}" if number else "yes"
+        ours = f"{row['ours']:.3g} ± {row['standard error']:.2g}{unit}" if number else f"in {100 * row['ours']:.0f} %"
+        if not row["n"]:
+            ours = "–"
+        lines.append(f"| {row['claim']} | {paper} | {ours} | {row['n']} | {row['verdict']} | {whys[row['claim']]} |")
+    return "\n".join(lines) + "\n"

@@ -55,6 +55,14 @@ def legend_below(figure, panel, ncols, height):
     figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
 
 
+def plain_logarithm(panel):
+    """Of the horizontal axis, with ticks at 1, 2, 5, 10 written as numbers."""
+    panel.set_xscale("log")
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panel.xaxis.set_major_formatter("{x:g}")
+    panel.xaxis.set_minor_formatter(NullFormatter())
+
+
 def band(panel, x, mean, deviation, colour, label=None):
     panel.plot(x, mean, color=colour, linewidth=1.1, label=label)
     panel.fill_between(x, mean - np.nan_to_num(deviation), mean + np.nan_to_num(deviation), color=colour, alpha=0.18,
@@ -172,7 +180,7 @@ def cycles(table, _):
         panel.plot([], [], marker, color=colour, markersize=4, label=text, mfc="none" if marker == "^" else colour)
     panel.plot([], [], "--", color=GREY, label="paper: 17")
     panel.plot([], [], ":", color=GREY, label="laboratory: 11")
-    panel.legend()
+    legend_below(figure, panel, 5, 0.07)
     high = max(1.0, np.nanmax(strains.dataLim.max)) if strains.lines else 1.0
     strains.plot([0, high], [0, high], color=GREY, linewidth=0.8)
     strains.set_xlabel(r"Largest $\varepsilon_1$ in compression after the onset (%)")
@@ -192,9 +200,9 @@ def phase_axis(axes, rows):
     for panel in axes:
         panel.axvline(1, color=RED, linewidth=0.9, linestyle=":")
         panel.set_xlim(0, rows["phase"][-1])
-    last = int(rows["phase"][-1])
+        last = int(rows["phase"][-1])
+        panel.set_xticks(range(last + 1), ["0", "onset", *[f"{k}" for k in range(1, last)]])
     axes[-1].set_xlabel("Share of the cycles to the onset; then whole half cycles, the first towards compression")
-    axes[-1].set_xticks(range(last + 1), ["0", "onset", *[f"{k}" for k in range(1, last)]])
 
 
 @of_table("cyclic_curves")
@@ -264,8 +272,7 @@ def drained(table, _):
             rows = table.where(specimen=f"D_r {density:.2f}, {pressure} kPa")
             for panel, name in zip(axes[:, column], ("q (kPa)", "eps_v (%)")):
                 if rows:
-                    band(panel, rows["|eps_1| (%)"], rows[name], rows[f"{name} s.d."], colour,
-                         f"$D_r$ = {density:.2f}")
+                    band(panel, rows["|eps_1| (%)"], rows[name], rows[f"{name} s.d."], colour)
             test = tests[names[column]]
             axes[0, column].plot(100 * test.strain, (test.axial - test.radial) / 1e3, "--", color=colour, linewidth=0.9)
             axes[1, column].plot(100 * test.strain, 100 * test.volume_strain, "--", color=colour, linewidth=0.9)
@@ -274,6 +281,8 @@ def drained(table, _):
         axes[1, column].set_xlim(0, 15)
     axes[0, 0].set_ylabel("Deviatoric stress $q$ (kPa)")
     axes[1, 0].set_ylabel(r"Volumetric strain $\varepsilon_v$ (%)")
+    for density, colour in zip(plan.LABORATORY, (RED, GREEN, BLUE)):
+        axes[0, 0].plot([], [], color=colour, label=f"$D_r$ = {density:.2f}")
     axes[0, 0].plot([], [], "--", color=GREY, label="laboratory (Wichtmann and Triantafyllidis 2016)")
     legend_below(figure, axes[0, 0], 4, 0.05)
     return figure
@@ -298,7 +307,7 @@ def resistance(table, folder):
                 cycles = np.nanquantile(rows["cycles"], (0, 1))
                 law = fit["CSR at 15 cycles"][0] * (cycles / REFERENCE)**-fit["b"][0]
                 panel.plot(cycles, law, color=colour, linewidth=0.9)
-        panel.set_xscale("log")
+        plain_logarithm(panel)
         panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
         if panel.lines:
             panel.legend()
@@ -312,18 +321,16 @@ def critical_states(table, folder):
     figure, ((line, drained_strain),) = panels(1, 2)
     for kind, marker, colour in (("compression", "o", BLUE), ("extension", "s", ORANGE), ("drained", "^", GREEN)):
         rows = table.where(test=kind)
-        far = rows["|eps_1| (%)"] > 9.9
-        line.plot(rows["p' (kPa)"][far], rows["e"][far], marker, color=colour, markersize=4, label=kind)
-        line.plot(rows["p' (kPa)"][~far], rows["e"][~far], marker, color=colour, markersize=3, mfc="none", alpha=0.6)
+        settled, others = (rows.where(critical=value) for value in (True, False))
+        line.plot(settled["p' (kPa)"], settled["e"], marker, color=colour, markersize=4)
+        line.plot(others["p' (kPa)"], others["e"], marker, color=colour, markersize=4, mfc="none", alpha=0.6,
+                  label=f"{kind}, end of the test")
     if "Gamma" in table.rows[0]:
-        p = np.quantile(table["p' (kPa)"], (0, 1))
+        p = np.quantile(table.where(critical=True)["p' (kPa)"], (0, 1))
         line.plot(p, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
                   label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
-    line.plot([], [], "o", color=GREY, mfc="none", markersize=3, label="strained by less than 10 %: not fitted")
-    line.set_xscale("log")
-    line.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    line.xaxis.set_major_formatter("{x:g}")
-    line.xaxis.set_minor_formatter(NullFormatter())
+    line.plot([], [], "^", color=GREEN, markersize=4, label="critical: neither $e$ nor " + PRIME + " changes")
+    plain_logarithm(line)
     line.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
     line.set_ylabel("Void ratio $e$")
     line.legend()

@@ -64,6 +64,18 @@ WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
         "periodic cell": Way(cell=True)}
 
 
+# axial strain rates at which such tests are usually run, 1/s, with local damping alone: grains that nothing touches fly
+# on, and walls set the packing moving
+RATES = (0.5, 2, 10)
+RATE_DEGREES = 9  # preparation friction of their specimens
+AS_USUAL = """damping = 0.2
+contact_damping = 0
+free_grain_damping = 0
+carry_grains = false
+strain_rate = "{:g} 1/s"
+"""
+
+
 @dataclasses.dataclass(frozen=True)
 class Packing:
     """One specimen. Either density or friction says how dense it is."""
@@ -130,6 +142,7 @@ class Run:
     ratio: float = PAPER_RATIO  # q_amp/(2 p0')
     slow: bool = False
     max_cycles: int = 100
+    rate: float = 0  # of RATES; 0: the default's way
 
     @property
     def seed(self):
@@ -144,6 +157,7 @@ class Run:
         how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
         how += f"_{100 * self.strain:g}%" if self.one_way else ""
         how += "_slow" if self.slow else ""
+        how += f"_{self.rate:g}/s" if self.rate else ""
         p = self.packing
         name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
         return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
@@ -161,8 +175,9 @@ class Run:
     def scene(self):
         p = self.packing
         large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
-        return SCENE.format(title=self.name, **p.settings(),
-                            motion="damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1",
+        motion = "damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1"
+        motion = AS_USUAL.format(self.rate) if self.rate else motion
+        return SCENE.format(title=self.name, **p.settings(), motion=motion,
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 
     def stages(self):
@@ -247,8 +262,14 @@ def ways(grains, seeds, whole):
     return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
 
 
+def rates(grains, seeds, whole):
+    """The test of the paper as it is usually run, on specimens that liquefy in some tens of cycles."""
+    return [Run("cyclic", Packing(grains, seed, degrees=RATE_DEGREES), max_cycles=most_cycles(whole), rate=rate)
+            for seed in seeds for rate in (0, *RATES)]
+
+
 FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained}
-PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways}
+PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "rates": rates}
 
 
 def runs_of(grains, n_seeds, whole=False, parts=tuple(FIGURES)):

@@ -5,6 +5,7 @@ import numpy as np
 from paper import plan
 
 REFERENCE = 15  # cycles: a magnitude 7.5 earthquake
+SETTLED_E, SETTLED_P = 0.003, 0.1  # changes of e and ln p' over a tenth of the strain below which an end is critical
 
 
 def power_law(tests):
@@ -71,22 +72,23 @@ def curves(cyclic_tests):
 
 
 def critical_states(tests):
-    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain; the line
-    e = Gamma - lambda ln(p'/kPa) fitted to those strained by 10 % or more; and the state parameter
-    psi = e - (Gamma - lambda ln p0') of the specimens. How far these ends are from critical, the change over the last
-    tenth of the strain says."""
+    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain. Those that hardly
+    changed over the last tenth count as critical; the line e = Gamma - lambda ln(p'/kPa) is fitted to them, and gives
+    the state parameter psi = e - (Gamma - lambda ln p0') of all specimens."""
     rows = []
     for run, h in tests:
         if run.packing.young == 10 and not run.slow:
             strain = np.abs(h.eps_y)
             last = strain > 0.95 * strain[-1]
             before = (strain > 0.85 * strain[-1]) & (strain < 0.9 * strain[-1])
+            change_e = h.e[last].mean() - h.e[before].mean()
+            change_p = np.log(h.p[last].mean() / h.p[before].mean())
             rows.append({"test": run.kind, "specimen": run.packing.label, "seed": run.seed,
                          "|eps_1| (%)": 100 * strain[-1], "e": h.e[last].mean(), "p' (kPa)": h.p[last].mean() / 1e3,
                          "q/p'": (np.abs(h.q[last]) / h.p[last]).mean(), "p0' (kPa)": run.packing.pressure,
-                         "e0": h.e[0], "p' against a tenth of the strain before": h.p[last].mean() / h.p[before].mean(),
-                         "e less a tenth of the strain before": h.e[last].mean() - h.e[before].mean()})
-    line = state_line([row for row in rows if row["|eps_1| (%)"] > 9.9])
+                         "e0": h.e[0], "change of e": change_e, "change of ln p'": change_p,
+                         "critical": abs(change_e) < SETTLED_E and abs(change_p) < SETTLED_P})
+    line = state_line([row for row in rows if row["critical"]])
     for row in rows:
         if line:
             row["Gamma"], row["lambda"] = line

@@ -4,7 +4,7 @@ import csv
 
 import numpy as np
 
-from paper import claims, lab, plan, resistance, states
+from paper import claims, lab, plan, resistance, states, variants
 from speed_error import paths
 
 STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
@@ -47,7 +47,9 @@ class Results:
                       if run.kind != "prepare" and store.is_done(run)]
 
     def of(self, *kinds):
-        return [(run, history) for run, history in self.tests if run.kind in kinds]
+        """Tests of these kinds, but for the variants."""
+        return [(run, history) for run, history in self.tests
+                if run.kind in kinds and not (run.packing.way or run.rate)]
 
     def groups(self, *kinds):
         """Tests that differ in their seed alone."""
@@ -61,6 +63,7 @@ class Results:
                   "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
                   "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
                   "cyclic_curves": self.cyclic_curves(), "cyclic_path": self.cyclic_path(),
+                  "ways": variants.ways(self.tests), "rates": variants.rates(self.tests),
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
                   "critical_states": resistance.critical_states(self.of("compression", "extension", "drained"))}
         tables["resistance"] = resistance.curves(tables["cyclic_tests"])
@@ -129,16 +132,17 @@ class Results:
         return rows
 
     def cyclic_path(self):
-        """Of the test of the paper that takes nearest to its 17 cycles: every row up to the onset, then so many that
-        strain changes by 0.01 % at least between them."""
+        """Of the test of the paper that takes nearest to its 17 cycles; rows between which p' changes by 1 % of p0', q
+        by 4 kPa or strain by 0.01 %, and the reversals."""
         found = [(run, h) for run, h in self.of("cyclic") if run.looks_behind_onset and h.onset is not None]
         if not found:
             return []
         run, h = min(found, key=lambda test: abs(test[1].reversals[test[1].onset] / 2 - PAPER_CYCLES))
-        rows, last = [], -1.0
+        rows, last, reversals = [], np.full(3, -np.inf), set(h.reversal_rows)
         for k in range(len(h.p)):
-            if k <= h.onset or k in h.reversal_rows or abs(h.eps_y[k] - last) >= 1e-4:
-                last = h.eps_y[k]
+            here = np.array([h.p[k] / (0.01 * h.p0), h.q[k] / 4e3, h.eps_y[k] / 1e-4])
+            if k in reversals or np.abs(here - last).max() >= 1:
+                last = here
                 rows.append({"specimen": run.packing.label, "seed": run.seed, "p' (kPa)": h.p[k] / 1e3,
                              "q (kPa)": h.q[k] / 1e3, "eps_1 (%)": 100 * h.eps_y[k]})
         return rows
