@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
 drained tests beside the laboratory. And what they leave open: resistance curves, critical states, specimens made in
-other ways, tests run at the usual rates.
+other ways, slower tests and usual ones.
 
     paper.py                       2,000 grains, three seeds; tables and figures in results/paper/tables
     paper.py --whole               the same to larger strains and over more states
-    paper.py --whole --parts resistance critical ways rates               what the figures leave open
+    paper.py --whole --parts resistance critical ways paces               what the figures leave open
     paper.py --dry-run             the number of runs and their estimated time
     paper.py --figures FOLDER      draws the figures of a folder of tables anew
 
@@ -16,9 +16,10 @@ import argparse
 import pathlib
 import sys
 
-from paper import claims, figures, plan, tables
+from paper import claims, figures, plan, tables, variants
 from speed_error import runner
 
+MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -45,8 +46,8 @@ def main():
     for name, rows in tables.Results(store, runs).tables().items():
         if rows:
             tables.write_csv(folder / f"{name}.csv", rows)
-        if name == "claims":
-            (folder / "claims.md").write_text(claims.markdown(rows), encoding="utf-8")
+        if rows and name in MARKDOWN:
+            (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
     figures.draw(folder)
     return 0 if complete else 1
 

@@ -4,7 +4,7 @@
 #
 #   scripts/paper.sh            its figures with 2,000 grains and three seeds: twenty minutes on two cores
 #   scripts/paper.sh --whole    with 10,000 grains as in the paper (three hours); then, with 2,000, resistance curves,
-#                               critical states, specimens made in other ways, usual rates (an hour)
+#                               critical states, specimens made in other ways, slower tests (two hours)
 #
 # Interrupted, the same command goes on where it stopped. Further arguments go to benchmarks/paper.py. Tables and figures
 # are left in results/paper_*/tables.
@@ -16,7 +16,7 @@ paper() { /usr/bin/python3 benchmarks/paper.py "$@"; }
 if [[ "${1:-}" == --whole ]]; then
   shift
   paper --grains 10000 --whole --work results/paper_10000 "$@"
-  paper --whole --parts resistance critical ways rates --work results/paper_more "$@"
+  paper --whole --parts resistance critical ways paces --work results/paper_more "$@"
 else
   paper --work results/paper_2000 "$@"
 fi

@@ -59,6 +59,10 @@ class Tests:
         """Cyclic tests at the density of the paper."""
         return self.cyclic(f"D_r {plan.PAPER[1]:.2f}, {plan.P0} kPa")
 
+    def slow(self, column):
+        """Of the slowest tests of one preparation, at a hundredth of the default's rate."""
+        return [row[column] for row in self.tables.get("paces", ()) if row["variant"] == "hundredth"]
+
     def liquefied(self):
         """Cyclic tests at the amplitude of the paper that liquefied, of all preparations."""
         return [row for row in self.tables["cyclic_tests"] if row["q_amp/(2 p0')"] == plan.PAPER_RATIO
@@ -186,10 +190,22 @@ CYCLIC = (
           correlated("strain travelled (%)", "F_yx at its end", 0.5)))
 
 
+SLOW = tuple(Claim(f"{text}, at a hundredth of the rate", lambda t, column=column: t.slow(column), expected)
+             for text, column, expected in (
+                 ("I_R at the onset", "I_R at the onset", 1.0),
+                 ("I_R passes 1 at the onset: p'/p0' where it first does so", "p'/p0' where I_R falls below 1",
+                  states.LIQUEFIED),
+                 ("I_R as p'/p0' comes back above 0.01", "I_R as it last does", 1.3),
+                 ("Least I_R of a half cycle after the onset", "least I_R of a half cycle", 0.35),
+                 ("The sliding fraction is largest where p'/p0' passes 0.01", "p'/p0' at the most sliding",
+                  states.LIQUEFIED)))
+CLAIMS = MONOTONIC + CYCLIC + SLOW
+
+
 def table(tables):
     """Rows of claims.csv."""
     tests, rows = Tests(tables), []
-    for claim in MONOTONIC + CYCLIC:
+    for claim in CLAIMS:
         values = [v for v in claim.values(tests) if np.isfinite(v)]
         mean, _, error, n = paths.ensemble(values)
         rows.append({"claim": claim.text, "paper": "" if claim.expected is None else claim.expected,
@@ -200,7 +216,7 @@ def table(tables):
 
 def markdown(rows):
     """The table for people, with the causes."""
-    whys = {claim.text: claim.why for claim in MONOTONIC + CYCLIC}
+    whys = {claim.text: claim.why for claim in CLAIMS}
     lines = ["| claim | paper | ours | n | verdict | why |", "|---|---|---|---|---|---|"]
     for row in rows:
         number = row["unit"] != "share of tests"

@@ -28,8 +28,12 @@ class Table:
 
     def where(self, **conditions):
         """Rows whose columns have these values."""
-        table = object.__new__(Table)
-        table.rows = [row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())]
+        return self.of([row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())])
+
+    @classmethod
+    def of(cls, rows):
+        table = object.__new__(cls)
+        table.rows = rows
         return table
 
     def values(self, name):
@@ -309,7 +313,7 @@ def resistance(table, folder):
                 panel.plot(cycles, law, color=colour, linewidth=0.9)
         plain_logarithm(panel)
         panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
-        if panel.lines:
+        if panel.get_legend_handles_labels()[0]:
             panel.legend()
     row[0].set_ylabel(r"$q_\mathrm{amp}/(2 p_0^\prime)$")
     return figure
@@ -319,24 +323,27 @@ def resistance(table, folder):
 def critical_states(table, folder):
     """Ends of monotonic tests with the line through them; strain of liquefied specimens that drain."""
     figure, ((line, drained_strain),) = panels(1, 2)
-    for kind, marker, colour in (("compression", "o", BLUE), ("extension", "s", ORANGE), ("drained", "^", GREEN)):
-        rows = table.where(test=kind)
-        settled, others = (rows.where(critical=value) for value in (True, False))
-        line.plot(settled["p' (kPa)"], settled["e"], marker, color=colour, markersize=4)
-        line.plot(others["p' (kPa)"], others["e"], marker, color=colour, markersize=4, mfc="none", alpha=0.6,
-                  label=f"{kind}, end of the test")
-    if "Gamma" in table.rows[0]:
-        p = np.quantile(table.where(critical=True)["p' (kPa)"], (0, 1))
+    for kind, walls, marker, colour, label in (
+            ("compression", True, "o", BLUE, "undrained compression, box"),
+            ("extension", True, "s", ORANGE, "undrained extension, box"),
+            ("drained", True, "^", GREEN, "drained, box"), ("drained", False, "D", RED, "drained, periodic cell")):
+        rows = table.where(test=kind, walls=walls)
+        if rows:
+            line.plot(rows["p' (kPa)"], rows["e"], marker, color=colour, markersize=4, mfc="none" if walls else colour,
+                      label=label)
+    table = Table.of([row for row in table.rows if row.get("Gamma")]) if "Gamma" in table.rows[0] else None
+    if table:
+        p = np.quantile(table["p' (kPa)"], (0, 1))
         line.plot(p, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
                   label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
-    line.plot([], [], "^", color=GREEN, markersize=4, label="critical: neither $e$ nor " + PRIME + " changes")
     plain_logarithm(line)
     line.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
     line.set_ylabel("Void ratio $e$")
-    line.legend()
+    legend_below(figure, line, 3, 0.12)
     if (folder / "reconsolidation.csv").exists():
         rows = Table(folder / "reconsolidation.csv")
-        for label, colour in zip(rows.values("specimen"), (RED, BLUE, ORANGE, GREEN, GREY)):
+        labels = sorted(rows.values("specimen"), key=lambda label: float(label.split()[0]))
+        for label, colour in zip(labels, (RED, BLUE, ORANGE, GREEN, GREY)):
             part = rows.where(specimen=label)
             drained_strain.plot(part["largest gamma (%)"], part["eps_v (%)"], "o", color=colour, markersize=4,
                                 label=label)

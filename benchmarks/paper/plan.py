@@ -16,7 +16,7 @@ PREPARATIONS = range(5, 12)  # friction, degrees
 RATIOS = (0.10, 0.15, 0.20, 0.25)  # q_amp/(2 p0')
 RESISTANCE = (8, 9, 10)  # preparation friction, degrees
 PRESSURES = (50, 200, 400)  # kPa
-CRITICAL = (50, 200, 800)  # kPa: loose packings drained to their critical state
+CRITICAL = (50, 200, 800)  # kPa: loose packings sheared to their critical state
 LOOSE = 11  # preparation friction of those, degrees
 AFTER_ONSET = 8  # reversals: four cycles
 FRICTION = 18  # degrees
@@ -56,24 +56,35 @@ class Way:
     at_once: bool = False  # friction is raised as the test begins, without a new balance
 
 
+NO_WALLS = "periodic cell"
 WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
         "compacted at 100/s": Way('compaction_rate = "100 1/s"'), "damping 0.05": Way("damping = 0.05"),
         "damping 0.7": Way("damping = 0.7"), "friction raised at 20 kPa": Way(pressure=20),
         "friction raised as the test begins": Way(at_once=True),
         "sizes of 10 to 90 %": Way(sizes="truncate = [10, 90]"), "thin cloud": Way(sizes="solid_fraction = 0.2"),
-        "periodic cell": Way(cell=True)}
+        NO_WALLS: Way(cell=True)}
 
 
-# axial strain rates at which such tests are usually run, 1/s, with local damping alone: grains that nothing touches fly
-# on, and walls set the packing moving
-RATES = (2, 10)
-RATE_DEGREES = 9  # preparation friction of their specimens
-AS_USUAL = """damping = 0.2
+@dataclasses.dataclass(frozen=True)
+class Pace:
+    """How fast a cyclic test is run."""
+
+    motion: str  # lines of [motion]
+    after: int = AFTER_ONSET  # reversals
+
+
+# as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
+USUAL = """damping = 0.2
 contact_damping = 0
 free_grain_damping = 0
 carry_grains = false
 strain_rate = "{:g} 1/s"
 """
+PACES = {"": Pace("damping = 0.1"),
+         "tenth": Pace("damping = 0.1\ninertial_number = 7e-5\nload_per_wave = 0.01"),
+         "hundredth": Pace("damping = 0.1\ninertial_number = 7e-6\nload_per_wave = 0.001", after=3),
+         "2/s": Pace(USUAL.format(2)), "10/s": Pace(USUAL.format(10))}
+PACE_DEGREES = 9  # preparation friction of their specimens
 
 
 @dataclasses.dataclass(frozen=True)
@@ -142,7 +153,7 @@ class Run:
     ratio: float = PAPER_RATIO  # q_amp/(2 p0')
     slow: bool = False
     max_cycles: int = 100
-    rate: float = 0  # of RATES; 0: the default's way
+    pace: str = ""  # of PACES
 
     @property
     def seed(self):
@@ -157,7 +168,7 @@ class Run:
         how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
         how += f"_{100 * self.strain:g}%" if self.one_way else ""
         how += "_slow" if self.slow else ""
-        how += f"_{self.rate:g}/s" if self.rate else ""
+        how += f"_{self.pace}" if self.pace else ""
         p = self.packing
         name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
         return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
@@ -175,8 +186,7 @@ class Run:
     def scene(self):
         p = self.packing
         large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
-        motion = "damping = 0.02\nload_per_wave = 0.02" if large else "damping = 0.1"
-        motion = AS_USUAL.format(self.rate) if self.rate else motion
+        motion = "damping = 0.02\nload_per_wave = 0.02" if large else PACES[self.pace].motion
         return SCENE.format(title=self.name, **p.settings(), motion=motion,
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 
@@ -185,7 +195,7 @@ class Run:
             return ""
         if self.kind == "cyclic":
             amplitude = 2 * self.ratio * self.packing.pressure
-            after = AFTER_ONSET if self.looks_behind_onset else 0
+            after = PACES[self.pace].after if self.looks_behind_onset else 0
             until = f"cycles = {self.max_cycles}, reversals_after_liquefaction = {after}, strain = 0.15"
             drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
             return (f'{"".join(self.packing.stages())}[[stage]]\nkind = "undrained-cyclic"\n'
@@ -249,10 +259,12 @@ def resistance(grains, seeds, whole):
 
 
 def critical(grains, seeds, _):
-    """Loose packings at three pressures, and a denser one that has to end on the same line."""
-    loose = [Run("drained", Packing(grains, seed, degrees=LOOSE, pressure=pressure), 0.30)
-             for seed in seeds for pressure in CRITICAL]
-    return loose + [Run("drained", Packing(grains, seed, PAPER[1]), 0.40) for seed in seeds]
+    """Loose packings at three pressures, with and without walls, and a looser and a denser one that have to end on the
+    same line."""
+    packings = [Packing(grains, seed, degrees=degrees, pressure=pressure, way=way) for seed in seeds
+                for pressure in CRITICAL for degrees, way in ((LOOSE, ""), (LOOSE, NO_WALLS), (FRICTION, NO_WALLS))]
+    packings += [Packing(grains, seed, PAPER[1], way=NO_WALLS) for seed in seeds]
+    return [Run("drained", packing, 0.30) for packing in packings]
 
 
 def ways(grains, seeds, whole):
@@ -262,14 +274,14 @@ def ways(grains, seeds, whole):
     return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
 
 
-def rates(grains, seeds, whole):
-    """The test of the paper as it is usually run, on specimens that liquefy in some tens of cycles."""
-    return [Run("cyclic", Packing(grains, seed, degrees=RATE_DEGREES), max_cycles=most_cycles(whole), rate=rate)
-            for seed in seeds for rate in (0, *RATES)]
+def paces(grains, seeds, whole):
+    """The test of the paper slower, and as it is usually run, on specimens that liquefy in some tens of cycles."""
+    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), max_cycles=most_cycles(whole), pace=pace)
+            for seed in seeds for pace in PACES]
 
 
 FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained}
-PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "rates": rates}
+PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "paces": paces}
 
 
 def runs_of(grains, n_seeds, whole=False, parts=tuple(FIGURES)):

@@ -4,8 +4,8 @@ import numpy as np
 
 from paper import plan
 
+MONOTONIC = ("compression", "extension", "drained")
 REFERENCE = 15  # cycles: a magnitude 7.5 earthquake
-SETTLED_E, SETTLED_P = 0.003, 0.1  # changes of e and ln p' over a tenth of the strain below which an end is critical
 
 
 def power_law(tests):
@@ -72,33 +72,33 @@ def curves(cyclic_tests):
 
 
 def critical_states(tests):
-    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain. Those that hardly
-    changed over the last tenth count as critical; the line e = Gamma - lambda ln(p'/kPa) is fitted to them, and gives
-    the state parameter psi = e - (Gamma - lambda ln p0') of all specimens."""
+    """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain, and how far e
+    and ln p' changed over the last tenth. The line e = Gamma - lambda ln(p'/kPa) is fitted to the drained tests of periodic
+    cells, because walls loosen a box the more the flatter it gets; it gives the state parameter
+    psi = e - (Gamma - lambda ln p0') of the cells."""
     rows = []
     for run, h in tests:
-        if run.packing.young == 10 and not run.slow:
+        if run.kind in MONOTONIC and run.packing.young == 10 and not run.slow:
             strain = np.abs(h.eps_y)
             last = strain > 0.95 * strain[-1]
             before = (strain > 0.85 * strain[-1]) & (strain < 0.9 * strain[-1])
-            change_e = h.e[last].mean() - h.e[before].mean()
-            change_p = np.log(h.p[last].mean() / h.p[before].mean())
-            rows.append({"test": run.kind, "specimen": run.packing.label, "seed": run.seed,
+            rows.append({"test": run.kind, "walls": run.packing.way != plan.NO_WALLS, "specimen": run.packing.label,
+                         "seed": run.seed, "p0' (kPa)": run.packing.pressure, "e0": h.e[0],
                          "|eps_1| (%)": 100 * strain[-1], "e": h.e[last].mean(), "p' (kPa)": h.p[last].mean() / 1e3,
-                         "q/p'": (np.abs(h.q[last]) / h.p[last]).mean(), "p0' (kPa)": run.packing.pressure,
-                         "e0": h.e[0], "change of e": change_e, "change of ln p'": change_p,
-                         "critical": abs(change_e) < SETTLED_E and abs(change_p) < SETTLED_P})
-    line = state_line([row for row in rows if row["critical"]])
-    for row in rows:
-        if line:
-            row["Gamma"], row["lambda"] = line
-            row["state parameter at the start"] = row["e0"] - (line[0] - line[1] * np.log(row["p0' (kPa)"]))
+                         "q/p'": (np.abs(h.q[last]) / h.p[last]).mean(), "change of e": h.e[last].mean() -
+                         h.e[before].mean(), "change of ln p'": np.log(h.p[last].mean() / h.p[before].mean())})
+    cells = [row for row in rows if not row["walls"]]
+    line = with_error({row["seed"] for row in cells},
+                      lambda seeds: state_line([row for row in cells if row["seed"] in seeds])) if cells else None
+    for row in cells if line else ():
+        (row["Gamma"], row["lambda"]), (row["Gamma s.e."], row["lambda s.e."]) = line
+        row["state parameter at the start"] = row["e0"] - (row["Gamma"] - row["lambda"] * np.log(row["p0' (kPa)"]))
     return rows
 
 
 def state_line(rows):
-    """(Gamma, lambda), or nothing of fewer than three pressures."""
-    if len({round(row["p' (kPa)"]) for row in rows}) < 3:
+    """(Gamma, lambda), or nothing of fewer than three pressures before shearing."""
+    if len({row["p0' (kPa)"] for row in rows}) < 3:
         return None
     slope, gamma = np.polyfit(np.log([row["p' (kPa)"] for row in rows]), [row["e"] for row in rows], 1)
     return float(gamma), float(-slope)

@@ -49,7 +49,7 @@ class Results:
     def of(self, *kinds):
         """Tests of these kinds, but for the variants."""
         return [(run, history) for run, history in self.tests
-                if run.kind in kinds and not (run.packing.way or run.rate)]
+                if run.kind in kinds and not (run.packing.way or run.pace)]
 
     def groups(self, *kinds):
         """Tests that differ in their seed alone."""
@@ -63,9 +63,9 @@ class Results:
                   "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
                   "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
                   "cyclic_curves": self.cyclic_curves(), "cyclic_path": self.cyclic_path(),
-                  "ways": variants.ways(self.tests), "rates": variants.rates(self.tests),
+                  "ways": variants.ways(self.tests), "paces": variants.paces(self.tests),
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
-                  "critical_states": resistance.critical_states(self.of("compression", "extension", "drained"))}
+                  "critical_states": resistance.critical_states(self.tests)}
         tables["resistance"] = resistance.curves(tables["cyclic_tests"])
         if tables["undrained_states"] and tables["cyclic_tests"]:
             tables["claims"] = claims.table(tables)
