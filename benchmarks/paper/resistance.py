@@ -73,8 +73,8 @@ def curves(cyclic_tests):
 
 def critical_states(tests):
     """Ends of monotonic tests of the contacts of the paper, mean of the last twentieth of the strain, and how far e
-    and ln p' changed over the last tenth. The line e = Gamma - lambda ln(p'/kPa) is fitted to the drained tests of periodic
-    cells, because walls loosen a box the more the flatter it gets; it gives the state parameter
+    and ln p' changed over the last tenth. The line e = Gamma - lambda ln(p'/kPa) is fitted to the drained tests of
+    periodic cells, because walls loosen a box the more the flatter it gets; it gives the state parameter
     psi = e - (Gamma - lambda ln p0') of the cells."""
     rows = []
     for run, h in tests:
