@@ -53,6 +53,7 @@ class Way:
     sizes: str = ""  # a line of [grading]
     pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
     cell: bool = False  # no walls
+    own_limits: bool = True  # of the cell; else those of boxes define its density
     at_once: bool = False  # friction is raised as the test begins, without a new balance
 
 
@@ -62,7 +63,8 @@ WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
         "damping 0.7": Way("damping = 0.7"), "friction raised at 20 kPa": Way(pressure=20),
         "friction raised as the test begins": Way(at_once=True),
         "sizes of 10 to 90 %": Way(sizes="truncate = [10, 90]"), "thin cloud": Way(sizes="solid_fraction = 0.2"),
-        NO_WALLS: Way(cell=True)}
+        NO_WALLS: Way(cell=True),
+        "periodic cell, void ratio of the boxes": Way(cell=True, own_limits=False)}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -106,7 +108,8 @@ class Packing:
     @property
     def limits(self):
         """By which its relative density is meant."""
-        return CELL_LIMITS if WAYS[self.way].cell else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
+        way = WAYS[self.way]
+        return CELL_LIMITS if way.cell and way.own_limits else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
 
     @property
     def label(self):
