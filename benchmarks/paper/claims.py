@@ -52,8 +52,8 @@ class Tests:
                 if row["specimen"] == label and row["direction"] == direction and not row["slow"]]
 
     def cyclic(self, label):
-        return [row for row in self.tables["cyclic_tests"]
-                if row["specimen"] == label and row["q_amp/(2 p0')"] == plan.PAPER_RATIO]
+        return [row for row in self.tables["cyclic_tests"] if row["specimen"] == label
+                and row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["pace"] == "default"]
 
     def paper(self):
         """Cyclic tests at the density of the paper."""
@@ -64,17 +64,22 @@ class Tests:
         return [row[column] for row in self.tables.get("paces", ()) if row["variant"] == "hundredth"]
 
     def liquefied(self):
-        """Cyclic tests at the amplitude of the paper that liquefied, of all preparations."""
-        return [row for row in self.tables["cyclic_tests"] if row["q_amp/(2 p0')"] == plan.PAPER_RATIO
-                and row["p0' (kPa)"] == plan.P0 and np.isfinite(row["cycles"])]
+        """Cyclic tests at the amplitude of the paper that liquefied: the slow ones."""
+        return slowest([row for row in self.tables["cyclic_tests"] if row["q_amp/(2 p0')"] == plan.PAPER_RATIO
+                        and row["p0' (kPa)"] == plan.P0 and np.isfinite(row["cycles"])])
 
     def halves(self, least=1):
         """Half cycles after the onset of those tests, test by test, where there are so many."""
         tests = {}
-        for row in self.tables["half_cycles"]:
+        for row in slowest(self.tables["half_cycles"]):
             if row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["specimen"].endswith(f", {plan.P0} kPa"):
                 tests.setdefault((row["specimen"], row["seed"]), []).append(row)
         return [rows for rows in tests.values() if len(rows) >= least]
+
+
+def slowest(rows):
+    """Those of the slow pace, if there are any."""
+    return [row for row in rows if row["pace"] == plan.SLOW] or rows
 
 
 def of_loose(state, column, direction="compression"):

@@ -17,6 +17,7 @@ STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": 
          "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
 PRIME = r"$p^\prime$"
+PACE_NAMES = {"default": "rate of the default", plan.SLOW: "a tenth of the default's rate"}
 
 
 class Table:
@@ -164,6 +165,7 @@ def cycles(table, _):
     """Figure 2 as an ensemble: cycles to liquefaction against void ratio, at the amplitude of the paper."""
     figure, ((panel, strains),) = panels(1, 2)
     table = table.where(**{"p0' (kPa)": "200", "q_amp/(2 p0')": plan.PAPER_RATIO})
+    after, table = table, table.where(pace="default")
     for label in table.values("specimen"):
         rows = table.where(specimen=label)
         paper = label.startswith("D_r")
@@ -171,9 +173,6 @@ def cycles(table, _):
         number, applied = rows["cycles"], rows["cycles applied"]
         panel.plot(rows["e"], number, marker, color=colour, markersize=4)
         panel.plot(rows["e"][np.isnan(number)], applied[np.isnan(number)], "^", color=colour, markersize=5, mfc="none")
-        if "largest strain after, compression (%)" in rows.rows[0]:
-            strains.plot(rows["largest strain after, compression (%)"], rows["largest strain after, extension (%)"],
-                         marker, color=colour, markersize=4)
     panel.axhline(17, color=GREY, linewidth=0.9, linestyle="--")
     panel.axhline(11, color=GREY, linewidth=0.9, linestyle=":")
     panel.set_yscale("log")
@@ -185,7 +184,12 @@ def cycles(table, _):
     panel.plot([], [], "--", color=GREY, label="paper: 17")
     panel.plot([], [], ":", color=GREY, label="laboratory: 11")
     legend_below(figure, panel, 5, 0.07)
-    high = max(1.0, np.nanmax(strains.dataLim.max)) if strains.lines else 1.0
+    for pace, face in (("default", "none"), (plan.SLOW, BLUE)):
+        rows = after.where(pace=pace)
+        strains.plot(rows["largest strain after, compression (%)"], rows["largest strain after, extension (%)"], "o",
+                     color=BLUE, mfc=face, markersize=4, label=PACE_NAMES[pace])
+    strains.legend()
+    high = max(1.0, np.nanmax(strains.dataLim.max))
     strains.plot([0, high], [0, high], color=GREY, linewidth=0.8)
     strains.set_xlabel(r"Largest $\varepsilon_1$ in compression after the onset (%)")
     strains.set_ylabel(r"Largest $\varepsilon_1$ in extension after the onset (%)")
@@ -193,11 +197,17 @@ def cycles(table, _):
 
 
 def densest_liquefying(table):
-    """The preparation, by friction, with the most seeds that liquefy; the densest of those."""
+    """Rows of the slow tests, or of the preparation with the most seeds that liquefy; the densest of those."""
+    table = table.where(pace=plan.SLOW) or table
     labels = [label for label in table.values("specimen") if "deg" in label]
     most = max((table.where(specimen=label)["seeds"][0] for label in labels), default=0)
     fitting = [label for label in labels if table.where(specimen=label)["seeds"][0] == most]
-    return min(fitting, key=lambda label: float(label.split()[0]), default=None)
+    return table.where(specimen=min(fitting, key=lambda label: float(label.split()[0]), default=None))
+
+
+def title_of(rows):
+    return (f"{rows.rows[0]['specimen']}, {PACE_NAMES[rows.rows[0]['pace']]}, n = {rows['seeds'][0]:.0f} seeds: mean "
+            f"and standard deviation")
 
 
 def phase_axis(axes, rows):
@@ -212,10 +222,9 @@ def phase_axis(axes, rows):
 @of_table("cyclic_curves")
 def redundancy(table, _):
     """Figure 3: redundancy index and contact fractions, mean and standard deviation over seeds."""
-    label = densest_liquefying(table)
-    if label is None:
+    rows = densest_liquefying(table)
+    if not rows:
         return None
-    rows = table.where(specimen=label)
     figure, axes = panels(3, 1, height=6.2, sharex=True)
     index, ratio, fractions = axes[:, 0]
     bands(index, rows, zip(states.COUNTS, (BLUE, ORANGE, GREEN, GREY), states.COUNTS.values()))
@@ -232,17 +241,16 @@ def redundancy(table, _):
     fractions.set_ylim(0, 0.85)
     fractions.legend(ncols=3, loc="upper left")
     phase_axis(axes[:, 0], rows)
-    figure.suptitle(f"{label}, n = {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    figure.suptitle(title_of(rows), fontsize=9)
     return figure
 
 
 @of_table("cyclic_curves")
 def fabric(table, folder):
     """Figure 4: fabric and its anisotropy, and the anisotropy of a half cycle against its strain."""
-    label = densest_liquefying(table)
-    if label is None:
+    rows = densest_liquefying(table)
+    if not rows:
         return None
-    rows = table.where(specimen=label)
     figure, axes = panels(3, 1, height=6.6)
     normals, anisotropy, against = axes[:, 0]
     bands(normals, rows, (("Fyy", BLUE, "$F_{yy}$"), ("Fxx", ORANGE, "$F_{xx}$"), ("Fzz", GREEN, "$F_{zz}$")))
@@ -262,7 +270,7 @@ def fabric(table, folder):
     against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%), all preparations")
     against.set_ylabel("$|F_{[y-x]}|$ at its end")
     against.legend()
-    figure.suptitle(f"{label}, n = {rows['seeds'][0]:.0f} seeds: mean and standard deviation", fontsize=9)
+    figure.suptitle(title_of(rows), fontsize=9)
     return figure
 
 
@@ -362,8 +370,9 @@ def path(table, _):
     stress.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
     stress.set_ylabel("Deviatoric stress $q$ (kPa)")
     strain.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
-    figure.suptitle(f"{table.rows[0]['specimen']}, seed {table.rows[0]['seed']}: one specimen, the one of those that "
-                    f"liquefy whose cycles are nearest to 17", fontsize=9)
+    first = table.rows[0]
+    figure.suptitle(f"{first['specimen']}, seed {first['seed']}, {PACE_NAMES[first['pace']]}: one specimen, the one "
+                    f"whose cycles are nearest to 17", fontsize=9)
     return figure
 
 

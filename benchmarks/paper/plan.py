@@ -19,6 +19,7 @@ PRESSURES = (50, 200, 400)  # kPa
 CRITICAL = (50, 200, 800)  # kPa: loose packings sheared to their critical state
 LOOSE = 11  # preparation friction of those, degrees
 AFTER_ONSET = 8  # reversals: four cycles
+LARGE = 5000  # grains
 FRICTION = 18  # degrees
 
 SCENE = speed_plan.GRADING.replace("{seed}", "{seed}{sizes}") + speed_plan.CONTACT.replace(
@@ -71,21 +72,20 @@ WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
 class Pace:
     """How fast a cyclic test is run."""
 
-    motion: str  # lines of [motion]
-    after: int = AFTER_ONSET  # reversals
+    rates: str = ""  # lines of [motion]
+    damping: str = "damping = 0.1"  # with rates for 2,000 grains
+    large: str = "damping = 0.02\nload_per_wave = 0.02"  # and for 10,000 (docs/results/free_grains.md, other sizes)
 
 
 # as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
-USUAL = """damping = 0.2
-contact_damping = 0
-free_grain_damping = 0
-carry_grains = false
-strain_rate = "{:g} 1/s"
-"""
-PACES = {"": Pace("damping = 0.1"),
-         "tenth": Pace("damping = 0.1\ninertial_number = 7e-5\nload_per_wave = 0.01"),
-         "hundredth": Pace("damping = 0.1\ninertial_number = 7e-6\nload_per_wave = 0.001", after=3),
-         "2/s": Pace(USUAL.format(2)), "10/s": Pace(USUAL.format(10))}
+USUAL = "damping = 0.2\ncontact_damping = 0\nfree_grain_damping = 0\ncarry_grains = false"
+SLOW = "tenth"  # what happens after the onset needs it
+PACES = {"": Pace(),
+         SLOW: Pace("\ninertial_number = 7e-5\nload_per_wave = 0.01",
+                    large="damping = 0.02\nload_per_wave = 0.02\ninertial_number = 7e-5"),
+         "hundredth": Pace("\ninertial_number = 7e-6\nload_per_wave = 0.001"),
+         "2/s": Pace('\nstrain_rate = "2 1/s"\n', damping=USUAL),
+         "10/s": Pace('\nstrain_rate = "10 1/s"\n', damping=USUAL)}
 PACE_DEGREES = 9  # preparation friction of their specimens
 
 
@@ -157,6 +157,7 @@ class Run:
     slow: bool = False
     max_cycles: int = 100
     pace: str = ""  # of PACES
+    after: int = AFTER_ONSET  # reversals, of tests that look behind the onset
 
     @property
     def seed(self):
@@ -182,14 +183,15 @@ class Run:
 
     @property
     def looks_behind_onset(self):
-        """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others
-        only the cycles to liquefaction are asked."""
-        return self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
+        """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others,
+        and of large packings at the default's rate, only the cycles to liquefaction are asked."""
+        paper = self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
+        return paper and (self.pace != "" or self.packing.grains < LARGE)
 
     def scene(self):
         p = self.packing
-        large = p.grains >= 5000 and self.kind == "cyclic"  # docs/results/free_grains.md, other sizes
-        motion = "damping = 0.02\nload_per_wave = 0.02" if large else PACES[self.pace].motion
+        pace = PACES[self.pace]
+        motion = pace.large if p.grains >= LARGE and self.kind == "cyclic" else pace.damping + pace.rates
         return SCENE.format(title=self.name, **p.settings(), motion=motion,
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 
@@ -198,7 +200,7 @@ class Run:
             return ""
         if self.kind == "cyclic":
             amplitude = 2 * self.ratio * self.packing.pressure
-            after = PACES[self.pace].after if self.looks_behind_onset else 0
+            after = self.after if self.looks_behind_onset else 0
             until = f"cycles = {self.max_cycles}, reversals_after_liquefaction = {after}, strain = 0.15"
             drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
             return (f'{"".join(self.packing.stages())}[[stage]]\nkind = "undrained-cyclic"\n'
@@ -217,13 +219,14 @@ class Run:
         first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN
         fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01 * (10 if self.slow else 1)
         search = 1.5e5 if self.packing.relative_density else 5e4
-        cyclic = 5e5 if self.looks_behind_onset else 8e4
+        cyclic = 2.5e6 if self.pace == SLOW else 5e5 if self.looks_behind_onset else 8e4
         steps = {"prepare": search, "cyclic": cyclic}.get(self.kind, first + max(0, fast))
         return 1.2e-4 * steps * self.packing.grains / 2000
 
 
-def most_cycles(whole):
-    return 100 if whole else 50
+def ends(whole):
+    """When cyclic tests end."""
+    return {"max_cycles": 100 if whole else 50, "after": AFTER_ONSET if whole else AFTER_ONSET // 2}
 
 
 def figure_1(grains, seeds, whole):
@@ -248,16 +251,19 @@ def drained(grains, seeds, whole):
 
 
 def cyclic(grains, seeds, whole):
-    """Figures 2 to 4: the density of the paper with two more seeds, and a row of preparations, in boxes."""
+    """Figures 2 to 4: the density of the paper with two more seeds, and a row of preparations, in boxes; one of these
+    slowly, for what happens around and after the onset."""
     packings = [Packing(grains, seed, PAPER[1]) for seed in range(1, len(seeds) + 3)]
     packings += [Packing(grains, seed, degrees=d) for seed in seeds for d in PREPARATIONS
                  if whole or d % 2 or d == 10]
-    return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
+    slow = [Packing(grains, seed, degrees=PACE_DEGREES) for seed in (range(1, len(seeds) + 3) if whole else seeds)]
+    return ([Run("cyclic", packing, **ends(whole)) for packing in packings] +
+            [Run("cyclic", packing, pace=SLOW, **ends(whole)) for packing in slow])
 
 
 def resistance(grains, seeds, whole):
     """All densities at all pressures."""
-    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio, max_cycles=most_cycles(whole))
+    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio, **ends(whole))
             for seed in seeds for d in RESISTANCE for p in PRESSURES for ratio in RATIOS]
 
 
@@ -274,13 +280,13 @@ def ways(grains, seeds, whole):
     """Specimens of the density of the paper, made in other ways."""
     packings = [Packing(grains, seed, degrees=5, way=name) if way.at_once else
                 Packing(grains, seed, PAPER[1], way=name) for seed in seeds for name, way in WAYS.items()]
-    return [Run("cyclic", packing, max_cycles=most_cycles(whole)) for packing in packings]
+    return [Run("cyclic", packing, **ends(whole)) for packing in packings]
 
 
 def paces(grains, seeds, whole):
     """The test of the paper slower, and as it is usually run, on specimens that liquefy in some tens of cycles."""
-    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), max_cycles=most_cycles(whole), pace=pace)
-            for seed in seeds for pace in PACES]
+    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace,
+                **ends(whole) | ({"after": 3} if pace == "hundredth" else {})) for seed in seeds for pace in PACES]
 
 
 FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained}
