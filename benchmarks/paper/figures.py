@@ -191,8 +191,8 @@ def cycles(table, _):
     strains.legend()
     high = max(1.0, np.nanmax(strains.dataLim.max))
     strains.plot([0, high], [0, high], color=GREY, linewidth=0.8)
-    strains.set_xlabel(r"Largest $\varepsilon_1$ in compression after the onset (%)")
-    strains.set_ylabel(r"Largest $\varepsilon_1$ in extension after the onset (%)")
+    strains.set_xlabel(r"Largest $\varepsilon_1$ after the onset, compression (%)")
+    strains.set_ylabel("Largest $\\varepsilon_1$ after the onset,\nextension (%)")
     return figure
 
 
@@ -303,6 +303,7 @@ def drained(table, _):
 @of_table("cyclic_tests")
 def resistance(table, folder):
     """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
+    table = table.where(pace="default")
     fits = Table(folder / "resistance.csv") if (folder / "resistance.csv").exists() else None
     figure, (row,) = panels(1, 2, sharey=True)
     colours = (RED, GREEN, BLUE)
@@ -337,15 +338,15 @@ def critical_states(table, folder):
             ("drained", True, "^", GREEN, "drained, box"), ("drained", False, "D", RED, "drained, periodic cell")):
         rows = table.where(test=kind, walls=walls)
         if rows:
-            line.plot(rows["p' (kPa)"], rows["e"], marker, color=colour, markersize=4, mfc="none" if walls else colour,
-                      label=label)
+            line.plot(rows["p' (kPa)"] / 1e3, rows["e"], marker, color=colour, markersize=4,
+                      mfc="none" if walls else colour, label=label)
     table = Table.of([row for row in table.rows if row.get("Gamma")]) if "Gamma" in table.rows[0] else None
     if table:
         p = np.quantile(table["p' (kPa)"], (0, 1))
-        line.plot(p, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
+        line.plot(p / 1e3, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
                   label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
     plain_logarithm(line)
-    line.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
+    line.set_xlabel(f"Mean effective stress {PRIME} (MPa)")
     line.set_ylabel("Void ratio $e$")
     legend_below(figure, line, 3, 0.12)
     if (folder / "reconsolidation.csv").exists():

@@ -66,7 +66,7 @@ class Results:
                   "ways": variants.ways(self.tests), "paces": variants.paces(self.tests),
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
                   "critical_states": resistance.critical_states(self.tests)}
-        tables["resistance"] = resistance.curves(tables["cyclic_tests"])
+        tables["resistance"] = resistance.curves([row for row in tables["cyclic_tests"] if row["pace"] == "default"])
         if tables["undrained_states"] and tables["cyclic_tests"]:
             tables["claims"] = claims.table(tables)
         return tables
