@@ -45,16 +45,16 @@ def friction_angle(axial, radial):
 
 
 def drained_numbers(strain, volume_strain, axial, radial):
-    """Of a drained compression test, strains as shares, compression positive: peak and end friction (degrees), strain
-    at the peak (%), largest dilatancy -d eps_v/d eps_1 over 1 % of strain, eps_v at the end (%)."""
-    phi = friction_angle(axial, radial)
-    peak = int(np.argmax(phi))
-    grid = np.arange(0, strain[-1], 0.0025)
-    volume = np.interp(grid, strain, volume_strain)
-    rate = -(volume[4:] - volume[:-4]) / 0.01 if len(grid) > 8 else np.array([np.nan])
-    return {"peak friction (deg)": phi[peak], "strain at peak (%)": 100 * strain[peak],
-            "end friction (deg)": phi[strain > strain[-1] - 0.01].mean(), "dilatancy": rate.max(),
-            "eps_v at the end (%)": 100 * volume_strain[-1]}
+    """Of a drained compression test, strains as shares, compression positive: peak friction (degrees, mean over 1 % of
+    strain) and where it is (%), friction at the end, largest dilatancy -d eps_v/d eps_1 over 1 % of strain, and eps_v
+    at 10 % (%)."""
+    grid = np.arange(0, strain[-1] + 1e-9, 0.0025)
+    phi, volume = (np.interp(grid, strain, column) for column in (friction_angle(axial, radial), volume_strain))
+    means = np.convolve(phi, np.full(5, 0.2), mode="valid")
+    peak = int(np.argmax(means))
+    return {"peak friction (deg)": means[peak], "strain at peak (%)": 100 * grid[peak + 2],
+            "end friction (deg)": means[-1], "dilatancy": (-(volume[4:] - volume[:-4]) / 0.01).max(),
+            "eps_v at 10 % (%)": 100 * np.interp(0.1, grid, volume)}
 
 
 def crossings(values, level):
