@@ -77,6 +77,9 @@ class Results:
             row = {"direction": run.kind, "slow": run.slow, **identity(run, history)}
             for state, numbers in states.undrained_numbers(history).items():
                 row.update({f"{state}: {name}": value for name, value in zip(UNDRAINED, numbers)})
+            strain = np.maximum.accumulate(np.abs(history.eps_y))
+            for name, column in (("p'", history.p), ("q", np.abs(history.q))):
+                row[f"{name} at 3 % (kPa)"] = np.interp(0.03, strain, column, right=np.nan) / 1e3
             rows.append(row)
         return rows
 

@@ -103,7 +103,7 @@ class States(ToleranceTest):
         self.assertEqual(claims.correlated("half cycle", "F_yx at its end", 0)(tests), [0.0])
         slow = [{**row, "pace": plan.SLOW, "least I_R": 0.5} for row in halves]
         both = claims.Tests({"half_cycles": halves + slow})
-        self.assertEqual(claims.of_halves(lambda row: row["least I_R"])(both), [0.5], "where there are slow tests, they")
+        self.assertEqual(claims.of_halves(lambda row: row["least I_R"])(both), [0.5], "of slow tests where there are")
 
     def test_every_claim_says_what_it_says_of(self):
         rows = [{"claim": claim.text, "paper": 1.0, "unit": "kPa", "ours": 2.0, "standard error": 0.1, "n": 3,
