@@ -107,9 +107,10 @@ void print_dry_run(const CalibrationPlan &plan, const SceneMaker &scenes)
              "the first trial; the progress lines tell\n",
              plan.title, fitted * plan.specimens.seeds, fitted, plan.specimens.seeds, plan.specimens.grains,
              fitted * plan.specimens.seeds * plan.budget.trials, 2 * blind * plan.specimens.seeds);
+  const std::size_t width = label_width(scenes.parameters());
   for (const Parameter &p : scenes.parameters())
-    fmt::print("  {:<{}} from {} to {}, start {}\n", p.label(), label_width(scenes.parameters()), p.text(p.value(0)),
-               p.text(p.value(1)), p.text(p.value(p.start())));
+    fmt::print("  {:<{}} from {} to {}, start {}\n", p.label(), width, p.text(p.value(0)), p.text(p.value(1)),
+               p.text(p.value(p.start())));
 }
 
 void leave_report(const CalibrationPlan &plan, const SceneMaker &scenes, const Trials &trials,

@@ -47,14 +47,14 @@ def friction_angle(axial, radial):
 def drained_numbers(strain, volume_strain, axial, radial):
     """Of a drained compression test, strains as shares, compression positive: peak friction (degrees, mean over 1 % of
     strain) and where it is (%), friction at the end, largest dilatancy -d eps_v/d eps_1 over 1 % of strain, and eps_v
-    at 10 % (%)."""
+    at 10 % and at the end (%)."""
     grid = np.arange(0, strain[-1] + 1e-9, 0.0025)
     phi, volume = (np.interp(grid, strain, column) for column in (friction_angle(axial, radial), volume_strain))
     means = np.convolve(phi, np.full(5, 0.2), mode="valid")
     peak = int(np.argmax(means))
     return {"peak friction (deg)": means[peak], "strain at peak (%)": 100 * grid[peak + 2],
             "end friction (deg)": means[-1], "dilatancy": (-(volume[4:] - volume[:-4]) / 0.01).max(),
-            "eps_v at 10 % (%)": 100 * np.interp(0.1, grid, volume)}
+            "eps_v at 10 % (%)": 100 * np.interp(0.1, grid, volume), "eps_v at the end (%)": 100 * volume_strain[-1]}
 
 
 def crossings(values, level):
