@@ -53,7 +53,7 @@ class Tests:
 
     def cyclic(self, label):
         return [row for row in self.tables["cyclic_tests"] if row["specimen"] == label
-                and row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["pace"] == "default"]
+                and row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["pace"] == plan.DEFAULT]
 
     def paper(self):
         """Cyclic tests at the density of the paper."""

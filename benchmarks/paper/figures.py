@@ -17,7 +17,7 @@ STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": 
          "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
 PRIME = r"$p^\prime$"
-PACE_NAMES = {"default": "rate of the default", plan.SLOW: "a tenth of the default's rate"}
+PACE_NAMES = {plan.DEFAULT: "rate of the default", plan.SLOW: "a tenth of the default's rate"}
 
 
 class Table:
@@ -165,7 +165,7 @@ def cycles(table, _):
     """Figure 2 as an ensemble: cycles to liquefaction against void ratio, at the amplitude of the paper."""
     figure, ((panel, strains),) = panels(1, 2)
     table = table.where(**{"p0' (kPa)": "200", "q_amp/(2 p0')": plan.PAPER_RATIO})
-    after, table = table, table.where(pace="default")
+    after, table = table, table.where(pace=plan.DEFAULT)
     for label in table.values("specimen"):
         rows = table.where(specimen=label)
         paper = label.startswith("D_r")
@@ -184,7 +184,7 @@ def cycles(table, _):
     panel.plot([], [], "--", color=GREY, label="paper: 17")
     panel.plot([], [], ":", color=GREY, label="laboratory: 11")
     legend_below(figure, panel, 5, 0.07)
-    for pace, face in (("default", "none"), (plan.SLOW, BLUE)):
+    for pace, face in ((plan.DEFAULT, "none"), (plan.SLOW, BLUE)):
         rows = after.where(pace=pace)
         strains.plot(rows["largest strain after, compression (%)"], rows["largest strain after, extension (%)"], "o",
                      color=BLUE, mfc=face, markersize=4, label=PACE_NAMES[pace])
@@ -303,7 +303,7 @@ def drained(table, _):
 @of_table("cyclic_tests")
 def resistance(table, folder):
     """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
-    table = table.where(pace="default")
+    table = table.where(pace=plan.DEFAULT)
     fits = Table(folder / "resistance.csv") if (folder / "resistance.csv").exists() else None
     figure, (row,) = panels(1, 2, sharey=True)
     colours = (RED, GREEN, BLUE)

@@ -73,16 +73,17 @@ class Pace:
     """How fast a cyclic test is run."""
 
     rates: str = ""  # lines of [motion]
-    damping: str = "damping = 0.1"  # with rates for 2,000 grains
-    large: str = "damping = 0.02\nload_per_wave = 0.02"  # and for 10,000 (docs/results/free_grains.md, other sizes)
+    damping: str = "damping = 0.1"
+    large: str = ""  # instead of both, with 10,000 grains
 
 
+LARGE_MOTION = "damping = 0.02\nload_per_wave = 0.02"  # docs/results/free_grains.md, other sizes
 # as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
 USUAL = "damping = 0.2\ncontact_damping = 0\nfree_grain_damping = 0\ncarry_grains = false"
+DEFAULT = "default"
 SLOW = "tenth"  # what happens after the onset needs it
-PACES = {"": Pace(),
-         SLOW: Pace("\ninertial_number = 7e-5\nload_per_wave = 0.01",
-                    large="damping = 0.02\nload_per_wave = 0.02\ninertial_number = 7e-5"),
+PACES = {DEFAULT: Pace(large=LARGE_MOTION),
+         SLOW: Pace("\ninertial_number = 7e-5\nload_per_wave = 0.01", large=f"{LARGE_MOTION}\ninertial_number = 7e-5"),
          "hundredth": Pace("\ninertial_number = 7e-6\nload_per_wave = 0.001"),
          "2/s": Pace('\nstrain_rate = "2 1/s"\n', damping=USUAL),
          "10/s": Pace('\nstrain_rate = "10 1/s"\n', damping=USUAL)}
@@ -156,7 +157,7 @@ class Run:
     ratio: float = PAPER_RATIO  # q_amp/(2 p0')
     slow: bool = False
     max_cycles: int = 100
-    pace: str = ""  # of PACES
+    pace: str = DEFAULT  # of PACES
     after: int = AFTER_ONSET  # reversals, of tests that look behind the onset
 
     @property
@@ -172,7 +173,7 @@ class Run:
         how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
         how += f"_{100 * self.strain:g}%" if self.one_way else ""
         how += "_slow" if self.slow else ""
-        how += f"_{self.pace}" if self.pace else ""
+        how += f"_{self.pace}" if self.pace != DEFAULT else ""
         p = self.packing
         name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
         return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
@@ -186,12 +187,13 @@ class Run:
         """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others,
         and of large packings at the default's rate, only the cycles to liquefaction are asked."""
         paper = self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
-        return paper and (self.pace != "" or self.packing.grains < LARGE)
+        return paper and (self.pace != DEFAULT or self.packing.grains < LARGE)
 
     def scene(self):
         p = self.packing
         pace = PACES[self.pace]
-        motion = pace.large if p.grains >= LARGE and self.kind == "cyclic" else pace.damping + pace.rates
+        large = pace.large if p.grains >= LARGE and self.kind == "cyclic" else ""
+        motion = large or pace.damping + pace.rates
         return SCENE.format(title=self.name, **p.settings(), motion=motion,
                             stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
 

@@ -49,7 +49,7 @@ class Results:
     def of(self, *kinds):
         """Tests of these kinds, but for the variants."""
         return [(run, history) for run, history in self.tests
-                if run.kind in kinds and not run.packing.way and run.pace in ("", plan.SLOW)]
+                if run.kind in kinds and not run.packing.way and run.pace in (plan.DEFAULT, plan.SLOW)]
 
     def groups(self, *kinds):
         """Tests that differ in their seed alone."""
@@ -66,7 +66,7 @@ class Results:
                   "ways": variants.ways(self.tests), "paces": variants.paces(self.tests),
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
                   "critical_states": resistance.critical_states(self.tests)}
-        tables["resistance"] = resistance.curves([row for row in tables["cyclic_tests"] if row["pace"] == "default"])
+        tables["resistance"] = resistance.curves([row for row in tables["cyclic_tests"] if row["pace"] == plan.DEFAULT])
         if tables["undrained_states"] and tables["cyclic_tests"]:
             tables["claims"] = claims.table(tables)
         return tables
@@ -108,13 +108,13 @@ class Results:
         rows = []
         for run, history in self.of("cyclic"):
             row = {**identity(run, history), "p0' (kPa)": run.packing.pressure, "q_amp/(2 p0')": run.ratio,
-                   "pace": run.pace or "default", "steps": history.step[-1] - history.step[0],
+                   "pace": run.pace, "steps": history.step[-1] - history.step[0],
                    **states.cyclic_numbers(history)}
             rows.append(row)
         return rows
 
     def half_cycles(self):
-        return [{"specimen": run.packing.label, "q_amp/(2 p0')": run.ratio, "pace": run.pace or "default",
+        return [{"specimen": run.packing.label, "q_amp/(2 p0')": run.ratio, "pace": run.pace,
                  "seed": run.seed, "half cycle": k + 1,
                  **row} for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
 
@@ -127,7 +127,7 @@ class Results:
                 continue
             shortest = min((x for _, x, _ in found), key=len)
             for k, phase in enumerate(shortest):
-                row = {"specimen": label, "pace": pace or "default", "phase": phase, "seeds": len(found)}
+                row = {"specimen": label, "pace": pace, "phase": phase, "seeds": len(found)}
                 ratios = [history.p[rows_[k]] / history.p0 for history, _, rows_ in found]
                 row["p'/p0'"], row["p'/p0' s.d."], *_ = paths.ensemble(ratios)
                 for column in PHASED:
@@ -149,7 +149,7 @@ class Results:
             here = np.array([h.p[k] / (0.01 * h.p0), h.q[k] / 4e3, h.eps_y[k] / 1e-4])
             if k in reversals or np.abs(here - last).max() >= 1:
                 last = here
-                rows.append({"specimen": run.packing.label, "pace": run.pace or "default", "seed": run.seed,
+                rows.append({"specimen": run.packing.label, "pace": run.pace, "seed": run.seed,
                              "p' (kPa)": h.p[k] / 1e3,
                              "q (kPa)": h.q[k] / 1e3, "eps_1 (%)": 100 * h.eps_y[k]})
         return rows

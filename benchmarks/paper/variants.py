@@ -6,8 +6,9 @@ from paper import plan, states
 from speed_error import paths
 
 
-def cycles(history):
-    return np.nan if history.onset is None else history.reversals[history.onset] / 2
+HALVES = {"I_R as p'/p0' first passes 0.01": "I_R as p'/p0' first passes 0.01",
+          "I_R as it last does": "I_R as it last does", "least I_R of a half cycle": "least I_R",
+          "p'/p0' at the most sliding": "p'/p0' at the most sliding"}
 
 
 def ratio_after(history, n):
@@ -16,50 +17,32 @@ def ratio_after(history, n):
     return history.p[rows[0]] / history.p0 if rows.size else np.nan
 
 
-def of_halves(column, value=float):
-    """Mean over the whole half cycles after the onset."""
-    return lambda history: paths.ensemble([value(row[column]) for row in states.half_cycles(history)])[0]
+def of_way(history):
+    return {"e": history.e[0], "Z at the start": history.Z[0],
+            "cycles to liquefaction": states.cyclic_numbers(history)["cycles"],
+            "p'/p0' after 10 cycles": ratio_after(history, 10), "p'/p0' at the end": history.p[-1] / history.p0}
 
 
-def at_onset(column):
-    return lambda history: np.nan if history.onset is None else getattr(history, column)[history.onset]
+def of_pace(history):
+    """Of half cycles the mean over the whole ones after the onset."""
+    numbers, halves = states.cyclic_numbers(history), states.half_cycles(history)
+    strains = [f"largest strain after, {direction} (%)" for direction in ("compression", "extension")]
+    return {"cycles to liquefaction": numbers["cycles"], "steps": history.step[-1] - history.step[0],
+            "I_R at the onset": numbers["I_R at onset, Eq. 2"],
+            "p'/p0' where I_R falls below 1": numbers["p'/p0' where I_R falls below 1, Eq. 2"],
+            **{name: paths.ensemble([row[column] for row in halves])[0] for name, column in HALVES.items()},
+            "f_R at the onset": np.nan if history.onset is None else history.f_R[history.onset],
+            **{name: numbers.get(name, np.nan) for name in strains}}
 
 
-def below_one(history):
-    """p'/p0' in the first row, up to the onset, in which I_R is below 1."""
-    end = len(history.p) if history.onset is None else history.onset + 1
-    rows = np.flatnonzero(history.IR[:end] < 1)
-    return history.p[rows[0]] / history.p0 if rows.size else np.nan
-
-
-def strain_after(sign):
-    def value(history):
-        return np.nan if history.onset is None else (sign * 100 * history.eps_y[history.onset:]).max()
-    return value
-
-
-WAYS = {"e": lambda h: h.e[0], "Z at the start": lambda h: h.Z[0], "cycles to liquefaction": cycles,
-        "p'/p0' after 10 cycles": lambda h: ratio_after(h, 10), "p'/p0' at the end": lambda h: h.p[-1] / h.p0}
-PACES = {"cycles to liquefaction": cycles, "steps": lambda h: h.step[-1] - h.step[0],
-         "I_R at the onset": at_onset("IR"), "p'/p0' where I_R falls below 1": below_one,
-         "I_R as p'/p0' first passes 0.01": of_halves("I_R as p'/p0' first passes 0.01"),
-         "I_R as it last does": of_halves("I_R as it last does"),
-         "least I_R of a half cycle": of_halves("least I_R"),
-         "p'/p0' at the most sliding": of_halves("p'/p0' at the most sliding"),
-         "f_R at the onset": at_onset("f_R"),
-         "largest strain after, compression (%)": strain_after(1),
-         "largest strain after, extension (%)": strain_after(-1)}
-
-
-def tests_of_paper(tests, way="", pace=""):
+def tests_of_paper(tests, way="", pace=plan.DEFAULT):
     """(run, history) of cyclic tests at its amplitude and pressure, with specimens made so and tested so fast."""
     return [(run, h) for run, h in tests if run.kind == "cyclic" and run.ratio == plan.PAPER_RATIO
             and run.packing.pressure == plan.P0 and run.packing.way == way and run.pace == pace]
 
 
-def rows_of(variant, found, columns):
-    return [{"variant": variant, "seed": run.seed, **{name: value(h) for name, value in columns.items()}}
-            for run, h in found]
+def rows_of(variant, found, numbers):
+    return [{"variant": variant, "seed": run.seed, **numbers(h)} for run, h in found]
 
 
 def ways(tests):
@@ -68,7 +51,7 @@ def ways(tests):
     for way in plan.WAYS:
         found = [(run, h) for run, h in tests_of_paper(tests, way)
                  if way or run.packing.relative_density == plan.PAPER[1]]
-        rows += rows_of(way or "as all others", found, WAYS)
+        rows += rows_of(way or "as all others", found, of_way)
     return rows if len({row["variant"] for row in rows}) > 1 else []
 
 
@@ -78,7 +61,7 @@ def paces(tests):
     for pace in plan.PACES:
         found = [(run, h) for run, h in tests_of_paper(tests, pace=pace)
                  if run.packing.degrees == plan.PACE_DEGREES]
-        rows += rows_of(pace or "default", found, PACES)
+        rows += rows_of(pace, found, of_pace)
     return rows if len({row["variant"] for row in rows}) > 1 else []
 
 
