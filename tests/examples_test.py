@@ -44,6 +44,7 @@ class Installed(support.ToleranceTest):
         output = self.element_test("tiny.toml", "--quiet")
         self.assertIn("figures in", output)
         self.assertTrue((self.work / "results/tiny/figures/fig_stress_path.png").is_file())
+        self.assertIn("The Isostat authors", (self.work / "results/tiny/report.html").read_text(encoding="utf-8"))
         figures = self.prefix / "share/isostat/figures"
         figures.rename(figures.with_name("elsewhere"))
         self.addCleanup(figures.with_name("elsewhere").rename, figures)
