@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isostat: the one name to remember. Shows what is installed and starts the other programs.
+// isostat: the one name to remember. Shows what is installed, compares two runs, and starts the other programs.
 //
+//   isostat compare results/one results/other      two runs side by side in compare.html
 //   isostat report results/one                     figures and report.html once more, also of a run under way
 //   isostat element_test SCENE                     the program beside this one, with everything that follows
 #include "apps/common/command_line.hpp"
@@ -35,6 +36,7 @@ constexpr Entry programs[] = {
 };
 
 constexpr Entry views[] = {
+    {"compare", "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)"},
     {"report", "RESULTS: figures and report.html of a results folder once more, also of a run under way"},
 };
 
