@@ -15,7 +15,7 @@ packages=(
   python3 python3-matplotlib python3-numpy python3-h5py
 )
 if [[ "${1:-}" == --gates ]]; then
-  packages+=(clang-format clang-tidy)
+  packages+=(clang-format clang-tidy chromium)
 fi
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

@@ -44,6 +44,8 @@ class Installed(support.ToleranceTest):
         output = self.element_test("tiny.toml", "--quiet")
         self.assertIn("figures in", output)
         self.assertTrue((self.work / "results/tiny/figures/fig_stress_path.png").is_file())
+        self.assertIn("The Isostat authors", (self.work / "results/tiny/report.html").read_text(encoding="utf-8"))
+        run(self.prefix / "bin/isostat", "compare", "results/tiny", "results/tiny", cwd=self.work)
         figures = self.prefix / "share/isostat/figures"
         figures.rename(figures.with_name("elsewhere"))
         self.addCleanup(figures.with_name("elsewhere").rename, figures)

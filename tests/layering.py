@@ -82,6 +82,7 @@ INNER = {
         "deposit": {"common"},
         "calibrate": {"common"},
         "element_test": {"common"},
+        "isostat": {"common"},
         "liquefaction_resistance": {"common"},
         "micromechanics": {"common"},
         "specimen_library": {"common"},

@@ -167,7 +167,7 @@ int main(int argc, char **argv)
   line.add_option("-o,--output", options.output, "results folder (default: results/<plan name>)");
   line.add_flag("--overwrite", options.overwrite, "start anew: remove another calibration from this folder");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", options.no_figures, "do not draw figures");
+  line.add_flag("--no-figures", options.no_figures, "leave no figures and no report");
   line.add_flag("--dry-run", options.dry_run, "check the plan, print how many runs it takes, and stop");
   line.add_flag("--print-defaults", options.print_defaults, "print a commented plan with all keys, units and ranges");
   options.command_line = command_text(argc, argv);

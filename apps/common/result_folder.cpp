@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/result_folder.hpp"
 
+#include "apps/common/child_runs.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
@@ -10,6 +11,7 @@
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 namespace isostat
 {
@@ -17,6 +19,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
+constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
+
 /// As one word of a shell command.
 std::string quoted(const fs::path &path)
 {
@@ -116,11 +120,16 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
 std::string draw_figures(const fs::path &folder, const std::string &program)
 {
   const fs::path log = folder / "figures.log";
-  const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m figures {} {} > {} 2>&1",
+  const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m report leave {} {} > {} 2>&1",
                                           quoted(shared_folder()), program, quoted(folder), quoted(log));
-  if (std::system(command.c_str()) != 0)
+  const int status = std::system(command.c_str());
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : EXIT_FAILURE;
+  if (code != 0 && code != without_report)
     return fmt::format("figures were not drawn; see {}", log.string());
-  return fmt::format("figures in {}", (folder / "figures").string());
+  if (code == without_report)
+    fmt::print(stderr, "{}\n", last_line(log));
+  return fmt::format("figures in {}", (folder / "figures").string()) +
+         (code == 0 ? fmt::format(", all on one page in {}", (folder / "report.html").string()) : std::string());
 }
 
 void leave_summary(const fs::path &folder, const std::string &text, const std::string &times, const char *program,

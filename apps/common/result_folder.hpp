@@ -45,11 +45,12 @@ void write_provenance(const std::filesystem::path &folder, const std::string &sc
 /// The same of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
-/// Draws the figures of a results folder with the Python package `figures`.   @param program  that left the folder
-/// @return a line for the summary; never fails a run
+/// Draws the figures of a results folder and leaves report.html there, with the Python packages `figures` and `report`.
+/// A report that fails is one line on stderr.   @param program  that left the folder
+/// @return a line for the summary; never fails a run   tested: tests/apps/report_test.py
 std::string draw_figures(const std::filesystem::path &folder, const std::string &program);
 
-/// Leaves summary.txt, prints it and `times`, and draws the figures of this program unless `figures` is false.
+/// Leaves summary.txt, prints it and `times`, and leaves figures and report of this program unless `figures` is false.
 void leave_summary(const std::filesystem::path &folder, const std::string &text, const std::string &times,
                    const char *program, bool figures);
 } // namespace isostat

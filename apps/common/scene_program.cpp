@@ -26,7 +26,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
       line.add_flag("--resume", o.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
     }
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", o.no_figures, "do not draw figures at the end");
+  line.add_flag("--no-figures", o.no_figures, "leave no figures and no report at the end");
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));
 }
 

@@ -10,6 +10,8 @@ import importlib
 import pathlib
 import sys
 
+from .common import BadInput, note
+
 PROGRAMS = ("calibrate", "element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay",
             "biaxial")
 
@@ -23,7 +25,13 @@ def main():
                         help="other results that a figure shows, too (biaxial: fig_band)")
     arguments = parser.parse_args()
     drawing = importlib.import_module(f"figures.{arguments.program}").DRAWING
-    return drawing.draw(arguments.results, arguments.out or arguments.results / "figures", arguments.beside)
+    try:
+        results = drawing.results(arguments.results, arguments.beside)
+        drawing.draw(results, arguments.out or arguments.results / "figures")
+    except (BadInput, OSError) as error:
+        note(error)
+        return 2
+    return 0
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import json
 
 import numpy as np
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain_log_ticks, plt
 from .drawing import Drawing
 
 COLUMNS = 4  # curves side by side
@@ -114,6 +114,7 @@ def convergence(results):
                   label="trial with a run that failed")
     axes.step(results.trial, np.minimum.accumulate(results.misfit), where="post", color=RED, label="best so far")
     axes.set_yscale("log")
+    plain_log_ticks(axes.yaxis)
     axes.set_xlabel("Trial")
     axes.set_ylabel("Misfit (-)")
     axes.legend(loc="upper right")
@@ -148,6 +149,7 @@ def tradeoffs(results):
                       clip_on=False)
             if i == j:
                 axes.set_yscale("log")
+                plain_log_ticks(axes.yaxis)
             else:
                 axes.set_ylim(*scale_of(axes.set_yscale, results.parameters[i]))
             axes.set_ylabel("Misfit (-)" if i == j else labels[i] if j == 0 else "", fontsize=8)

@@ -24,12 +24,18 @@ def depth_axis(column, axes, depth):
 
 
 def times_of_motion(column, shares):
-    """Times by which the surface has had these shares of its squared acceleration; evenly spread if it rests."""
-    names = [f"surface_a{axis}" for axis in "xyz" if column.peak(f"surface_a{axis}") > 0]
-    if not names:
+    """Times by which these shares of the squared acceleration have passed, on the mean of surface and input: a surface
+    that liquefies soon comes to rest. Evenly spread if nothing moves."""
+    passed = []
+    for where in ("surface", "input"):
+        energy = sum(np.cumsum(np.nan_to_num(column[f"{where}_a{axis}"]) ** 2) for axis in "xyz"
+                     if column.has(f"{where}_a{axis}"))
+        if np.ndim(energy) and energy[-1] > 0:
+            passed.append(energy / energy[-1])
+    if not passed:
         return column.time[0] + np.array(shares) * (column.time[-1] - column.time[0])
-    energy = np.cumsum(sum(np.nan_to_num(column[name]) ** 2 for name in names))
-    return column.time[np.searchsorted(energy, np.array(shares) * energy[-1])]
+    at = np.searchsorted(np.mean(passed, axis=0), shares)
+    return column.time[np.minimum(at, len(column.time) - 1)]
 
 
 def time_norm(column):

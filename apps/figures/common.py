@@ -11,7 +11,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.ticker import MaxNLocator  # noqa: E402
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter  # noqa: E402
 
 LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
@@ -93,7 +93,8 @@ def read_summary(path):
 
 
 class Run:
-    """The shear stages of a run: columns, p0 (Pa), onset of liquefaction (row among the shear rows, or None).
+    """The shear stages of a run: columns, p0 (Pa), onset of liquefaction (row among the shear rows, or None). Columns
+    of all stages are in `whole`.
 
     `shear` says that it is simple shear in a cell: its strain is gamma_xy; that of a triaxial test is eps_y.
     """
@@ -105,6 +106,7 @@ class Run:
         first = int(summary.get("shear_stage_first_row") or 0)
         if not 0 <= first < total:
             raise BadInput(f"summary.json: shear_stage_first_row = {first}, but history.csv has {total} rows")
+        self.whole = columns
         self.columns = {name: values[first:] for name, values in columns.items()}
         self.n_rows = total - first
         self.shear = self.has("gamma_xy") and np.nanmax(abs(self["gamma_xy"])) > np.nanmax(abs(self["eps_y"]))
@@ -184,6 +186,13 @@ def legend_above(axes):
     if handles:
         axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 0.985), ncols=len(labels), borderaxespad=0,
                     handlelength=1.4, columnspacing=1.2)
+
+
+def plain_log_ticks(axis):
+    """1, 2, 5 of each decade on a logarithmic axis, written out: for a range of one decade or two."""
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def stretch_after(axes, low, kink, high):

@@ -3,7 +3,7 @@
 import dataclasses
 import typing
 
-from .common import STYLE, BadInput, note, plt
+from .common import STYLE, BadInput, plt
 
 
 @dataclasses.dataclass
@@ -19,31 +19,35 @@ class Drawing:
     figures: dict
     undrawn: typing.Callable = lambda name, results: None
 
-    def draw(self, folder, out, beside=()):
-        """Draws every figure of a results folder. Returns the exit code: 2 if the folder cannot be drawn."""
+    def results(self, folder, beside=()):
+        """What is read from a results folder, with that of others beside it.   Raises BadInput"""
         try:
             results = self.read(folder)
             results.beside = [self.read(other) for other in beside]
-            out.mkdir(parents=True, exist_ok=True)
+            return results
         except KeyError as error:
-            note(f"{folder}: {error} is missing in its files, or is no unit")
-            return 2
-        except (BadInput, OSError, ValueError) as error:
-            note(error)
-            return 2
+            raise BadInput(f"{folder}: {error} is missing in its files, or is no unit") from error
+        except (OSError, ValueError) as error:
+            raise BadInput(error) from error
+
+    def draw(self, results, out, each=lambda name, figure: None):
+        """Leaves every figure of the results in a folder. `each` is called with name and figure when it is saved."""
+        out.mkdir(parents=True, exist_ok=True)
         plt.rcParams.update(STYLE)
         for name, draw in self.figures.items():
-            self._save(name, draw(results), results, out)
-        return 0
+            figure = draw(results)
+            if figure is None:
+                self.undrawn(name, results)
+                continue
+            self._save(name, figure, results, out)
+            each(name, figure)
+            plt.close(figure)
 
-    def _save(self, name, figure, results, out):
-        if figure is None:
-            self.undrawn(name, results)
-            return
+    @staticmethod
+    def _save(name, figure, results, out):
         if results.title:
             figure.suptitle(results.title, fontsize=9.5, x=0.01, ha="left")
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
         figure.savefig(out / f"{name}.png")
-        plt.close(figure)
         print(out / f"{name}.png")

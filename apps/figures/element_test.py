@@ -25,6 +25,8 @@ from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, cu
 from .drawing import Drawing
 from .simple_shear import rotation, shear_path
 
+NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
+
 
 def stress_path(run):
     if run.shear:
@@ -45,6 +47,23 @@ def stress_path(run):
     return figure
 
 
+def draw_pressure(run, axes):
+    """p'/p0', over the decades that a liquefying specimen goes through; else from zero."""
+    ratio = np.clip(run.p_ratio, FLOOR, None)
+    axes.plot(run.progress, ratio, color=BLACK, linewidth=0.9)
+    axes.set_ylabel(r"$p^\prime/p_0^\prime$")
+    top, lowest = max(1.0, float(np.nanmax(ratio))), float(np.nanmin(run.p_ratio))
+    if lowest > NEAR_LIQUEFACTION:
+        axes.set_ylim(0, 1.1 * top)
+        return
+    axes.set_yscale("log")
+    axes.set_ylim(FLOOR if lowest < LIQUEFIED else LIQUEFIED / 2, 1.5 * top)
+    mark_level(axes, LIQUEFIED, f"${LIQUEFIED}$")
+    if lowest < FLOOR:
+        axes.annotate(r"values below $10^{-4}$ lie on the axis", (0.01, 0.05), xycoords="axes fraction", fontsize=7.5,
+                      color=GREY)
+
+
 def redundancy(run):
     if not run.has("IR"):
         return None
@@ -57,15 +76,7 @@ def redundancy(run):
     mark_level(top, 1.0, "isostatic\n$I_R = 1$")
     mark_level(top, 0.35, "$0.35$")
 
-    ratio = np.clip(run.p_ratio, FLOOR, None)
-    bottom.plot(run.progress, ratio, color=BLACK, linewidth=0.9)
-    bottom.set_yscale("log")
-    bottom.set_ylim(FLOOR, 1.5 * max(1.0, float(np.nanmax(ratio))))
-    bottom.set_ylabel(r"$p^\prime/p_0^\prime$")
-    mark_level(bottom, LIQUEFIED, f"${LIQUEFIED}$")
-    if np.nanmin(run.p_ratio) < FLOOR:
-        bottom.annotate(r"values below $10^{-4}$ lie on the axis", (0.01, 0.05), xycoords="axes fraction", fontsize=7.5,
-                        color=GREY)
+    draw_pressure(run, bottom)
     mark_onset(run, (top, bottom))
     legend_above(top)
     return figure

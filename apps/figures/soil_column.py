@@ -12,7 +12,7 @@ fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     r_u at the output depths and its largest value anywhere; settlement
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
-fig_settlement.png    consolidation: settlement against time, likewise
+fig_settlement.png    consolidation: settlement against time, beside Terzaghi's if it applies
 fig_grains_profiles.png   packings of grains: redundancy index I_R, coordination number, fabric over the depth
 fig_grains_map.png        I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95
 fig_grains_history.png    I_R, r_u and yielding contacts at the output depths

@@ -162,11 +162,15 @@ void find_resistance(Options options)
   const bool complete = run_campaign(campaign, options);
   const std::string text = write_report(campaign);
   fmt::print("{}", text);
-  if (!options.no_figures && fit_power_law(campaign.results()))
+  const std::vector<RunResult> results = campaign.results();
+  const bool any = std::any_of(results.begin(), results.end(), [](const RunResult &result) {
+    return result.status != RunStatus::missing && result.status != RunStatus::failed;
+  });
+  if (any && !options.no_figures)
     fmt::print("  {}\n", draw_figures(campaign.folder(), "liquefaction_resistance"));
   if (!complete)
     throw Interrupted("interrupted; finished runs are kept, the same command goes on");
-  for (const RunResult &result : campaign.results())
+  for (const RunResult &result : results)
     if (result.status == RunStatus::failed)
       throw RunFailure("some runs failed (see above); the others are kept, the same command tries again");
 }
@@ -196,7 +200,7 @@ int main(int argc, char **argv)
   line.add_option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
   line.add_flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", options.no_figures, "do not draw the figure");
+  line.add_flag("--no-figures", options.no_figures, "leave no figure and no report");
   options.command_line = command_text(argc, argv);
   return run_command(line, argc, argv, [&] { find_resistance(options); });
 }

@@ -245,6 +245,6 @@ int main(int argc, char **argv)
   line.add_option(
       "-o,--output", options.output,
       "folder of tables and figures (default: RESULTS/micromechanics), or NAME.csv for the main table alone");
-  line.add_flag("--no-figures", options.no_figures, "do not draw figures");
+  line.add_flag("--no-figures", options.no_figures, "leave no figures and no report");
   return run_command(line, argc, argv, [&] { analyse(options); });
 }

@@ -237,7 +237,7 @@ int main(int argc, char **argv)
       ->capture_default_str();
   line.add_flag("--overwrite", options.overwrite, "replace results that are there");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", options.no_figures, "do not draw figures at the end");
+  line.add_flag("--no-figures", options.no_figures, "leave no figures and no report at the end");
   options.command_line = command_text(argc, argv);
   return run_command(line, argc, argv, [&] {
     catch_signals();

@@ -109,6 +109,7 @@ class Results(Calibrate):
         self.check_misfit(rows[0])
         for name in ("curves", "convergence", "tradeoffs"):
             self.assertTrue((self.folder / f"out/figures/{name}.png").exists())
+        self.assertIn("because budget.trials = 6", (self.folder / "out/report.html").read_text(encoding="utf-8"))
         for name in ("best_scene", "best/fitted"):  # ready to run
             self.assert_done(self.run_test(self.folder / f"out/{name}.toml", "--validate"))
 

@@ -71,6 +71,8 @@ class LiquefactionResistance(AppTest):
         self.assert_near(fit["CSR_15"], fit["a"] * 15 ** -fit["b"], 5e-7, digits)
         self.assertEqual(fit["runs"], len(liquefied))
         self.assertTrue((self.folder / "out/figures/resistance.png").exists())
+        report = (self.folder / "out/report.html").read_text(encoding="utf-8")
+        self.assertIn(f"CSR = {fit['a']:.4f} N^-{fit['b']:.3f} by {fit['runs']} runs", report)
 
     def check_one_run(self, row):
         """The table agrees with the summary of the run."""

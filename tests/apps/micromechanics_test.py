@@ -88,6 +88,7 @@ class Micromechanics(AppTest):
         self.assert_done(self.run_app("micromechanics", "run", "--output", "it's here"))
         figures = sorted(path.name for path in (self.folder / "it's here/figures").iterdir())
         self.assertEqual(figures, ["fig_anisotropies.png", "fig_force_distribution.png", "fig_roses.png"])
+        self.assertIn('<figure id="fig_roses"', (self.folder / "it's here/report.html").read_text(encoding="utf-8"))
 
     def test_run_is_not_touched(self):
         before = contents(self.folder / "run")

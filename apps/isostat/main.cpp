@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// isostat: the one name to remember. Shows what is installed, compares two runs, and starts the other programs.
+//
+//   isostat compare results/one results/other      two runs side by side in compare.html
+//   isostat report results/one                     figures and report.html once more, also of a run under way
+//   isostat element_test SCENE                     the program beside this one, with everything that follows
+#include "apps/common/command_line.hpp"
+#include "base/error.hpp"
+#include "base/record/installation.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace
+{
+using namespace isostat;
+namespace fs = std::filesystem;
+
+struct Entry
+{
+  const char *name, *text;
+};
+
+constexpr Entry programs[] = {
+    {"element_test", "one test on spheres: triaxial or simple shear, drained or undrained"},
+    {"liquefaction_resistance", "cyclic stress ratio against cycles to liquefaction, from many tests"},
+    {"calibrate", "parameters of a scene from laboratory curves"},
+    {"specimen_library", "many prepared packings in one file"},
+    {"void_ratio_limits", "loosest and densest packing of a grading"},
+    {"micromechanics", "forces, fabric and anisotropy of stored packings"},
+    {"soil_column", "layers of soil that are shaken or consolidate, with grains at the Gauss points if asked for"},
+    {"rve_replay", "one packing of a column again, alone"},
+    {"biaxial", "a block in plane strain: does a shear band form?"},
+};
+
+constexpr Entry views[] = {
+    {"compare", "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)"},
+    {"report", "RESULTS: figures and report.html of a results folder once more, also of a run under way"},
+};
+
+/// The program of this name in the folder of this one; a build may have left some out.
+fs::path beside(const std::string &name) { return shared_folder().parent_path().parent_path() / "bin" / name; }
+
+std::string help()
+{
+  std::string text =
+      "Isostat: liquefaction of sand, grain by grain, alone or as the soil of a deposit that is shaken\n\n"
+      "usage: isostat COMMAND ...\n\nresults\n";
+  for (const Entry &view : views)
+    text += fmt::format("  {:<25}{}\n", view.name, view.text);
+  text += "\nprograms, which can also be called without `isostat`; each has --help\n";
+  for (const Entry &program : programs)
+    if (fs::exists(beside(program.name)))
+      text += fmt::format("  {:<25}{}\n", program.name, program.text);
+  return text + fmt::format("\n  --version                {}\n  --help\n\nscenes to start from: {}\n",
+                            "version and revision", (shared_folder() / "scenes").string());
+}
+
+/// Becomes the program; does not return.     @throws RunFailure  it cannot be started
+void become(const fs::path &program, std::vector<std::string> words)
+{
+  std::vector<char *> arguments;
+  for (std::string &word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(program.c_str(), arguments.data());
+  throw RunFailure(fmt::format("{}: cannot be started ({})", program.string(), std::strerror(errno)));
+}
+
+void run(const std::vector<std::string> &words)
+{
+  const std::string command = words.empty() ? "--help" : words.front();
+  if (command == "--help" || command == "-h")
+    return fmt::print("{}", help());
+  if (command == "--version")
+    return fmt::print("isostat {}\n", version());
+  for (const Entry &program : programs)
+    if (command == program.name && fs::exists(beside(command)))
+      {
+        std::vector<std::string> call = words;
+        call.front() = beside(command).string();
+        become(call.front(), call);
+      }
+  for (const Entry &view : views)
+    if (command == view.name)
+      {
+        setenv("PYTHONPATH", shared_folder().c_str(), 1);
+        std::vector<std::string> call = {"/usr/bin/python3", "-B", "-m", "report"};
+        call.insert(call.end(), words.begin(), words.end());
+        become(call.front(), call);
+      }
+  throw InputError(fmt::format("{}: is no command of isostat. See isostat --help.", command));
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  return guarded([&] { run({argv + 1, argv + argc}); });
+}

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Leaves the figures and the report of results, or compares two of them.
+
+    python3 -m report leave PROGRAM RESULTS             RESULTS/figures/*.png and RESULTS/report.html: after a run
+    python3 -m report report RESULTS                    the same, of the program that RESULTS/provenance.txt names
+    python3 -m report compare A B [-o compare.html]     two runs side by side
+
+The exit code is 2 if a folder holds no results, 3 if there are figures and no report.
+"""
+import argparse
+import pathlib
+import sys
+
+from . import run
+from .folder import NUMBERS, NoResults, find_results
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="isostat", description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    leave = commands.add_parser("leave", help="figures and report of results of a program")
+    leave.add_argument("program", choices=NUMBERS)
+    leave.add_argument("results", type=pathlib.Path)
+    again = commands.add_parser("report", help="the figures and report.html of results, once more")
+    again.add_argument("results", type=pathlib.Path, help="results folder of a run, finished or under way")
+    compare = commands.add_parser("compare", help="two runs side by side in one file")
+    compare.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
+    compare.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
+    compare.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
+                         help="file that is written, or replaced (default: compare.html)")
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse()
+    try:
+        if arguments.command == "leave":
+            return run.leave(arguments.results, arguments.program)
+        if arguments.command == "report":
+            return run.leave(arguments.results, find_results(arguments.results).program)
+        from . import compare  # pylint: disable=import-outside-toplevel  (a run does not need it)
+        return compare.leave(arguments.first, arguments.second, arguments.output)
+    except NoResults as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two runs of one kind side by side: numbers of their summaries, what differs in their scenes, curves in one figure."""
+import re
+
+from figures.common import BadInput, STYLE, plt
+
+from . import compare_curves, html
+from .folder import NUMBERS, NoResults, find_results
+
+SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
+NAMES = "AB"
+
+
+def flat(value, name=""):
+    """{"layers.0.density": 1900, ...} of nested tables and lists; a list of plain values is one entry."""
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
+        items = enumerate(value)
+    else:
+        return {name: value}
+    return {key: entry for part, item in items for key, entry in flat(item, f"{name}.{part}" if name else part).items()}
+
+
+def shown(value):
+    if value is None:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def change(first, second):
+    """B - A and the same as a share of A, as text."""
+    if not (is_number(first) and is_number(second)):
+        return ("", "") if first == second else ("differs", "")
+    difference = second - first
+    if abs(difference) <= SAME * max(abs(first), abs(second)):
+        return "0", ""
+    return f"{difference:+.4g}", f"{100 * difference / abs(first):+.3g} %" if first else ""
+
+
+def summary_rows(first, second):
+    """A row for each number of both summaries, those that are the same marked so. Lists of tables, such as layers,
+    repeat the scene and are left out."""
+    one, other = ({key: value for key, value in flat(numbers).items() if not re.search(r"\.\d+\.", key)}
+                  for numbers in (first, second))
+    for key in dict.fromkeys([*one, *other]):
+        values = one.get(key), other.get(key)
+        if key == "title" or not any(is_number(value) for value in values):
+            continue
+        difference = change(*values)
+        yield (["same" if difference == ("0", "") else ""], key, *map(shown, values), *difference)
+
+
+def key_rows(first, second):
+    """A row for each key of two tables that has another value, or none, in one of them."""
+    one, other = flat(first), flat(second)
+    return [(key, shown(one.get(key)), shown(other.get(key))) for key in dict.fromkeys([*one, *other])
+            if one.get(key) != other.get(key)]
+
+
+def difference_table(rows, head, nothing, label):
+    return html.table((head, *NAMES), rows, label) if rows else html.paragraph(nothing)
+
+
+def check(pair):
+    """Both finished, and of one kind.   Raises NoResults"""
+    for results in pair:
+        if results.numbers is None:
+            raise NoResults(f"{results.path}: is not finished, because {NUMBERS[results.program]} is not there yet. "
+                            "Wait for the run, or go on with it by its command and --resume.")
+    one, other = pair
+    if one.program != other.program:
+        raise NoResults(f"{one.path} is of {one.program}, {other.path} of {other.program}: they have nothing to "
+                        "compare. Give two runs of one program.")
+    if one.program not in compare_curves.OF_PROGRAM:
+        raise NoResults(f"{one.path}: runs of {one.program} cannot be compared, only those of "
+                        f"{', '.join(compare_curves.OF_PROGRAM)}.")
+
+
+def read_curves(pair):
+    """What the curves are drawn from.   Raises NoResults for files that cannot be read or kinds that differ"""
+    curves = compare_curves.OF_PROGRAM[pair[0].program]
+    read = []
+    for results in pair:
+        try:
+            read.append(curves.drawing.results(results.path))
+        except BadInput as error:
+            raise NoResults(f"{results.path}: {error}. Give the folder as the run has left it.") from error
+    kinds = [curves.kind(item) for item in read]
+    if kinds[0] != kinds[1]:
+        raise NoResults(f"{pair[0].path} is {kinds[0]}, {pair[1].path} {kinds[1]}: their curves are of different "
+                        "quantities. Give two runs of one kind.")
+    return curves, read
+
+
+def page(pair):
+    curves, read = read_curves(pair)
+    plt.rcParams.update(STYLE)
+    names = [f"{name}: {results.path.resolve().name}" for name, results in zip(NAMES, pair)]
+    legend = ", ".join(f"{name} {word}" for name, word in zip(names, ("blue", "orange"))) + "."
+    parts = []
+    for name, (title, caption, draw) in curves.figures.items():
+        figure = draw(read, names)
+        if figure is not None:
+            figure.draw_without_rendering()
+            parts.append(html.figure(name, title, f"{caption} {legend}", figure))
+            plt.close(figure)
+    one, other = pair
+    runs = [(name, results.title, results.path, results.provenance.get("version", "-"),
+             results.provenance.get("started", "-")) for name, results in zip(NAMES, pair)]
+    provenance = [row for row in key_rows(one.provenance, other.provenance) if row[0] not in ("version", "started")]
+    return html.page(
+        f"{one.path.resolve().name} and {other.path.resolve().name}", f"Two runs of {one.program}", [
+            html.section("Runs", html.table(("", "title", "folder", "version", "started"), runs, "runs"), name="runs"),
+            html.section("Curves", html.figures(parts), name="figures"),
+            html.section("Numbers", html.paragraph("Of the summaries, in SI units. A grey row is the same in both."),
+                         html.table(("", *NAMES, "B - A", "of A"), list(summary_rows(one.numbers, other.numbers)),
+                                    "numbers of both summaries", numbers=(1, 2, 3, 4)), name="numbers"),
+            html.section("Scene", difference_table(key_rows(one.scene, other.scene), "key",
+                                                   "Every key of the scenes is the same.", "keys that differ"),
+                         name="scene"),
+            html.section("Provenance", difference_table(provenance, "", "Version and start stand above; the rest is "
+                                                        "the same.", "what differs in provenance"), name="provenance"),
+        ])
+
+
+def leave(first, second, output):
+    """Writes the comparison of two results folders.   Raises NoResults"""
+    pair = find_results(first), find_results(second)
+    check(pair)
+    if output.is_dir() or not output.absolute().parent.is_dir():
+        raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
+    text = page(pair)
+    try:
+        html.write_replacing(output, text)
+    except OSError as error:
+        raise NoResults(f"{output}: cannot be written ({error.strerror}). Give another --output.") from error
+    print(output)
+    return 0

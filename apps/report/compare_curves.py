@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The main curves of two runs over each other: what is drawn for each program."""
+import dataclasses
+import typing
+
+import numpy as np
+
+from figures import biaxial, element_test, soil_column
+from figures.common import BLACK, BLUE, ORANGE, RED, panel_letter, plt
+from figures.drawing import Drawing
+
+COLOURS = (BLUE, ORANGE)
+WIDTHS = (1.6, 0.8)  # the first run below and wider, so that equal curves are seen to be two
+
+
+@dataclasses.dataclass
+class Curves:
+    """drawing: reads the results   kind(results): a word for what can be compared with what
+    figures: {name: (title, caption, draw(pair of results, their names) -> figure or None)}"""
+
+    drawing: Drawing
+    kind: typing.Callable
+    figures: dict
+
+
+def draw_pair(axes, pair, names, x, y):
+    """y(run) against x(run) of both runs."""
+    for run, name, colour, width in zip(pair, names, COLOURS, WIDTHS):
+        axes.plot(x(run), y(run), color=colour, linewidth=width, label=name)
+
+
+def legend_of(figure, axes):
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles[:2], labels[:2], loc="upper right", ncols=2)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+
+
+def panels_of(rows, columns, width=7.6, height=3.0):
+    figure, panels = plt.subplots(rows, columns, figsize=(width, 0.4 + height * rows), squeeze=False,
+                                  layout="constrained")
+    for axes, letter in zip(panels.flat, "abcdef" if panels.size > 1 else ""):
+        panel_letter(axes, letter)
+    return figure, panels
+
+
+# --- element tests ---------------------------------------------------------------------------------------------------
+
+
+def is_drained(run):
+    """Whether the void ratio changes while it is sheared."""
+    return run.has("e") and np.ptp(run["e"]) > 1e-6
+
+
+def kind_of_test(run):
+    """Triaxial or simple shear."""
+    return "simple shear" if run.shear else "triaxial"
+
+
+def stress_curves(pair, names):
+    """Stress path; q (tau), p' and void ratio or redundancy index against strain, of cyclic tests against cycles."""
+    shear = pair[0].shear
+    load, load_label = ("tau_xy", r"Shear stress $\tau$ (kPa)") if shear else ("q", r"Deviatoric stress $q$ (kPa)")
+    path, path_label = ("sigma_y", r"Vertical effective stress $\sigma_v^\prime$ (kPa)") if shear else (
+        "p", r"Mean effective stress $p^\prime$ (kPa)")
+    cyclic = all(run.cyclic for run in pair)
+    progress = (lambda run: run.progress) if cyclic else (lambda run: 100 * run.strain)
+    progress_label = "Number of cycles" if cyclic else pair[0].strain_label
+    figure, ((one, two), (three, four)) = panels_of(2, 2)
+    draw_pair(one, pair, names, lambda run: run[path] / 1e3, lambda run: run[load] / 1e3)
+    draw_pair(two, pair, names, lambda run: 100 * run.strain, lambda run: run[load] / 1e3)
+    draw_pair(three, pair, names, progress, lambda run: run["p"] / 1e3)
+    last, last_label = ("e", "Void ratio $e$") if any(is_drained(run) for run in pair) else (
+        "IR", "Redundancy index $I_R$")
+    draw_pair(four, pair, names, progress, lambda run: run[last] if run.has(last) else np.full(run.n_rows, np.nan))
+    one.set_xlim(left=0)
+    three.set_ylim(bottom=0)
+    for axes, x, y in ((one, path_label, load_label), (two, pair[0].strain_label, load_label),
+                       (three, progress_label, r"Mean effective stress $p^\prime$ (kPa)"),
+                       (four, progress_label, last_label)):
+        axes.set_xlabel(x)
+        axes.set_ylabel(y)
+    for axes in (one, two):
+        axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
+    legend_of(figure, one)
+    return figure
+
+
+# --- columns ---------------------------------------------------------------------------------------------------------
+
+
+def kind_of_analysis(column):
+    """Consolidation or shaking."""
+    return "a consolidation" if column.consolidation else "shaken"
+
+
+def surface_motion(pair, names):
+    """Acceleration of the surface, for each direction that moves in one of the runs."""
+    moving = [axis for axis in "xyz" if any(column.peak(f"surface_a{axis}") > 0 for column in pair)]
+    if not moving or pair[0].consolidation:
+        return None
+    figure, panels = panels_of(len(moving), 1, height=2.2)
+    for axes, axis in zip(panels[:, 0], moving):
+        draw_pair(axes, pair, names, lambda run: run.time, lambda run, name=f"surface_a{axis}":  # noqa: B023
+                  run[name] if run.has(name) else 0 * run.time)
+        axes.set_ylabel(f"Surface $a_{axis}$ (m/s$^2$)")
+    panels[-1, 0].set_xlabel("Time (s)")
+    legend_of(figure, panels[0, 0])
+    return figure
+
+
+def water_and_settlement(pair, names):
+    """Largest r_u anywhere, and settlement, against time."""
+    specs = [("settlement", 1e3, "Settlement (mm)")]
+    if not pair[0].consolidation:
+        specs.insert(0, ("max_ru", 1, "Largest $r_u$"))
+    specs = [spec for spec in specs if any(column.peak(spec[0]) > 1e-6 for column in pair)]
+    if not specs:
+        return None
+    figure, panels = panels_of(len(specs), 1, height=2.2)
+    for axes, (name, factor, label) in zip(panels[:, 0], specs):
+        draw_pair(axes, pair, names, lambda run: run.time, lambda run, name=name, factor=factor:
+                  factor * run[name] if run.has(name) else np.full(len(run.time), np.nan))
+        axes.set_ylabel(label)
+        if name == "settlement":
+            axes.invert_yaxis()
+        else:
+            axes.axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+        if pair[0].consolidation:
+            axes.set_xscale("log")
+    panels[-1, 0].set_xlabel("Time (s)")
+    legend_of(figure, panels[0, 0])
+    return figure
+
+
+# --- blocks ----------------------------------------------------------------------------------------------------------
+
+
+def block_curves(pair, names):
+    """Axial stress, volumetric strain and largest shear strain of a point, against axial strain."""
+    figure, panels = panels_of(1, 3, width=9.6)
+    for axes, (name, factor, label) in zip(panels[0], (("axial_stress", 1e-3, r"Axial stress $\sigma_z$ (kPa)"),
+                                                       ("volumetric_strain", 100, "Volumetric strain (%)"),
+                                                       ("shear_max", 100, "Largest shear strain (%)"))):
+        draw_pair(axes, pair, names, lambda run: 100 * run.history["axial_strain"],
+                  lambda run, name=name, factor=factor: factor * run.history[name])
+        axes.set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
+        axes.set_ylabel(label)
+    legend_of(figure, panels[0, 0])
+    return figure
+
+
+OF_PROGRAM = {
+    "element_test": Curves(element_test.DRAWING, kind_of_test, {
+        "curves": ("Stress and strain", "(a) stress path, (b) stress against strain, (c) p' and (d) void ratio or "
+                   "redundancy index, against strain or number of cycles.", stress_curves)}),
+    "soil_column": Curves(soil_column.DRAWING, kind_of_analysis, {
+        "surface": ("Surface motion", "Acceleration of the surface against time.", surface_motion),
+        "water": ("Pore pressure and settlement", "Largest pore pressure ratio anywhere and settlement, against time.",
+                  water_and_settlement)}),
+    "biaxial": Curves(biaxial.DRAWING, lambda block: "a block", {
+        "curves": ("Stress and strain", "(a) axial stress, (b) volumetric strain, (c) largest shear strain of a point, "
+                   "against axial strain.", block_curves)}),
+}

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
+import numpy as np
+
+from figures.common import LIQUEFIED
+from figures.column_results import quantity
+
+SERVO = ("compress", "rebalance", "hold", "k0-compress")
+REACHED = 1 - 1e-6  # of a strain: rows have ten digits
+
+
+def stage_rows(run, number):
+    """Rows of a stage of the scene, as a slice; None if it left none."""
+    rows = np.flatnonzero(run.whole["stage"] == number)
+    return slice(rows[0], rows[-1] + 1) if rows.size else None
+
+
+def steps_of(run, rows):
+    """Time steps of a stage: to its last row, from the last one of the stage before."""
+    before = run.whole["step"][rows.start - 1] if rows.start > 0 else 0
+    return run.whole["step"][rows.stop - 1] - before
+
+
+def strain_of(stage, run, rows):
+    """The strain that ends the stage, as an amount."""
+    name = "gamma_xy" if stage["kind"].endswith("simple-shear") else "eps_y"
+    return abs(run.whole[name][rows.stop - 1]), "gamma" if name == "gamma_xy" else "axial strain"
+
+
+def cyclic_end(stage, run, rows):
+    """By which of its conditions a cyclic stage ended, or None."""
+    until, reversals = stage["until"], run.whole["reversals"]
+    last = reversals[rows.stop - 1]
+    liquefied = np.flatnonzero(run.whole["liquefied"] > 0)
+    if liquefied.size and last - reversals[liquefied[0]] >= until["reversals_after_liquefaction"]:
+        return f"{until['reversals_after_liquefaction']} reversals after liquefaction"
+    if last >= 2 * until["cycles"]:
+        return f"{until['cycles']} cycles"
+    strain, name = strain_of(stage, run, rows)
+    return f"{name} of {100 * until['strain']:g} %" if strain >= REACHED * until["strain"] else None
+
+
+def shear_end(stage, run, rows):
+    """What a stage that shears reached, or None if that was not its target."""
+    if "until" in stage:
+        return cyclic_end(stage, run, rows)
+    strain, name = strain_of(stage, run, rows)
+    return f"{name} of {100 * stage['strain']:g} %" if strain >= REACHED * stage["strain"] else None
+
+
+def limit_reached(stage, run, rows):
+    return stage.get("max_steps", 0) > 0 and steps_of(run, rows) + 1 >= stage["max_steps"]
+
+
+def endings(scene, run):
+    """A line for each stage that shears, and for each other one that its limit of steps ended."""
+    for number, stage in enumerate(scene.get("stage", [])):
+        rows = stage_rows(run, number)
+        if rows is None:
+            continue
+        name, limited = f"Stage {number}, {stage['kind']}:", limit_reached(stage, run, rows)
+        if stage["kind"] in SERVO:
+            if limited:
+                yield name, f"ended by its limit of {stage['max_steps']} time steps, not by its balance.", "attention"
+            continue
+        target = shear_end(stage, run, rows)
+        if target:
+            yield name, f"ended at its target, {target}.", "good"
+        elif limited:
+            strain, what = strain_of(stage, run, rows)
+            yield name, (f"ended by its limit of {stage['max_steps']} time steps at {what} = {100 * strain:.4g} %, "
+                         "before its target."), "attention"
+
+
+def liquefaction(results, run):
+    undrained = [stage for stage in results.scene.get("stage", []) if stage["kind"].startswith("undrained")]
+    if not undrained:
+        return
+    event, ratio = results.numbers.get("liquefaction"), undrained[0].get("liquefaction_ratio", LIQUEFIED)
+    if event:
+        cycles = f"after {event['cycle']:g} cycles" if run.cyclic else "before its end"
+        yield "Liquefied:", (f"p'/p0' fell below {ratio:g} {cycles}; I_R at the onset {event['IR_at_onset']:.3f}, "
+                             f"largest strain before it {100 * event['strain_before']:.3g} %."), "plain"
+    else:
+        yield "Not liquefied:", (f"p'/p0' never fell below {ratio:g}; its smallest value is "
+                                 f"{np.nanmin(run.p_ratio):.3f}."), "plain"
+
+
+def rate(scene):
+    """Whether the rate of the stages that shear was left to the control, or fixed."""
+    common = scene.get("motion", {}).get("strain_rate")
+    rates = [stage.get("strain_rate", common) for stage in scene.get("stage", [])
+             if "strain" in stage or "until" in stage]
+    fixed = sorted(set(rates) - {None})
+    if fixed:
+        which = "in some stages; in the others controlled" if None in rates else "not controlled"
+        yield "Rate:", f"fixed at {', '.join(fixed)}, {which}.", "plain"
+    elif rates:
+        yield "Rate:", "controlled, by the inertial number and by the load that a wave time may add.", "good"
+
+
+def tolerances(results):
+    """Density and reversals against what the scene asks for."""
+    specimen, numbers = results.scene.get("specimen", {}), results.numbers
+    asked, reached = specimen.get("relative_density"), numbers.get("relative_density")
+    if asked is not None and reached is not None and "density_tolerance" in specimen:
+        held = abs(reached - asked) <= specimen["density_tolerance"]
+        yield "Density:", (f"D_r = {reached:.3f}, asked for {asked:g}; the tolerance of "
+                           f"{specimen['density_tolerance']:g} {'held' if held else 'did not hold'}."), (
+                               "good" if held else "attention")
+    amplitudes = [quantity(stage["deviator_amplitude"]) for stage in results.scene.get("stage", [])
+                  if "deviator_amplitude" in stage]
+    if numbers.get("CSR"):
+        amplitudes.append(numbers["CSR"] * numbers["sigma_v0"])
+    if amplitudes and numbers.get("reversals"):
+        over = numbers["worst_overshoot"]
+        yield "Reversals:", (f"{numbers['reversals']}; the worst overshoot is {over / 1e3:.3g} kPa, "
+                             f"{100 * over / max(amplitudes):.2g} % of the amplitude."), "plain"
+    if numbers.get("energy_residual") is not None:
+        residual = numbers["energy_residual"]
+        yield "Energy:", f"the residual of the balance is {residual:.1e} of the work exchanged.", "plain"
+
+
+def lines(results, run):
+    """(name, sentence, kind) of each verdict.   @param run  figures.common.Run, or None"""
+    found = []
+    if run is not None:
+        found += [*endings(results.scene, run), *liquefaction(results, run)]
+    return [*found, *rate(results.scene), *tolerances(results)]

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a results folder holds beside its tables: program, scene, summary, provenance."""
+import json
+import re
+import tomllib
+
+# The file with the numbers of a program's summary; it is written last, so a run that has it is finished.
+NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxial": "summary.json",
+           "rve_replay": "summary.json", "liquefaction_resistance": "resistance.json",
+           "calibrate": "calibrate.json", "micromechanics": "micromechanics.json"}
+
+
+class NoResults(Exception):
+    """The folder is not what it was taken for; the message says what to do."""
+
+
+def text_of(path):
+    """The text of a file, or nothing if it is not there."""
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def read_provenance(text):
+    """{name: value} of lines `name   value`."""
+    return dict(re.findall(r"^(\S.*?)\s{2,}(.*\S)\s*$", text, re.M))
+
+
+class Results:
+    """The files of a folder. What is missing is empty; `numbers` is None as long as the run is not finished."""
+
+    def __init__(self, path, program):
+        self.path, self.program = path, program
+        self.provenance = read_provenance(text_of(path / "provenance.txt"))
+        self.scene_text = text_of(path / "scene.toml")
+        self.scene = self._parsed("scene.toml", tomllib.loads) or {}
+        self.summary = text_of(path / "summary.txt")
+        self.numbers = self._parsed(NUMBERS[program], json.loads)
+
+    def _parsed(self, name, parse):
+        text = text_of(self.path / name)
+        try:
+            return parse(text) if text else None
+        except ValueError as error:
+            raise NoResults(f"{self.path / name}: cannot be read ({error}).") from error
+
+    @property
+    def title(self):
+        """That of the scene, or the name of the folder; an analysis has that of the run whose folder it is in."""
+        if self.program == "micromechanics":
+            return f"Micromechanics of {self.path.resolve().parent.name}"
+        given = (self.numbers or {}).get("title") or self.scene.get("title")
+        return given or self.path.resolve().name
+
+    @property
+    def command(self):
+        return self.provenance.get("command", "")
+
+    @property
+    def has_checkpoint(self):
+        return (self.path / "checkpoint").is_dir()
+
+
+def find_results(path):
+    """The results in a folder, of the program that its provenance names.   Raises NoResults"""
+    if not path.is_dir():
+        raise NoResults(f"{path}: there is no such folder. Give the results folder of a run.")
+    if (path / NUMBERS["micromechanics"]).is_file():
+        return Results(path, "micromechanics")
+    words = read_provenance(text_of(path / "provenance.txt")).get("command", "").split()
+    program = words[0].rpartition("/")[2] if words else ""
+    if program not in NUMBERS:
+        reason = f"its provenance.txt names {program}" if program else "it has no provenance.txt with a command"
+        raise NoResults(f"{path}: is not a results folder that can be reported ({reason}). Give the folder in which "
+                        f"one of these left its results: {', '.join(NUMBERS)}.")
+    return Results(path, program)

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs."""
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from report_support import ReportTest
+from support import BIN, CYCLIC, PATIENCE, main, tiny_scene
+
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
+BROWSER = shutil.which("chromium")
+MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
+
+# What the page says of itself when its script has run: width of the content, view of the first figure before and after
+# the wheel, after the double click.
+PROBE = """<script>
+const first = document.querySelector("svg.zoom"), box = first.getBoundingClientRect();
+const views = [first.getAttribute("viewBox")];
+const at = { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2, bubbles: true, cancelable: true };
+const note = () => views.push(first.getAttribute("viewBox"));
+first.dispatchEvent(new WheelEvent("wheel", { deltaY: -300, ...at })); note();
+first.focus();
+first.dispatchEvent(new WheelEvent("wheel", { deltaY: -300, ...at })); note();
+first.dispatchEvent(new KeyboardEvent("keydown", { key: "+", bubbles: true })); note();
+first.dispatchEvent(new MouseEvent("dblclick", at)); note();
+document.body.dataset.probe = [document.documentElement.scrollWidth, innerWidth, ...views].join("|");
+</script>"""
+
+
+class Reports(ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.said = cls.make_test("cyclic", output='checkpoint = "0.001 s"', stages=CYCLIC.format(steps=2000))
+        cls.make_test("whole", motion="damping = 0.2", stages=MONOTONIC)
+
+    def test_cyclic(self):
+        words = self.assert_whole("cyclic")
+        self.assertIn("ended by its limit of 2000 time steps", words)
+        self.assertIn("Rate: fixed at 2 1/s, not controlled.", words)
+        self.assertIn("-o cyclic -q --resume", words)
+        self.assertIn("results/again", words)
+        self.assertIn("The Isostat authors", words)
+        self.assertIn(f"all on one page in {pathlib.Path('cyclic/report.html')}", self.said.stdout)
+
+    def test_target(self):
+        words = self.assert_whole("whole")
+        self.assertIn("Stage 0, undrained-monotonic: ended at its target, axial strain of 0.1 %.", words)
+        self.assertIn("Rate: controlled", words)
+        self.assertIn("Not liquefied:", words)
+
+    def test_without(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=300)))
+        self.assert_done(self.run_test(scene, "-o", "out"))
+        self.assertFalse((self.folder / "out/report.html").exists())
+
+    def test_unfinished(self):
+        """Nothing is concluded of a run without a summary; no figures and a reason without a history."""
+        shutil.copytree(self.runs / "whole", self.folder / "out")
+        for name in ("summary.json", "summary.txt"):
+            (self.folder / "out" / name).unlink()
+        self.assert_done(self.run_app("isostat", "report", "out"))
+        text = (self.folder / "out/report.html").read_text(encoding="utf-8")
+        self.assertIn("Not finished:", text)
+        self.assertNotIn("ended at its target", text)
+        (self.folder / "out/history.csv").unlink()
+        self.assertEqual(self.run_app("isostat", "report", "out").returncode, 2)
+        text = (self.folder / "out/report.html").read_text(encoding="utf-8")
+        self.assertIn("No figures: out/history.csv", text)
+        self.assert_one_file(text)
+
+    def test_failure_costs_nothing(self):
+        """A folder in the way of the report: one line says so, and the run is done."""
+        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
+        shutil.copy(self.runs / "cyclic.toml", self.folder)
+        (self.folder / "cyclic/report.html").unlink()
+        (self.folder / "cyclic/report.html").mkdir()
+        result = self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume")
+        self.assert_done(result)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn("report.html: not written", result.stderr)
+        self.assertIn("figures in cyclic/figures", result.stdout)
+        self.assertNotIn("one page", result.stdout)
+
+    @unittest.skipUnless(BROWSER, "chromium is not installed")
+    def test_in_a_browser(self):
+        """Nothing is wider than the page; the selected figure answers to wheel and keys, and comes back."""
+        page = self.write("page.html", self.report("cyclic").replace("</body>", PROBE + "</body>"))
+        for width in (1280, 390):
+            command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},900",
+                       f"--user-data-dir={self.folder / 'user'}"]
+            dom = subprocess.run([*command, "--dump-dom", page.as_uri()], capture_output=True, text=True, check=True,
+                                 timeout=120 * PATIENCE).stdout
+            content, window, before, alone, wheel, key, after = re.search(r'data-probe="([^"]*)"', dom)[1].split("|")
+            self.assertLessEqual(int(content), int(window))
+            self.assertEqual([before, before], [alone, after])
+            widths = [float(view.split()[2]) for view in (before, wheel, key)]
+            self.assertEqual(widths, sorted(widths, reverse=True))
+            self.assertGreater(widths[0], widths[1])
+            image = self.folder / f"{width}.png"
+            report = (self.runs / "cyclic/report.html").as_uri()
+            subprocess.run([*command, f"--screenshot={image}", report], capture_output=True, check=True,
+                           timeout=120 * PATIENCE)
+            self.assertGreater(image.stat().st_size, 20000)
+
+
+@unittest.skipUnless(BIN and (BIN / "soil_column").exists(), "built without the continuum half")
+class OtherPrograms(ReportTest):
+    def test_consolidation(self):
+        self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=40")
+        words = self.assert_whole("column")
+        self.assertIn("of the final settlement", words)
+        self.assertNotIn("Liquefied:", words)
+
+    def test_shaken(self):
+        self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=6 s")
+        self.assertIn("iquefied:", self.assert_whole("shaken"))
+
+    def test_block(self):
+        self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=4", "--set",
+                  "test.axial_strain=0.002", "--set", "output.map_every=1")
+        self.assertIn("Ended at its target, an axial strain of 0.2 %.", self.assert_whole("block"))
+
+
+if __name__ == "__main__":
+    main()
