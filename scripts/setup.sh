@@ -13,6 +13,7 @@ packages=(
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev libnlopt-cxx-dev
   libdeal.ii-dev libpetsc-real-dev openmpi-bin
   python3 python3-matplotlib python3-numpy python3-h5py
+  python3-dev pybind11-dev python3-pip python3-setuptools python3-wheel
 )
 if [[ "${1:-}" == --gates ]]; then
   packages+=(clang-format clang-tidy chromium)

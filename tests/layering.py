@@ -4,8 +4,8 @@
 
     layering.py [--root REPOSITORY] [EXECUTABLE or LIBRARY ...]
 
-Dependencies run one way: apps -> coupling -> {fem, dem} -> base. Inside dem they follow the time step. Prints every
-violation as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as
+Dependencies run one way: python -> apps -> coupling -> {fem, dem} -> base. Inside dem they follow the time step. Prints
+every violation as file:line and returns 1 if there is one. Executables, shared libraries and static libraries given as
 arguments must not need deal.II or PETSc.
 """
 import argparse
@@ -23,6 +23,7 @@ TOP = {
     "fem": {"fem", "base"},
     "coupling": {"coupling", "fem", "dem", "base"},
     "apps": {"apps", "coupling", "fem", "dem", "base"},
+    "python": {"python", "apps", "dem", "base"},
 }
 
 # Library -> its parts, each with the parts it may include besides itself. A part is a folder or a file (without ending)
@@ -91,6 +92,7 @@ INNER = {
         "rve_replay": {"common", "deposit"},
         "biaxial": {"common", "deposit"},
     },
+    "python": {"binding": set()},
 }
 
 # Any folder below dem/contact is a law, which knows the interface, the loop that runs it and no other law.

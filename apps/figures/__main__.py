@@ -10,6 +10,8 @@ import importlib
 import pathlib
 import sys
 
+import matplotlib
+
 from .common import BadInput, note
 
 PROGRAMS = ("calibrate", "element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay",
@@ -24,6 +26,7 @@ def main():
     parser.add_argument("--beside", type=pathlib.Path, nargs="*", default=[],
                         help="other results that a figure shows, too (biaxial: fig_band)")
     arguments = parser.parse_args()
+    matplotlib.use("Agg")  # files only
     drawing = importlib.import_module(f"figures.{arguments.program}").DRAWING
     try:
         results = drawing.results(arguments.results, arguments.beside)

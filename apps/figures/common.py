@@ -6,12 +6,9 @@ import re
 import sys
 import warnings
 
+import matplotlib.pyplot as plt
 import numpy as np
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter  # noqa: E402
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
 FLOOR = 1e-4  # lowest p'/p0' that is drawn

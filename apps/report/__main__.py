@@ -11,6 +11,8 @@ import argparse
 import pathlib
 import sys
 
+import matplotlib
+
 from . import run
 from .folder import NUMBERS, NoResults, find_results
 
@@ -33,6 +35,7 @@ def parse():
 
 def main():
     arguments = parse()
+    matplotlib.use("Agg")  # files only
     try:
         if arguments.command == "leave":
             return run.leave(arguments.results, arguments.program)

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/test_run.hpp"
+
+#include "apps/common/run_output.hpp"
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+/// The output of a run and who else looks on. The watcher is asked first: what it stops, the output checkpoints.
+class Watched : public RunObserver
+{
+public:
+  Watched(RunOutput &output, RunObserver *watcher) : output_(output), watcher_(watcher) {}
+
+  void record(const Assembly &assembly, const DriveState &state, const Observation &seen, bool snapshot) override
+  {
+    output_.record(assembly, state, seen, snapshot);
+    if (watcher_)
+      watcher_->record(assembly, state, seen, snapshot);
+  }
+  void event(const std::string &line) override
+  {
+    output_.event(line);
+    if (watcher_)
+      watcher_->event(line);
+  }
+  bool after_step(const Assembly &assembly, const DriveState &state, const Observation &seen) override
+  {
+    if (watcher_ && !watcher_->after_step(assembly, state, seen))
+      {
+        output_.save_checkpoint(assembly, state);
+        return false;
+      }
+    return output_.after_step(assembly, state, seen);
+  }
+
+private:
+  RunOutput &output_;
+  RunObserver *watcher_;
+};
+} // namespace
+
+TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSettings &how)
+{
+  Snapshot initial = specimen.state;
+  initial.law = scene.contact;
+  return {
+      .assembly = std::make_shared<Assembly>(initial, how), .state = {}, .specimen = specimen.numbers, .resumed = {}};
+}
+
+TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettings &how)
+{
+  TestRun run;
+  run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
+  check_same_scene(folder, run.resumed->scene, to_toml(scene));
+  run.assembly = std::make_shared<Assembly>(run.resumed->state, how);
+  restore(*run.resumed, *run.assembly);
+  run.state = run.resumed->drive;
+  run.specimen = run.resumed->specimen;
+  return run;
+}
+
+TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher)
+{
+  const auto &[scene, folder, command_line, use, quiet, threads] = request;
+  open_result_folder(folder, use); // only now that everything else went well may older results go
+  if (use != FolderUse::resume)
+    write_provenance(folder, scene, command_line);
+  RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
+  Watched observer(output, watcher);
+  const std::uint64_t first_step = run.assembly->step();
+  const Stopwatch watch;
+  RunOutcome outcome = RunOutcome::finished;
+  try
+    {
+      outcome = run_programme(scene.programme(), *run.assembly, run.state, observer);
+    }
+  catch (const RunFailure &failure)
+    {
+      output.finish();
+      throw RunFailure(fmt::format("{}\n  {}", failure.what(), last_checkpoint(folder)));
+    }
+  const double seconds = watch.seconds();
+  if (outcome == RunOutcome::interrupted)
+    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
+  output.finish();
+
+  TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
+  summary.steps = static_cast<double>(run.assembly->step());
+  summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
+  write_json(folder / "summary.json", summary);
+  return summary;
+}
+} // namespace isostat

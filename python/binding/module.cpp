@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.hpp"
+#include "base/record/installation.hpp"
+#include "python/binding/binding.hpp"
+
+namespace isostat::python
+{
+std::vector<Vec3> points(const py::array_t<double, py::array::c_style | py::array::forcecast> &array, const char *name)
+{
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw InputError(std::string(name) + ": must be an array of shape (n, 3).");
+  std::vector<Vec3> found;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i)
+    found.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));
+  return found;
+}
+
+bool SignalWatch::go_on()
+{
+  if (interrupted_ || ++calls_ % 256 != 0)
+    return !interrupted_;
+  const py::gil_scoped_acquire gil;
+  interrupted_ = PyErr_CheckSignals() != 0;
+  return !interrupted_;
+}
+} // namespace isostat::python
+
+PYBIND11_MODULE(_core, module)
+{
+  namespace py = pybind11;
+  using namespace isostat;
+  module.doc() = "The compiled part of isostat; use what the package itself offers.";
+  py::register_exception<InputError>(module, "InputError", PyExc_ValueError).doc() =
+      "A mistake in what was given: says where, the value, the allowed range and the remedy.";
+  py::register_exception<RunFailure>(module, "RunFailure", PyExc_RuntimeError).doc() =
+      "A run that cannot go on: says the step, the grain and the last good checkpoint.";
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try
+      {
+        if (thrown)
+          std::rethrow_exception(thrown);
+      }
+    catch (const Interrupted &stop)
+      {
+        if (!PyErr_Occurred())
+          PyErr_SetString(PyExc_KeyboardInterrupt, stop.what());
+      }
+  });
+  python::bind_scene(module);
+  python::bind_snapshot(module);
+  python::bind_measures(module);
+  python::bind_files(module);
+  python::bind_run(module);
+  python::bind_rve(module);
+}

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Running a scene, with a look at the packing on the way.   tested: tests/python/run_test.py
+#include "apps/common/run_output.hpp"
+#include "apps/common/test_run.hpp"
+#include "base/error.hpp"
+#include "base/files/replace_file.hpp"
+#include "dem/prepare/specimen.hpp"
+#include "python/binding/binding.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat::python
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+/// What a callback may look at. It holds on to the assembly, so that arrays stay valid; numbers are those of the call.
+struct Moment
+{
+  std::shared_ptr<const Assembly> assembly;
+  Observation seen;
+  std::size_t stage;
+};
+
+/// Calls back, keeps rows of a run that leaves no files, and looks for Ctrl-C.
+class Watcher : public RunObserver
+{
+public:
+  py::object on_record = py::none(), on_step = py::none();
+  std::uint64_t every = 1000;
+  bool keep_rows = false;
+  std::vector<std::vector<double>> rows;
+  const Scene *scene = nullptr;
+  std::shared_ptr<const Assembly> assembly;
+  SignalWatch signals;
+  bool stopped = false;
+  Progress progress{true};
+
+  void record(const Assembly &live, const DriveState &state, const Observation &seen, bool) override
+  {
+    if (keep_rows)
+      rows.push_back(history_row(*scene, live, state, seen, micromechanics(live.snapshot())));
+    call(on_record, state, seen);
+  }
+  bool after_step(const Assembly &live, const DriveState &state, const Observation &seen) override
+  {
+    if (live.step() % every == 0)
+      call(on_step, state, seen);
+    return signals.go_on() && !stopped;
+  }
+
+private:
+  void call(const py::object &function, const DriveState &state, const Observation &seen)
+  {
+    if (function.is_none() || stopped)
+      return;
+    const py::gil_scoped_acquire gil;
+    try
+      {
+        ask(function, {assembly, seen, state.place.stage});
+      }
+    catch (const py::error_already_set &error)
+      {
+        if (!error.matches(PyExc_KeyboardInterrupt)) // Ctrl-C while Python was at work stops the run as any other does
+          throw;
+        signals.interrupt();
+      }
+  }
+  void ask(const py::object &function, const Moment &moment)
+  {
+    const py::object answer = function(moment);
+    stopped = !answer.is_none() && PyObject_IsTrue(answer.ptr()) == 0; // also a false of NumPy
+  }
+};
+
+/// Preparation that Ctrl-C can stop.
+class WatchedPreparation : public PreparationOutput
+{
+public:
+  using PreparationOutput::PreparationOutput;
+  bool after_step(const Assembly &assembly, const DriveState &state, const Observation &seen) override
+  {
+    return signals_.go_on() && PreparationOutput::after_step(assembly, state, seen);
+  }
+
+private:
+  SignalWatch signals_;
+};
+
+Specimen prepare(const Scene &scene, const std::string &cache, int threads, bool quiet)
+{
+  const py::gil_scoped_release free;
+  WatchedPreparation preparation(quiet);
+  return obtain_specimen(scene, cache, preparation, threads);
+}
+
+/// What run() gives back.
+struct Result
+{
+  std::string folder; ///< empty: none
+  bool finished = false;
+  std::shared_ptr<Snapshot> snapshot;
+  std::vector<RecordColumn> columns; ///< of a run without files
+  std::vector<std::vector<double>> rows;
+  std::string summary; ///< text; empty without files
+};
+
+py::dict history_of(const Result &result)
+{
+  py::dict history;
+  for (std::size_t k = 0; k < result.columns.size(); ++k)
+    history[result.columns[k].name.c_str()] =
+        computed<double>(result.rows.size(), [&](std::size_t i) { return result.rows[i][k]; });
+  return history;
+}
+
+py::dict units_of(const Result &result)
+{
+  py::dict units;
+  for (const RecordColumn &column : result.columns)
+    units[column.name.c_str()] = column.unit;
+  return units;
+}
+
+struct Request
+{
+  const Scene &scene;
+  std::string output, cache;
+  FolderUse use;
+  int threads;
+  bool quiet;
+  const Specimen *specimen;
+};
+
+TestRun begin(const Request &request)
+{
+  const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
+  if (request.use == FolderUse::resume)
+    return resume_test(request.scene, request.output, how);
+  if (request.specimen)
+    return start_test(request.scene, *request.specimen, how);
+  WatchedPreparation preparation(request.quiet);
+  return start_test(request.scene, obtain_specimen(request.scene, request.cache, preparation, request.threads), how);
+}
+
+/// Without a folder: stages and watcher only.
+void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Result &result)
+{
+  watcher.keep_rows = true;
+  result.finished = run_programme(request.scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
+  result.columns = history_columns(request.scene);
+  result.rows = std::move(watcher.rows);
+}
+
+void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Result &result)
+{
+  SceneOptions options;
+  options.output = request.output;
+  options.command_line = "isostat.run() in Python";
+  options.quiet = request.quiet;
+  options.threads = request.threads;
+  options.overwrite = request.use == FolderUse::overwrite;
+  options.resume = request.use == FolderUse::resume;
+  const RunRequest<Scene> asked(request.scene, options);
+  try
+    {
+      const TestSummary summary = run_test(asked, run, &watcher);
+      result.summary = to_text(summary, request.scene);
+      write_replacing(asked.folder / "summary.txt", result.summary);
+      result.finished = true;
+    }
+  catch (const Interrupted &)
+    {
+      if (!watcher.stopped)
+        throw;
+    }
+  result.folder = asked.folder.string();
+}
+
+Result run(const Request &request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
+{
+  Result result;
+  Watcher watcher;
+  watcher.on_record = on_record;
+  watcher.on_step = on_step;
+  watcher.every = std::max<std::uint64_t>(every, 1);
+  watcher.scene = &request.scene;
+  const py::gil_scoped_release free;
+  if (!request.output.empty())
+    check_result_folder(request.output, request.use);
+  TestRun test = begin(request);
+  watcher.assembly = test.assembly;
+  if (request.output.empty())
+    run_in_memory(request, test, watcher, result);
+  else
+    run_with_files(request, test, watcher, result);
+  if (watcher.signals.interrupted())
+    throw Interrupted("interrupted");
+  test.assembly->compute_forces();
+  result.snapshot = std::make_shared<Snapshot>(test.assembly->snapshot());
+  return result;
+}
+
+void bind_moment(py::module_ &module)
+{
+  py::class_<Moment>(module, "Moment", "What a callback of run() sees, at the end of a force evaluation or a step.")
+      .def_property_readonly(
+          "step", [](const Moment &m) { return m.seen.step; }, "Time steps since the run began.")
+      .def_property_readonly(
+          "time", [](const Moment &m) { return m.assembly->time(); }, "s.")
+      .def_readonly("stage", &Moment::stage, "Number of the stage, from 0.")
+      .def_property_readonly(
+          "p", [](const Moment &m) { return m.seen.p; }, "Mean effective stress of the walls or of the cell, Pa.")
+      .def_property_readonly(
+          "q", [](const Moment &m) { return m.seen.q; }, "Deviatoric stress of the same, Pa.")
+      .def_property_readonly(
+          "axial_strain", [](const Moment &m) { return m.seen.axial; },
+          "Logarithmic, since shearing began, compression positive.")
+      .def_property_readonly(
+          "tau", [](const Moment &m) { return m.seen.tau; }, "Shear stress xy of a cell, Pa.")
+      .def_property_readonly(
+          "gamma", [](const Moment &m) { return m.seen.gamma; }, "Shear strain xy of a cell.")
+      .def_property_readonly(
+          "void_ratio", [](const Moment &m) { return void_ratio(m.assembly->volume(), m.assembly->solid_volume()); },
+          "e.")
+      .def_property_readonly(
+          "positions",
+          [](const py::object &self) {
+            const Packing &grains = self.cast<const Moment &>().assembly->packing();
+            return view(grains.position.data(), grains.n_grains(), 3, 4 * sizeof(double), self);
+          },
+          "Centres of the running packing, (n, 3), m: a view that goes on changing with the run.")
+      .def_property_readonly(
+          "velocities",
+          [](const py::object &self) {
+            const Packing &grains = self.cast<const Moment &>().assembly->packing();
+            return view(grains.velocity.data(), grains.n_grains(), 3, 4 * sizeof(double), self);
+          },
+          "(n, 3), m/s: a view, as positions.")
+      .def(
+          "snapshot", [](const Moment &m) { return std::make_shared<Snapshot>(m.assembly->snapshot()); },
+          "A copy of the packing with its contacts, to keep or to measure. Within on_record.");
+}
+} // namespace
+
+void bind_run(py::module_ &module)
+{
+  bind_moment(module);
+  module.def("prepare", &prepare, py::arg("scene"), py::arg("cache"), py::arg("threads"), py::arg("quiet"));
+  py::class_<Result>(module, "Result")
+      .def_readonly("folder", &Result::folder)
+      .def_readonly("finished", &Result::finished)
+      .def_readonly("snapshot", &Result::snapshot)
+      .def_readonly("summary", &Result::summary)
+      .def_property_readonly("history", &history_of)
+      .def_property_readonly("units", &units_of);
+  module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
+                       const Specimen *specimen, bool overwrite, bool resume, int threads, bool quiet,
+                       const py::object &on_record, const py::object &on_step, std::uint64_t every) {
+    const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
+    return run({scene, output, cache, use, threads, quiet, specimen}, on_record, on_step, every);
+  });
+}
+} // namespace isostat::python

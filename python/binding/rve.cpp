@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The representative volume element.   tested: tests/python/rve_test.py
+#include "dem/rve/rve.hpp"
+#include "base/error.hpp"
+#include "python/binding/binding.hpp"
+
+namespace isostat::python
+{
+namespace
+{
+/// Keys of [motion] that are given, over the defaults of an element.
+RveSettings settings_of(const std::optional<double> &inertial_number, const std::optional<double> &damping,
+                        const std::optional<double> &strain_rate, const std::optional<Mat3> &frame,
+                        std::uint64_t min_steps, double max_increment)
+{
+  RveSettings settings;
+  settings.motion = controlled_motion();
+  if (inertial_number)
+    settings.motion.inertial_number = inertial_number;
+  if (damping)
+    settings.motion.damping = *damping;
+  if (strain_rate)
+    settings.motion.strain_rate = strain_rate;
+  if (frame)
+    settings.frame = *frame;
+  settings.min_steps = min_steps;
+  settings.max_increment = max_increment;
+  return settings;
+}
+
+template <typename... Argument>
+auto without_gil(RveResponse (Rve::*function)(Argument...))
+{
+  return [function](Rve &rve, std::decay_t<Argument>... argument) {
+    const py::gil_scoped_release free;
+    return (rve.*function)(argument...);
+  };
+}
+
+RveResponse mixed(Rve &rve, const Mat3 &gradient, const Mat3 &stress, const Eigen::Matrix<bool, 3, 3> &controlled,
+                  double tolerance)
+{
+  const py::gil_scoped_release free;
+  return rve.advance(MixedIncrement{gradient, stress, controlled, tolerance});
+}
+
+void bind_response(py::module_ &module)
+{
+  py::class_<RveResponse>(module, "RveResponse", "What an increment gave.")
+      .def_property_readonly(
+          "accepted", [](const RveResponse &r) { return r.outcome == RveOutcome::accepted; },
+          "False: rejected, and the state is that before the call.")
+      .def_readonly("reason", &RveResponse::reason, "Why it was rejected.")
+      .def_readonly("stress", &RveResponse::stress, "Cauchy effective stress, (3, 3), Pa, tension positive.")
+      .def_readonly("mean_stress_change", &RveResponse::mean_stress_change, "Of tr(stress)/3, Pa, tension positive.")
+      .def_readonly("steps", &RveResponse::steps, "Time steps it took.")
+      .def_readonly("indicator", &RveResponse::indicator, "Quasi-static error indicator.")
+      .def("__bool__", [](const RveResponse &r) { return r.outcome == RveOutcome::accepted; });
+}
+} // namespace
+
+void bind_rve(py::module_ &module)
+{
+  bind_response(module);
+  py::class_<RveState>(module, "RveState", "The complete state of an element; for restore().")
+      .def_property_readonly("bytes", &RveState::bytes, "Memory it takes.");
+  py::class_<Rve>(module, "Rve",
+                  "A periodic packing as a material point: strain in, stress out. Nothing moves between calls.\n"
+                  "Displacement gradients (3, 3) are relative to the present shape; stress is tension positive, Pa.")
+      .def(py::init([](const Snapshot &specimen, const std::optional<double> &inertial_number,
+                       const std::optional<double> &damping, const std::optional<double> &strain_rate,
+                       const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment) {
+             return Rve(specimen, settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment));
+           }),
+           py::arg("specimen"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
+           py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
+           py::arg("max_increment") = 0.01,
+           "specimen: a periodic packing at rest. inertial_number, damping (local), strain_rate (1/s): as the keys of\n"
+           "[motion]; None: what columns use. frame: rotation, x_lab = frame x_specimen.")
+      .def("advance", without_gil<const Mat3 &>(&Rve::advance), py::arg("gradient"),
+           "Strains it by a displacement gradient (3, 3).")
+      .def("undrained", without_gil(&Rve::undrained), py::arg("gradient"), "The same without its volumetric part.")
+      .def("mixed", &mixed, py::arg("gradient"), py::arg("stress"), py::arg("controlled"), py::arg("tolerance") = 1e-3,
+           "Prescribed strain in some components, target stress (Pa, tension positive) where `controlled` (3, 3) is "
+           "true.")
+      .def_property_readonly("stress", &Rve::stress, "(3, 3), Pa, tension positive.")
+      .def_property_readonly("void_ratio", &Rve::void_ratio, "e.")
+      .def_property_readonly("dry_density", &Rve::dry_density, "Of the skeleton, kg/m3.")
+      .def(
+          "stiffness",
+          [](const Rve &rve, bool yielding_contacts_resist) {
+            const py::gil_scoped_release free;
+            return rve.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::released);
+          },
+          py::arg("yielding_contacts_resist") = true, "As Snapshot.stiffness().")
+      .def("snapshot", [](const Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); })
+      .def("save", &Rve::save)
+      .def("restore", &Rve::restore, py::arg("state"), "Of this element, or of one with the same grains.")
+      .def(
+          "pack",
+          [](const Rve &rve) {
+            const std::vector<std::byte> bytes = rve.pack();
+            return py::bytes(reinterpret_cast<const char *>(bytes.data()), bytes.size());
+          },
+          "The element as bytes for another process on the same type of machine.")
+      .def_static(
+          "unpack",
+          [](const std::string &bytes, const std::optional<double> &inertial_number,
+             const std::optional<double> &damping, const std::optional<double> &strain_rate,
+             const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment) {
+            return Rve::unpack(std::as_bytes(std::span(bytes.data(), bytes.size())),
+                               settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment));
+          },
+          py::arg("bytes"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
+          py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
+          py::arg("max_increment") = 0.01, "The element that pack() gave, with the same settings.");
+}
+} // namespace isostat::python

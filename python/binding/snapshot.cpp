@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Packings as arrays.   tested: tests/python/snapshot_test.py
+#include "base/error.hpp"
+#include "dem/measure/summary.hpp"
+#include "python/binding/binding.hpp"
+
+#include <memory>
+
+namespace isostat::python
+{
+namespace
+{
+using Self = py::object; ///< the owner of the arrays
+
+const Snapshot &of(const Self &self) { return self.cast<const Snapshot &>(); }
+
+/// Three of the four numbers of each record.
+py::array records(const Self &self, const AlignedVector<double> &values)
+{
+  return view(values.data(), of(self).grains.n_grains(), 3, 4 * sizeof(double), self);
+}
+
+template <typename Value>
+py::array of_contacts(const Self &self, std::size_t columns, const Value *(*first)(const Contact &))
+{
+  const auto &contacts = of(self).contacts;
+  static const Contact none{};
+  return view(first(contacts.empty() ? none : contacts[0]), contacts.size(), columns, sizeof(Contact), self);
+}
+
+template <Vec3 ContactHistory::*vector>
+py::array history(const Self &self)
+{
+  return of_contacts<double>(self, 3, [](const Contact &c) { return (c.history.*vector).data(); });
+}
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Of three lengths or of edges in columns.   @throws InputError
+PeriodicCell periodic_cell(const Doubles &cell)
+{
+  if (cell.ndim() == 1 && cell.size() == 3 && cell.at(0) > 0 && cell.at(1) > 0 && cell.at(2) > 0)
+    return PeriodicCell::with_edges({cell.at(0), cell.at(1), cell.at(2)});
+  PeriodicCell found;
+  if (cell.ndim() == 2 && cell.shape(0) == 3 && cell.shape(1) == 3)
+    found.edges = py::cast<Mat3>(cell);
+  found.reference_volume = found.edges.determinant();
+  if (cell.size() != 9 || !(found.reference_volume > 0))
+    throw InputError("cell: must be three lengths, or three edges in the columns of a (3, 3) array that form a "
+                     "right-handed cell, in m.");
+  return found;
+}
+
+Snapshot from_spheres(const Doubles &centres, const std::vector<double> &radii, double density,
+                      const std::optional<Doubles> &box, const std::optional<Doubles> &cell, const Law &law)
+{
+  const std::vector<Vec3> x = points(centres, "centres");
+  if (x.size() != radii.size() || x.empty())
+    throw InputError("radii: as many as centres, and one at least.");
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!(radii[i] > 0) || !x[i].allFinite())
+      throw InputError("sphere " + std::to_string(i) + ": a radius must be positive, in m, and a centre finite.");
+  if (box.has_value() == cell.has_value())
+    throw InputError("give either box = [lower, upper] or cell, in m.");
+  Snapshot snapshot;
+  snapshot.grains = make_packing(x, radii, density);
+  snapshot.law = law;
+  if (cell)
+    {
+      snapshot.cell = periodic_cell(*cell);
+      return snapshot;
+    }
+  const std::vector<Vec3> corners = points(*box, "box");
+  if (corners.size() != 2 || !((corners[1] - corners[0]).array() > 0).all())
+    throw InputError("box: must be [lower, upper], two corners with lower < upper, in m.");
+  snapshot.box = {corners[0], corners[1]};
+  return snapshot;
+}
+
+void add_grains(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
+{
+  snapshot
+      .def(
+          "__len__", [](const Snapshot &s) { return s.grains.n_grains(); }, "Number of grains.")
+      .def_property_readonly(
+          "positions", [](const Self &self) { return records(self, of(self).grains.position); }, "Centres, (n, 3), m.")
+      .def_property_readonly(
+          "velocities", [](const Self &self) { return records(self, of(self).grains.velocity); },
+          "Of the half step before, (n, 3), m/s.")
+      .def_property_readonly(
+          "spins", [](const Self &self) { return records(self, of(self).grains.spin); },
+          "Of the half step before, (n, 3), rad/s.")
+      .def_property_readonly(
+          "radii",
+          [](const Self &self) {
+            const Packing &grains = of(self).grains;
+            return view(grains.position.data() + 3, grains.n_grains(), 0, 4 * sizeof(double), self);
+          },
+          "(n), m.")
+      .def_property_readonly(
+          "ids",
+          [](const Self &self) {
+            const Packing &grains = of(self).grains;
+            return view(grains.id.data(), grains.n_grains(), 0, sizeof(grains.id[0]), self);
+          },
+          "Number of each grain in its specimen, (n).")
+      .def_property_readonly(
+          "masses",
+          [](const Snapshot &s) {
+            return computed<double>(s.grains.n_grains(), [&](auto i) { return s.grains.mass(i); });
+          },
+          "(n), kg; computed.")
+      .def_property_readonly(
+          "inertias",
+          [](const Snapshot &s) {
+            return computed<double>(s.grains.n_grains(), [&](auto i) { return s.grains.inertia(i); });
+          },
+          "Moments of inertia, (n), kg m2; computed.")
+      .def_property_readonly(
+          "density", [](const Snapshot &s) { return s.grains.density; }, "Of the grains, kg/m3.")
+      .def_property_readonly(
+          "d50", [](const Snapshot &s) { return s.grains.d50(); }, "Median diameter by volume, m.");
+}
+
+void add_contacts(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
+{
+  static_assert(offsetof(Contact, second) == offsetof(Contact, first) + sizeof(std::uint32_t));
+  snapshot
+      .def_property_readonly(
+          "contact_pairs",
+          [](const Self &self) {
+            return of_contacts<std::uint32_t>(self, 2, [](const Contact &c) { return &c.first; });
+          },
+          "Indices of the two grains of each contact, (c, 2), first < second.")
+      .def_property_readonly(
+          "overlaps",
+          [](const Self &self) { return of_contacts<double>(self, 0, [](const Contact &c) { return &c.overlap; }); },
+          "(c), m.")
+      .def_property_readonly(
+          "normal_forces",
+          [](const Self &self) {
+            return of_contacts<double>(self, 0, [](const Contact &c) { return &c.normal_force; });
+          },
+          "(c), N, repulsion positive.")
+      .def_property_readonly("normals", &history<&ContactHistory::normal>, "From first to second grain, (c, 3).")
+      .def_property_readonly("shear_forces", &history<&ContactHistory::shear_force>, "On the second grain, (c, 3), N.")
+      .def_property_readonly("bending_moments", &history<&ContactHistory::bending_moment>,
+                             "Of rolling, on the second grain, (c, 3), N m.")
+      .def_property_readonly("twisting_moments", &history<&ContactHistory::twisting_moment>,
+                             "On the second grain, (c, 3), N m.")
+      .def_property_readonly(
+          "wall_contacts",
+          [](const Snapshot &s) {
+            py::list rows;
+            for (const WallContact &c : s.wall_contacts)
+              rows.append(py::make_tuple(c.grain, c.wall, c.overlap, c.normal_force));
+            return rows;
+          },
+          "(grain, wall, overlap in m, normal force in N); walls 0..5 are x-, x+, y-, y+, z-, z+.");
+}
+} // namespace
+
+void bind_snapshot(py::module_ &module)
+{
+  py::class_<Snapshot, std::shared_ptr<Snapshot>> snapshot(
+      module, "Snapshot",
+      "Grains and the contacts in force at one moment. Arrays are read-only views of its memory: nothing is copied, "
+      "and\n"
+      "they keep it alive. SI; stress and strain tensors are tension positive, p' and q compression positive.");
+  snapshot
+      .def_static(
+          "from_spheres", &from_spheres, py::arg("centres"), py::arg("radii"), py::kw_only(),
+          py::arg("density") = 2650.0, py::arg("box") = py::none(), py::arg("cell") = py::none(),
+          py::arg("law") = Law(),
+          "Resting spheres without contacts.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
+          "box: two corners, m; or cell: of a periodic packing, three lengths or the edges in columns, (3, 3), m.\n"
+          "Contacts form when a run begins, without shear forces: let a `rebalance` stage come first.")
+      .def_readonly("time", &Snapshot::time, "s.")
+      .def_readonly("step", &Snapshot::step, "Time steps since the run began.")
+      .def_readonly("strain", &Snapshot::strain, "Logarithmic, along x, y, z since shearing began, tension positive.")
+      .def_readonly("law", &Snapshot::law, "The contact law.")
+      .def_property_readonly("volume", &Snapshot::volume, "Of box or cell, m3.")
+      .def_property_readonly(
+          "void_ratio", [](const Snapshot &s) { return void_ratio(s.volume(), s.grains.solid_volume()); }, "e.")
+      .def_property_readonly(
+          "box",
+          [](const Snapshot &s) -> py::object {
+            if (s.cell)
+              return py::none();
+            Eigen::Matrix<double, 2, 3, Eigen::RowMajor> corners;
+            corners << s.box.lower.transpose(), s.box.upper.transpose();
+            return py::cast(corners);
+          },
+          "Lower and upper corner, (2, 3), m; None of a periodic cell.")
+      .def_property_readonly(
+          "cell", [](const Snapshot &s) -> py::object { return s.cell ? py::cast(s.cell->edges) : py::none(); },
+          "Edges of the periodic cell in columns, (3, 3), m; None of a box.")
+      .def("__repr__", [](const Snapshot &s) {
+        return "<isostat.Snapshot of " + std::to_string(s.grains.n_grains()) + " grains, " +
+               std::to_string(s.contacts.size()) + " contacts>";
+      });
+  add_grains(snapshot);
+  add_contacts(snapshot);
+}
+} // namespace isostat::python

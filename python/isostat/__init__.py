@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Undrained tests and representative volume elements of spheres: scenes, runs, packings as arrays.
+
+    import isostat
+
+    scene = isostat.Scene("quick_cyclic_liquefies.toml")
+    result = isostat.run(scene, "results/first")
+    result.history["p"], result.history.units["p"]
+
+SI units. Stress and strain tensors are tension positive; p', q and the strains of a history compression positive.
+A contact law of one's own is written in C++ (CONTRIBUTING.md): Python would be called for every contact.
+"""
+from isostat._core import (InputError, Law, Moment, RunFailure, Rve, RveResponse, RveState, Snapshot, Specimen,
+                           default_scene, import_tables, measure_units, read_snapshot, read_specimen, scene_manual,
+                           write_force_chains_vtp, write_specimen, write_vtp)
+from isostat.results import History, Results, draw, read
+from isostat.running import prepare, run
+from isostat.scene import Scene
+
+__all__ = ["History", "InputError", "Law", "Moment", "Results", "RunFailure", "Rve", "RveResponse", "RveState", "Scene",
+           "Snapshot", "Specimen", "default_scene", "draw", "import_tables", "measure_units", "prepare", "read",
+           "read_snapshot", "read_specimen", "run", "scene_manual", "write_force_chains_vtp", "write_specimen",
+           "write_vtp"]

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results of a run as arrays.   tested: tests/python/results_test.py"""
+import collections.abc
+import csv
+import importlib
+import json
+import pathlib
+import re
+
+import numpy as np
+
+from isostat import _core
+from isostat.scene import Scene
+
+
+class History(collections.abc.Mapping):
+    """Columns by name, in SI, compression positive: history["p"]. `units` has their units."""
+
+    def __init__(self, columns, units):
+        self._columns, self.units = dict(columns), dict(units)
+
+    def __getitem__(self, name):
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"{name}: no such column; there are {', '.join(self._columns)}") from None
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __len__(self):
+        """Number of columns; rows are len(history["step"])."""
+        return len(self._columns)
+
+    def __repr__(self):
+        rows = len(next(iter(self._columns.values()), ()))
+        return f"<isostat.History of {rows} rows: {', '.join(self._columns)}>"
+
+    def to_pandas(self):
+        """A DataFrame; its attrs["units"] has the units. Needs pandas."""
+        import pandas  # only who asks for it needs it
+
+        frame = pandas.DataFrame(self._columns)
+        frame.attrs["units"] = self.units
+        return frame
+
+
+def read_table(path):
+    """A CSV table whose header has `name (unit)`, as a History."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    if not rows:
+        raise _core.InputError(f"{path}: is empty.")
+    names, units = zip(*(re.fullmatch(r"(.*?)(?: \(([^()]*)\))?", cell).groups() for cell in rows[0]))
+    whole = [row for row in rows[1:] if len(row) == len(names)]
+    body = np.array([[float(cell) if cell else np.nan for cell in row] for row in whole]).reshape(-1, len(names))
+    return History({name: body[:, k] for k, name in enumerate(names)},
+                   {name: unit or "-" for name, unit in zip(names, units)})
+
+
+def draw(folder, name, program="element_test"):
+    """Draws one of the figures that a program leaves, fig_redundancy say, and returns its axes.
+
+    isostat.draw("results/mine", "fig_redundancy")[0].figure.savefig("mine.pdf"). Needs matplotlib.
+    Raises InputError (no such figure, a folder that holds no results, nothing to draw).
+    """
+    figures = importlib.import_module("isostat.figures.common")
+    try:
+        drawing = importlib.import_module(f"isostat.figures.{program}").DRAWING
+    except ModuleNotFoundError as error:
+        raise _core.InputError(f"{program}: no program of that name leaves figures.") from error
+    if name not in drawing.figures:
+        raise _core.InputError(f"{name}: no figure of {program}; there are {', '.join(drawing.figures)}.")
+    try:
+        results = drawing.results(pathlib.Path(folder))
+    except figures.BadInput as error:
+        raise _core.InputError(f"{error}.") from error
+    with figures.plt.rc_context(figures.STYLE):
+        figure = drawing.figures[name](results)
+    if figure is None:
+        raise _core.InputError(f"{folder}: has nothing that {name} shows.")
+    return figure.axes
+
+
+class Results:
+    """A results folder of element_test or run().
+
+    history     History                            scene       Scene, with every key resolved
+    summary     numbers of summary.json            snapshots   paths of the stored packings; packing(k) reads one
+    provenance  text: version, compiler, seed ...
+    """
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        if not (self.folder / "history.csv").is_file():
+            raise _core.InputError(f"{self.folder}: holds no history.csv. Give the folder of a run of element_test.")
+        self.history = read_table(self.folder / "history.csv")
+        self.snapshots = sorted((self.folder / "snapshots").glob("snapshot_*.h5"))
+
+    @property
+    def scene(self):
+        """The Scene that was run, with every key resolved."""
+        return Scene((self.folder / "scene.toml").read_text(encoding="utf-8"))
+
+    @property
+    def summary(self):
+        """Of a run that has finished; else None."""
+        path = self.folder / "summary.json"
+        return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+
+    @property
+    def provenance(self):
+        """Text: version, compiler, seed, command."""
+        return (self.folder / "provenance.txt").read_text(encoding="utf-8")
+
+    def packing(self, number):
+        """The stored Snapshot of this number."""
+        return _core.read_snapshot(str(self.snapshots[number]))
+
+    def draw(self, name):
+        """The axes of one of the figures of element_test: results.draw("fig_stress_path")."""
+        return draw(self.folder, name)
+
+    def __repr__(self):
+        return f"<isostat.Results of {self.folder}>"
+
+
+def read(folder):
+    """The results of a run, finished or not."""
+    return Results(folder)

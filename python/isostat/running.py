@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Preparing specimens and running scenes.   tested: tests/python/run_test.py"""
+import os
+
+from isostat import _core
+from isostat.results import History, Results
+
+CACHE = os.path.join("results", "specimens")
+
+
+def prepare(scene, *, cache=CACHE, threads=0, quiet=True):
+    """The specimen that a scene asks for: from its file, from the cache, or prepared and put into the cache.
+
+    cache: folder of prepared specimens. threads: that share a step; 0: as many as the packing can feed; changes no bit.
+    quiet: without progress on stderr. Returns a Specimen. Raises InputError (a density that cannot be reached).
+    """
+    return _core.prepare(scene, os.fspath(cache), threads, quiet)
+
+
+def run(scene, output=None, *, specimen=None, cache=None, overwrite=False, resume=False, threads=0, quiet=True,
+        on_record=None, on_step=None, every=1000):
+    """Runs the stages of a scene, to the same bits as the program element_test does.
+
+    output      folder for history, snapshots, ParaView files, checkpoints and summary; None: nothing is written but
+                prepared specimens
+    specimen    a Specimen or Snapshot to start from, instead of what the scene says
+    cache       folder of prepared specimens; None: beside the output folder, as the program does
+    overwrite   replaces results that are there          resume   goes on from the newest checkpoint of `output`
+    threads     0: as many as the packing can feed; changes no bit of the result
+    on_record   called with a Moment whenever a row of the history is due; return False to stop
+    on_step     the same after every `every` steps
+
+    Returns Results of the folder, or a Run with history and snapshot if there is none. Ctrl-C writes a checkpoint and
+    raises KeyboardInterrupt; `resume=True` goes on. An exception in a callback ends the run. Callbacks look, they do not
+    change the packing.
+    Raises InputError, and RunFailure with the step, the grain and the last checkpoint.
+    """
+    if isinstance(specimen, _core.Snapshot):
+        specimen = _core.Specimen(specimen)
+    if (resume or overwrite) and output is None:
+        raise _core.InputError("resume and overwrite need the output folder. Give output.")
+    folder = os.fspath(output) if output is not None else ""
+    if cache is None:
+        cache = os.path.join(os.path.dirname(os.path.normpath(folder)), "specimens") if folder else CACHE
+    done = _core.run(scene, folder, os.fspath(cache), specimen, overwrite, resume, threads, quiet, on_record, on_step,
+                     every)
+    if not folder:
+        return Run(scene, done)
+    results = Results(folder)
+    results.snapshot, results.finished = done.snapshot, done.finished
+    return results
+
+
+class Run:
+    """What run() leaves in memory.
+
+    history     History: a row whenever one was due        finished  False: a callback stopped it
+    snapshot    the packing at the end
+    """
+
+    def __init__(self, scene, done):
+        self.scene, self.snapshot, self.finished = scene, done.snapshot, done.finished
+        self.history = History(done.history, done.units)
+
+    def __repr__(self):
+        return f"<isostat.Run {self.scene.title!r}, {len(self.history)} rows>"

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes from files, text, dictionaries and keywords.   tested: tests/python/scene_test.py"""
+import json
+import math
+import os
+import pathlib
+import tomllib
+
+from isostat import _core
+
+
+class Scene(_core.Scene):
+    """A whole test: grading, contact law, specimen, motion, stages, output; checked by the same schema as the programs.
+
+    Scene("test.toml")                                     a file; a relative specimen.file counts from the working folder
+    Scene(text)                                            TOML text (it has line breaks)
+    Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; what is left out has its default
+    Scene(title="mine", specimen={"pressure": "100 kPa"})  sections as keywords
+    Scene(..., set={"motion.damping": 0.05})               single keys over all of that
+
+    Raises InputError with the place, the value, the allowed range and a remedy.
+    """
+
+    def __init__(self, source=None, /, *, set=None, **sections):
+        overrides = [f"{key}={override_text(value)}" for key, value in (set or {}).items()]
+        if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
+            if sections:
+                raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
+            text = pathlib.Path(source).read_text(encoding="utf-8") if pathlib.Path(source).is_file() else None
+            if text is None:
+                raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
+            super().__init__(_core.Scene._read(os.fspath(source), overrides).text, os.fspath(source), [])
+            return
+        if isinstance(source, str):
+            super().__init__(source, "scene", overrides)
+            return
+        super().__init__(toml_text({**(source or {}), **sections}), "scene", overrides)
+
+    def with_(self, **keys):
+        """The scene with other values: scene.with_(**{"motion.damping": 0.05})."""
+        return Scene(self.text, set=keys)
+
+    def to_dict(self):
+        """Every key with its value, as nested dictionaries."""
+        return tomllib.loads(self.text)
+
+    def __repr__(self):
+        return f"<isostat.Scene {self.title!r}>"
+
+
+def value_text(value):
+    """A value as TOML: strings are quoted as JSON does, tables are inline."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {value_text(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(value_text(item) for item in value) + "]"
+    if hasattr(value, "item"):  # numbers of NumPy
+        return value_text(value.item())
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else ("nan" if math.isnan(value) else "inf")
+    if isinstance(value, os.PathLike):
+        return json.dumps(os.fspath(value), ensure_ascii=False)
+    raise _core.InputError(f"{value!r}: a scene has strings, numbers, true and false, lists and dictionaries.")
+
+
+def override_text(value):
+    """As --set takes it: plain text needs no quotes."""
+    return value if isinstance(value, str) else value_text(value)
+
+
+def toml_text(sections):
+    """A dictionary of sections as a scene: plain values first, then tables, then arrays of tables."""
+    plain = [f"{key} = {value_text(value)}" for key, value in sections.items() if not is_section(value)]
+    for key, value in sections.items():
+        if not is_section(value):
+            continue
+        for table in value if isinstance(value, (list, tuple)) else [value]:
+            plain.append(f"\n[[{key}]]" if isinstance(value, (list, tuple)) else f"\n[{key}]")
+            plain += [f"{name} = {value_text(item)}" for name, item in table.items()]
+    return "\n".join(plain) + "\n"
+
+
+def is_section(value):
+    return isinstance(value, dict) or (isinstance(value, (list, tuple)) and bool(value)
+                                       and all(isinstance(item, dict) for item in value))

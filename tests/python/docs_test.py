@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The programs of docs/python.md, one after another as a reader would type them, on smaller packings."""
+import contextlib
+import io
+import os
+import pathlib
+import re
+import tempfile
+import unittest
+
+import matplotlib
+
+from package import isostat  # noqa: F401  (so that the text's import finds it)
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/python.md"
+SMALLER = {'"grains": 2000, "cloud_edge": "5.848 mm"': '"grains": 300, "cloud_edge": "3.1 mm"', "0.05}": "0.003}", "0.01}": "0.003}",
+           "every=1000": "every=5000"}
+
+
+class DocsTest(unittest.TestCase):
+    def test_programs_of_the_page_run(self):
+        matplotlib.use("Agg")
+        blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+        self.assertGreater(len(blocks), 3)
+        program = "\n".join(blocks)
+        for text, smaller in SMALLER.items():
+            self.assertIn(text, program)
+            program = program.replace(text, smaller)
+        before = pathlib.Path.cwd()
+        self.addCleanup(os.chdir, before)
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as printed:
+            os.chdir(folder)
+            names = {}
+            exec(compile(program, PAGE, "exec"), names)  # pylint: disable=exec-used
+            self.assertGreater(pathlib.Path("drained.pdf").stat().st_size, 10_000)
+            os.chdir(before)
+        self.assertIn("[", printed.getvalue())
+        self.assertEqual(names["rve"].stiffness().shape, (6, 6))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs from Python: the same bits as element_test, callbacks, stopping and resuming, results as arrays."""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import BINARIES, ToleranceTest, isostat
+
+SCENE = """title = "small"
+[grading]
+grains = 300
+cloud_edge = "3.1 mm"
+[specimen]
+domain = "periodic-cell"
+preparation_friction = "12 deg"
+[[stage]]
+kind = "undrained-cyclic"
+deviator_amplitude = "40 kPa"
+until = { cycles = 4, reversals_after_liquefaction = 1 }
+"""
+
+
+class RunTest(ToleranceTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.cache = cls.folder / "specimens"
+        cls.scene = isostat.Scene(SCENE)
+        cls.specimen = isostat.prepare(cls.scene, cache=cls.cache)
+
+    def run_scene(self, *arguments, **keywords):
+        return isostat.run(self.scene, *arguments, cache=self.cache, **keywords)
+
+    def test_history_is_that_of_the_program_to_the_bit(self):
+        scene = self.folder / "small.toml"
+        scene.write_text(SCENE, encoding="utf-8")
+        subprocess.run([BINARIES / "element_test", scene, "-o", self.folder / "program", "--quiet", "--no-figures"],
+                       check=True, stdout=subprocess.DEVNULL)
+        results = self.run_scene(self.folder / "python")
+        for name in ("history.csv", "summary.txt", "scene.toml"):
+            one, other = ((self.folder / run / name).read_text() for run in ("program", "python"))
+            lines = [[line for line in text.splitlines() if "steps/s" not in line and not line.startswith("folder")]
+                     for text in (one, other)]
+            self.assertEqual(*lines)
+        self.assertTrue(results.finished)
+        self.assertEqual(results.history.units["p"], "Pa")
+        in_memory = self.run_scene()
+        for name in results.history:
+            self.assert_near(in_memory.history[name], results.history[name], 1e-9 * np.abs(results.history[name]),
+                             f"digits of a history file, in {name}")
+        np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
+
+    def test_callbacks_see_the_packing(self):
+        seen, moved = [], []
+
+        def look(moment):
+            seen.append((moment.step, moment.p, moment.snapshot().measures()["IR"]))
+
+        def step(moment):
+            moved.append(moment.positions.copy())
+
+        run = self.run_scene(on_record=look, on_step=step, every=100)
+        for k, name in ((0, "step"), (2, "IR")):
+            np.testing.assert_array_equal([row[k] for row in seen], run.history[name], err_msg=name)
+        self.assert_close([row[1] for row in seen], run.history["p"], 1e-2, "rows have all parts of the stress")
+        self.assertGreater(len(moved), 2)
+        self.assertFalse(np.array_equal(moved[0], moved[-1]))
+
+    def test_a_callback_stops_a_run_and_it_goes_on(self):
+        whole = self.run_scene()
+        half = whole.history["step"][-1] / 2
+        stopped = self.run_scene(self.folder / "halves", on_step=lambda moment: moment.step < half, every=1)
+        self.assertFalse(stopped.finished)
+        resumed = self.run_scene(self.folder / "halves", resume=True)
+        self.assertTrue(resumed.finished)
+        np.testing.assert_array_equal(resumed.snapshot.positions, whole.snapshot.positions)
+
+    def test_an_exception_of_a_callback_ends_the_run(self):
+        def fail(_):
+            raise ZeroDivisionError("mine")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+            self.run_scene(on_record=fail)
+
+    def test_starts_from_a_packing(self):
+        given = isostat.run(self.scene, specimen=self.specimen)
+        np.testing.assert_array_equal(given.snapshot.positions, self.run_scene().snapshot.positions)
+        self.assertEqual(self.specimen.numbers["grains"], 300)
+
+    def test_ctrl_c_leaves_a_checkpoint(self):
+        program = (f"import sys; sys.path.insert(0, {str(BINARIES.parent / 'python')!r})\n"
+                   f"import isostat, os, signal\n"
+                   f"def once(moment):\n    os.kill(os.getpid(), signal.SIGINT)\n    return True\n"
+                   f"try:\n"
+                   f"    isostat.run(isostat.Scene({SCENE!r}), {str(self.folder / 'killed')!r},\n"
+                   f"                cache={str(self.cache)!r}, on_step=once, every=100)\n"
+                   f"except KeyboardInterrupt:\n    print('stopped')\n")
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.stdout.strip(), "stopped", done.stderr)
+        resumed = self.run_scene(self.folder / "killed", resume=True)
+        np.testing.assert_array_equal(resumed.snapshot.positions, self.run_scene().snapshot.positions)
+
+    def test_results_are_read_again(self):
+        self.run_scene(self.folder / "read")
+        results = isostat.read(self.folder / "read")
+        self.assertEqual(results.scene.title, "small")
+        self.assertGreater(len(results.snapshots), 0)
+        self.assertEqual(len(results.packing(0)), 300)
+        self.assertEqual(results.summary["grains"], 300)
+        axes = results.draw("fig_redundancy")
+        self.assertEqual([panel.get_ylabel() for panel in axes[:2]],
+                         ["Redundancy index $I_R$", r"$p^\prime/p_0^\prime$"])
+        with self.assertRaisesRegex(isostat.InputError, "no figure of element_test; there are fig_stress_path"):
+            results.draw("redundancy")
+        with self.assertRaisesRegex(isostat.InputError, "no history.csv"):
+            isostat.read(self.folder)
+        with self.assertRaisesRegex(isostat.InputError, "results folder exists"):
+            self.run_scene(self.folder / "read")
+
+
+if __name__ == "__main__":
+    unittest.main()

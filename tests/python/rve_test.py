@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The representative volume element from Python: strain in, stress out, there and back."""
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import CONTACT, ToleranceTest, isostat
+
+
+class RveTest(ToleranceTest):
+    @classmethod
+    def setUpClass(cls):
+        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact=CONTACT,
+                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
+        with tempfile.TemporaryDirectory() as cache:
+            cls.packing = isostat.prepare(scene, cache=cache).snapshot
+
+    def test_stress_follows_the_stiffness(self):
+        rve = isostat.Rve(self.packing, min_steps=2000)
+        before, stiffness = rve.stress, rve.stiffness()
+        shear = np.zeros((3, 3))
+        shear[0, 1] = 2e-6
+        response = rve.undrained(shear)
+        self.assertTrue(response)
+        change = response.stress[0, 1] - before[0, 1]
+        self.assert_near(change / (stiffness[5, 5] * 2e-6), 1, 0.2, "contacts that slide; the stiffness has none")
+        np.testing.assert_array_equal(response.stress, rve.stress)
+
+    def test_a_saved_state_comes_back_to_the_bit(self):
+        rve = isostat.Rve(self.packing)
+        strain = np.diag([5e-5, -1e-4, 5e-5])
+        state = rve.save()
+        first = rve.advance(strain).stress
+        rve.restore(state)
+        np.testing.assert_array_equal(rve.advance(strain).stress, first)
+        other = isostat.Rve.unpack(rve.pack())
+        np.testing.assert_array_equal(other.advance(strain).stress, rve.advance(strain).stress)
+
+    def test_mixed_control_holds_its_stress(self):
+        rve = isostat.Rve(self.packing)
+        gradient, target = np.zeros((3, 3)), np.diag([rve.stress[k, k] for k in range(3)])
+        gradient[1, 1] = -2e-4
+        controlled = np.diag([True, False, True])
+        response = rve.mixed(gradient, target, controlled)
+        self.assertTrue(response, response.reason)
+        self.assert_near(response.stress[0, 0] / target[0, 0], 1, 1.1e-3, "the tolerance of the control, of p'")
+        self.assertLess(response.stress[1, 1], target[1, 1])  # more compression along y
+
+    def test_too_large_an_increment_is_rejected(self):
+        rve = isostat.Rve(self.packing)
+        before = rve.stress
+        response = rve.advance(np.diag([0.0, -0.5, 0.0]))
+        self.assertFalse(response)
+        self.assertIn("increment", response.reason)
+        np.testing.assert_array_equal(rve.stress, before)
+
+    def test_a_packing_in_a_box_is_refused(self):
+        box = isostat.Snapshot.from_spheres([[1, 1, 1]], [1], box=[[0, 0, 0], [2, 2, 2]])
+        with self.assertRaises(isostat.InputError):
+            isostat.Rve(box)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes in Python: file, text, dictionary and keywords are the same scene, and wrong ones are refused in words."""
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import ToleranceTest, isostat
+
+STAGE = {"kind": "undrained-cyclic", "deviator_amplitude": "40 kPa", "until": {"cycles": 3}}
+TEXT = """title = "t"
+[specimen]
+preparation_friction = "9 deg"
+[[stage]]
+kind = "undrained-cyclic"
+deviator_amplitude = "40 kPa"
+until = { cycles = 3 }
+"""
+
+
+class SceneTest(ToleranceTest):
+    def test_all_ways_give_the_same_scene(self):
+        of_text = isostat.Scene(TEXT)
+        sections = {"title": "t", "specimen": {"preparation_friction": "9 deg"}, "stage": [STAGE]}
+        self.assertEqual(isostat.Scene(sections), of_text)
+        self.assertEqual(isostat.Scene(**sections), of_text)
+        self.assertEqual(isostat.Scene(of_text.to_dict()), of_text)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "t.toml"
+            path.write_text(TEXT, encoding="utf-8")
+            self.assertEqual(isostat.Scene(path).to_dict()["stage"], of_text.to_dict()["stage"])
+            self.assertEqual(isostat.Scene(path).folder, "results/t")
+
+    def test_single_keys_go_over_it(self):
+        scene = isostat.Scene(TEXT, set={"motion.damping": np.float64(0.05), "specimen.pressure": "100 kPa"})
+        self.assertEqual(scene.to_dict()["motion"]["damping"], 0.05)
+        other = scene.with_(**{"motion.damping": 0.1, "stage.0.until.cycles": 7})
+        self.assertEqual(other.to_dict()["specimen"]["pressure"], "100 kPa")
+        self.assertEqual(other.to_dict()["stage"][0]["until"]["cycles"], 7)
+
+    def test_wrong_scenes_are_refused_in_words(self):
+        for scene, words in (({"motion": {"dampingg": 0.1}}, "Did you mean"),
+                             ({"specimen": {"pressure": "100 m"}}, "pressure"),
+                             ({"grading": {"grains": -3}}, "grains"),
+                             ({"grading": {"grains": {1, 2}}}, "strings, numbers")):
+            with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
+                isostat.Scene(scene)
+        with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: is not there"):
+            isostat.Scene("nowhere.toml")
+        self.assertTrue(issubclass(isostat.InputError, ValueError))
+
+    def test_laws_tell_their_parameters(self):
+        law = isostat.Scene(TEXT).law
+        self.assertEqual(law.parameters["young"], 1e10)
+        self.assertIn("friction", law.parameters)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Packings as arrays: views that keep their owner, the right numbers, files there and back."""
+import gc
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import ToleranceTest, isostat
+
+R = 1e-3
+CENTRES = np.array([[1, 1, 1], [2.9, 1, 1], [1, 3, 1]]) * R
+BOX = np.array([[0, 0, 0], [4, 4, 2]]) * R
+
+
+def three_spheres():
+    return isostat.Snapshot.from_spheres(CENTRES, [R, R, R], box=BOX)
+
+
+class SnapshotTest(ToleranceTest):
+    def test_arrays_are_those_of_the_spheres(self):
+        packing = three_spheres()
+        self.assertEqual(len(packing), 3)
+        np.testing.assert_array_equal(packing.positions, CENTRES)
+        np.testing.assert_array_equal(packing.radii, [R, R, R])
+        np.testing.assert_array_equal(packing.box, BOX)
+        self.assertIsNone(packing.cell)
+        mass = 2650 * 4 / 3 * np.pi * R**3
+        self.assert_close(packing.masses, mass, 4e-16, "round-off of one product more than in C++")
+        self.assert_close(packing.inertias, 0.4 * mass * R**2, 1e-15, "the same, of three products")
+
+    def test_a_leaning_cell_keeps_its_shape(self):
+        edges = np.array([[4, 0.4, 0], [0, 4, 0], [0, 0.2, 4]]) * R
+        packing = isostat.Snapshot.from_spheres(CENTRES, [R, R, R], cell=edges)
+        np.testing.assert_array_equal(packing.cell, edges)
+        self.assertEqual(isostat.Snapshot.from_spheres(CENTRES, [R, R, R], cell=[4 * R] * 3).volume, (4 * R) ** 3)
+        for wrong in ([4 * R, 4 * R], [4 * R, 4 * R, -R], -edges):
+            with self.assertRaisesRegex(isostat.InputError, "cell: must be three lengths"):
+                isostat.Snapshot.from_spheres(CENTRES, [R, R, R], cell=wrong)
+
+    def test_arrays_are_read_only_views_that_keep_their_owner(self):
+        packing = three_spheres()
+        positions = packing.positions
+        self.assertFalse(positions.flags.owndata or positions.flags.writeable)
+        self.assertEqual(positions.__array_interface__["data"], packing.positions.__array_interface__["data"])
+        del packing
+        gc.collect()
+        np.testing.assert_array_equal(positions, CENTRES)
+        with self.assertRaises(ValueError):
+            positions[0, 0] = 1
+
+    def test_a_specimen_comes_back_to_the_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder) / "three.h5")
+            isostat.write_specimen(path, isostat.Specimen(three_spheres()))
+            again = isostat.read_specimen(path).snapshot
+            np.testing.assert_array_equal(again.positions, CENTRES)
+            np.testing.assert_array_equal(isostat.read_snapshot(path).radii, again.radii)
+            text = pathlib.Path(folder) / "three.txt"
+            text.write_text("\n".join(" ".join(f"{v!r}" for v in [*x, R]) for x in CENTRES.tolist()) + "\n")
+            np.testing.assert_array_equal(isostat.import_tables(str(text)).positions, CENTRES)
+            isostat.write_vtp(str(pathlib.Path(folder) / "three.vtp"), again)
+            self.assertIn("PolyData", (pathlib.Path(folder) / "three.vtp").read_text()[:200])
+
+    def test_wrong_spheres_are_refused(self):
+        make = isostat.Snapshot.from_spheres
+        for arguments, words in (((CENTRES, [R, R]), "as many as centres"), ((CENTRES, [R, R, -R]), "sphere 2"),
+                                 ((CENTRES[:, :2], [R, R, R]), r"shape \(n, 3\)")):
+            with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
+                make(*arguments, box=BOX)
+        with self.assertRaisesRegex(isostat.InputError, "either box"):
+            make(CENTRES, [R, R, R])
+        with self.assertRaisesRegex(isostat.InputError, "lower < upper"):
+            make(CENTRES, [R, R, R], box=BOX[::-1])
+
+
+if __name__ == "__main__":
+    unittest.main()
