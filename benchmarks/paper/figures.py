@@ -186,8 +186,9 @@ def cycles(table, _):
     legend_below(figure, panel, 5, 0.07)
     for pace, face in ((plan.DEFAULT, "none"), (plan.SLOW, BLUE)):
         rows = after.where(pace=pace)
-        strains.plot(rows["largest strain after, compression (%)"], rows["largest strain after, extension (%)"], "o",
-                     color=BLUE, mfc=face, markersize=4, label=PACE_NAMES[pace])
+        sides = [rows[f"largest strain after, {side} (%)"] for side in ("compression", "extension")]
+        if np.isfinite(sides[0]).any():
+            strains.plot(*sides, "o", color=BLUE, mfc=face, markersize=4, label=PACE_NAMES[pace])
     strains.legend()
     high = max(1.0, np.nanmax(strains.dataLim.max))
     strains.plot([0, high], [0, high], color=GREY, linewidth=0.8)

@@ -62,9 +62,15 @@ def crossings(values, level):
     return np.flatnonzero((values[:-1] < level) & (values[1:] >= level)) + 1
 
 
+def goes_on(history):
+    """Whether the test liquefies and there are half cycles behind the onset."""
+    return history.onset is not None and history.reversals[-1] > history.reversals[history.onset]
+
+
 def cyclic_numbers(history):
-    """Up to the onset and around it."""
+    """Up to the onset, around it and, of a test that goes on for half a cycle at least, behind it."""
     onset = history.onset
+    behind = slice(onset, None) if goes_on(history) else None
     ratio = history.p / history.p0
     before = slice(0, len(ratio) if onset is None else onset + 1)
     numbers = {"cycles": np.nan if onset is None else history.reversals[onset] / 2,
@@ -79,10 +85,10 @@ def cyclic_numbers(history):
     numbers.update(fabric_numbers(history, before))
     for column in FRACTIONS:
         numbers[f"{column} before"] = strain_mean(history, column, before)
-        numbers[f"{column} after"] = np.nan if onset is None else strain_mean(history, column, slice(onset, None))
-    if onset is not None:
-        numbers["largest strain after, compression (%)"] = 100 * history.eps_y[onset:].max()
-        numbers["largest strain after, extension (%)"] = -100 * history.eps_y[onset:].min()
+        numbers[f"{column} after"] = strain_mean(history, column, behind) if behind else np.nan
+    if behind:
+        numbers["largest strain after, compression (%)"] = 100 * history.eps_y[behind].max()
+        numbers["largest strain after, extension (%)"] = -100 * history.eps_y[behind].min()
     return numbers
 
 
@@ -95,7 +101,7 @@ def fabric_numbers(history, before):
                "largest |F_yx| before": anisotropy[before].max(),
                "largest |F_yx| in the first third": anisotropy[before][reversals <= third].max(),
                "largest |F_yx| in the last third": anisotropy[before][reversals >= 2 * third].max()}
-    if history.onset is not None:
+    if goes_on(history):
         after = slice(history.onset, None)
         numbers["largest |F_yx| after"] = largest_anisotropy(history, after)
     return numbers

@@ -76,6 +76,15 @@ class States(ToleranceTest):
         self.assertEqual(halves[0]["I_R as p'/p0' first passes 0.01"], 1.2)
         self.assert_near(halves[0]["strain travelled (%)"], 0.2, 1e-9, "round-off of 20 additions")
 
+    def test_a_test_that_ends_at_the_onset_has_nothing_behind_it(self):
+        history = cyclic_history()
+        self.assertIn("largest strain after, extension (%)", states.cyclic_numbers(history))
+        history.reversals = np.minimum(history.reversals, history.reversals[history.onset])
+        numbers = states.cyclic_numbers(history)
+        self.assertNotIn("largest strain after, extension (%)", numbers)
+        self.assertNotIn("largest |F_yx| after", numbers)
+        self.assertTrue(np.isnan(numbers["f_S after"]))
+
     def test_half_cycles_of_all_seeds_begin_towards_compression(self):
         x, rows = states.phases(cyclic_history())
         self.assertEqual((x[0], rows[0]), (0, 0))
