@@ -55,6 +55,14 @@ class Installed(support.ToleranceTest):
         scene = self.element_test("quick_cyclic_liquefies.toml", "--validate")
         self.assertIn('folder = "results/quick_cyclic_liquefies"', scene)
 
+    def test_the_python_package_is_installed_with_its_figures(self):
+        if not (support.BIN.parent / "python").is_dir():
+            self.skipTest("built without -DISOSTAT_PYTHON=ON")
+        (packages,) = self.prefix.glob("lib/python3*/dist-packages")
+        program = (f"import sys; sys.path.insert(0, {str(packages)!r}); import isostat, isostat.figures.element_test; "
+                   f"print(isostat.Scene(specimen={{'preparation_friction': '9 deg'}}, title='installed'))")
+        self.assertIn('title = "installed"', run("/usr/bin/python3", "-c", program, cwd=self.work))
+
     def rows(self, example):
         """The table that an example prints, without its head."""
         lines = run(self.build / example, cwd=self.work).splitlines()[1:]
