@@ -86,9 +86,8 @@ def cyclic_numbers(history):
     for column in FRACTIONS:
         numbers[f"{column} before"] = strain_mean(history, column, before)
         numbers[f"{column} after"] = strain_mean(history, column, behind) if behind else np.nan
-    if behind:
-        numbers["largest strain after, compression (%)"] = 100 * history.eps_y[behind].max()
-        numbers["largest strain after, extension (%)"] = -100 * history.eps_y[behind].min()
+    numbers["largest strain after, compression (%)"] = 100 * history.eps_y[behind].max() if behind else np.nan
+    numbers["largest strain after, extension (%)"] = -100 * history.eps_y[behind].min() if behind else np.nan
     return numbers
 
 
@@ -101,9 +100,8 @@ def fabric_numbers(history, before):
                "largest |F_yx| before": anisotropy[before].max(),
                "largest |F_yx| in the first third": anisotropy[before][reversals <= third].max(),
                "largest |F_yx| in the last third": anisotropy[before][reversals >= 2 * third].max()}
-    if goes_on(history):
-        after = slice(history.onset, None)
-        numbers["largest |F_yx| after"] = largest_anisotropy(history, after)
+    after = slice(history.onset, None)
+    numbers["largest |F_yx| after"] = largest_anisotropy(history, after) if goes_on(history) else np.nan
     return numbers
 
 

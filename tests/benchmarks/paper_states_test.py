@@ -78,12 +78,11 @@ class States(ToleranceTest):
 
     def test_a_test_that_ends_at_the_onset_has_nothing_behind_it(self):
         history = cyclic_history()
-        self.assertIn("largest strain after, extension (%)", states.cyclic_numbers(history))
+        self.assertGreater(states.cyclic_numbers(history)["largest strain after, extension (%)"], 0)
         history.reversals = np.minimum(history.reversals, history.reversals[history.onset])
         numbers = states.cyclic_numbers(history)
-        self.assertNotIn("largest strain after, extension (%)", numbers)
-        self.assertNotIn("largest |F_yx| after", numbers)
-        self.assertTrue(np.isnan(numbers["f_S after"]))
+        for name in ("largest strain after, extension (%)", "largest |F_yx| after", "f_S after"):
+            self.assertTrue(np.isnan(numbers[name]), name)
 
     def test_half_cycles_of_all_seeds_begin_towards_compression(self):
         x, rows = states.phases(cyclic_history())
