@@ -17,9 +17,9 @@ ROOT = pathlib.Path(__file__).resolve().parent
 
 def build(folder):
     """Configures and builds the compiled part in this folder."""
-    options = {"CMAKE_BUILD_TYPE": "Release", "ISOSTAT_FEM": "OFF", "ISOSTAT_TESTS": "OFF",
+    options = {"ISOSTAT_FEM": "OFF", "ISOSTAT_TESTS": "OFF",
                "ISOSTAT_BENCHMARKS": "OFF", "ISOSTAT_PYTHON": "ON", "Python_EXECUTABLE": sys.executable}
-    subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja",
+    subprocess.run(["cmake", "--preset", "release", "-S", ROOT, "-B", folder,
                     *(f"-D{key}={value}" for key, value in options.items()),
                     *os.environ.get("CMAKE_ARGS", "").split()], check=True)
     subprocess.run(["cmake", "--build", folder, "--target", "python_core"], check=True)
