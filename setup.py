@@ -17,8 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parent
 
 def build(folder):
     """Configures and builds the compiled part in this folder."""
-    options = {"ISOSTAT_FEM": "OFF", "ISOSTAT_TESTS": "OFF",
-               "ISOSTAT_BENCHMARKS": "OFF", "ISOSTAT_PYTHON": "ON", "Python_EXECUTABLE": sys.executable}
+    options = {"ISOSTAT_FEM": "OFF", "ISOSTAT_TESTS": "OFF", "ISOSTAT_BENCHMARKS": "OFF", "ISOSTAT_PYTHON": "ON",
+               "Python_EXECUTABLE": sys.executable}
     subprocess.run(["cmake", "--preset", "release", "-S", ROOT, "-B", folder,
                     *(f"-D{key}={value}" for key, value in options.items()),
                     *os.environ.get("CMAKE_ARGS", "").split()], check=True)
