@@ -28,6 +28,13 @@ py::array_t<T> view(const T *first, std::size_t n, std::size_t columns, std::siz
   return array;
 }
 
+/// (n, 3): the first three of the four numbers of each record of a packing.
+template <typename Values>
+py::array records(const Values &values, std::size_t n, py::handle owner)
+{
+  return view(values.data(), n, 3, 4 * sizeof(values[0]), owner);
+}
+
 /// One array (n) of a value computed for each of n things.
 template <typename T, typename Function>
 py::array_t<T> computed(std::size_t n, const Function &function)

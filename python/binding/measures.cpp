@@ -82,9 +82,9 @@ void bind_measures(py::module_ &module)
           },
           py::arg("yielding_contacts_resist") = true,
           "Instantaneous elastic stiffness of a periodic packing, (6, 6), Pa: stress xx, yy, zz, yz, xz, xy for strain "
-          "in\n"
+          "in "
           "the same order, shear as gamma. yielding_contacts_resist=False: no ks where contacts slide, no kr where "
-          "they\n"
+          "they "
           "roll.")
       .def("measures", &measures, "All scalars of the history, by name; SI, compression positive.");
   module.def(

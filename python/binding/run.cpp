@@ -35,7 +35,6 @@ public:
   std::shared_ptr<const Assembly> assembly;
   SignalWatch signals;
   bool stopped = false;
-  Progress progress{true};
 
   void record(const Assembly &live, const DriveState &state, const Observation &seen, bool) override
   {
@@ -88,9 +87,9 @@ private:
   SignalWatch signals_;
 };
 
-Specimen prepare(const Scene &scene, const std::string &cache, int threads, bool quiet)
+/// Without the GIL.
+Specimen prepared(const Scene &scene, const std::string &cache, int threads, bool quiet)
 {
-  const py::gil_scoped_release free;
   WatchedPreparation preparation(quiet);
   return obtain_specimen(scene, cache, preparation, threads);
 }
@@ -98,12 +97,10 @@ Specimen prepare(const Scene &scene, const std::string &cache, int threads, bool
 /// What run() gives back.
 struct Result
 {
-  std::string folder; ///< empty: none
   bool finished = false;
   std::shared_ptr<Snapshot> snapshot;
   std::vector<RecordColumn> columns; ///< of a run without files
   std::vector<std::vector<double>> rows;
-  std::string summary; ///< text; empty without files
 };
 
 py::dict history_of(const Result &result)
@@ -140,8 +137,7 @@ TestRun begin(const Request &request)
     return resume_test(request.scene, request.output, how);
   if (request.specimen)
     return start_test(request.scene, *request.specimen, how);
-  WatchedPreparation preparation(request.quiet);
-  return start_test(request.scene, obtain_specimen(request.scene, request.cache, preparation, request.threads), how);
+  return start_test(request.scene, prepared(request.scene, request.cache, request.threads, request.quiet), how);
 }
 
 /// Without a folder: stages and watcher only.
@@ -166,8 +162,7 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
   try
     {
       const TestSummary summary = run_test(asked, run, &watcher);
-      result.summary = to_text(summary, request.scene);
-      write_replacing(asked.folder / "summary.txt", result.summary);
+      write_replacing(asked.folder / "summary.txt", to_text(summary, request.scene));
       result.finished = true;
     }
   catch (const Interrupted &)
@@ -175,7 +170,6 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
       if (!watcher.stopped)
         throw;
     }
-  result.folder = asked.folder.string();
 }
 
 Result run(const Request &request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
@@ -202,6 +196,13 @@ Result run(const Request &request, const py::object &on_record, const py::object
   return result;
 }
 
+template <auto values>
+py::array running(const py::object &self)
+{
+  const Packing &grains = self.cast<const Moment &>().assembly->packing();
+  return records(grains.*values, grains.n_grains(), self);
+}
+
 void bind_moment(py::module_ &module)
 {
   py::class_<Moment>(module, "Moment", "What a callback of run() sees, at the end of a force evaluation or a step.")
@@ -224,20 +225,9 @@ void bind_moment(py::module_ &module)
       .def_property_readonly(
           "void_ratio", [](const Moment &m) { return void_ratio(m.assembly->volume(), m.assembly->solid_volume()); },
           "e.")
-      .def_property_readonly(
-          "positions",
-          [](const py::object &self) {
-            const Packing &grains = self.cast<const Moment &>().assembly->packing();
-            return view(grains.position.data(), grains.n_grains(), 3, 4 * sizeof(double), self);
-          },
-          "Centres of the running packing, (n, 3), m: a view that goes on changing with the run.")
-      .def_property_readonly(
-          "velocities",
-          [](const py::object &self) {
-            const Packing &grains = self.cast<const Moment &>().assembly->packing();
-            return view(grains.velocity.data(), grains.n_grains(), 3, 4 * sizeof(double), self);
-          },
-          "(n, 3), m/s: a view, as positions.")
+      .def_property_readonly("positions", &running<&Packing::position>,
+                             "Centres of the running packing, (n, 3), m: a view that goes on changing with the run.")
+      .def_property_readonly("velocities", &running<&Packing::velocity>, "(n, 3), m/s: a view, as positions.")
       .def(
           "snapshot", [](const Moment &m) { return std::make_shared<Snapshot>(m.assembly->snapshot()); },
           "A copy of the packing with its contacts, to keep or to measure. Within on_record.");
@@ -247,12 +237,11 @@ void bind_moment(py::module_ &module)
 void bind_run(py::module_ &module)
 {
   bind_moment(module);
-  module.def("prepare", &prepare, py::arg("scene"), py::arg("cache"), py::arg("threads"), py::arg("quiet"));
+  module.def("prepare", &prepared, py::call_guard<py::gil_scoped_release>(), py::arg("scene"), py::arg("cache"),
+             py::arg("threads"), py::arg("quiet"));
   py::class_<Result>(module, "Result")
-      .def_readonly("folder", &Result::folder)
       .def_readonly("finished", &Result::finished)
       .def_readonly("snapshot", &Result::snapshot)
-      .def_readonly("summary", &Result::summary)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
   module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,

@@ -14,10 +14,11 @@ using Self = py::object; ///< the owner of the arrays
 
 const Snapshot &of(const Self &self) { return self.cast<const Snapshot &>(); }
 
-/// Three of the four numbers of each record.
-py::array records(const Self &self, const AlignedVector<double> &values)
+template <auto values>
+py::array of_grains(const Self &self)
 {
-  return view(values.data(), of(self).grains.n_grains(), 3, 4 * sizeof(double), self);
+  const Packing &grains = of(self).grains;
+  return records(grains.*values, grains.n_grains(), self);
 }
 
 template <typename Value>
@@ -82,14 +83,9 @@ void add_grains(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
   snapshot
       .def(
           "__len__", [](const Snapshot &s) { return s.grains.n_grains(); }, "Number of grains.")
-      .def_property_readonly(
-          "positions", [](const Self &self) { return records(self, of(self).grains.position); }, "Centres, (n, 3), m.")
-      .def_property_readonly(
-          "velocities", [](const Self &self) { return records(self, of(self).grains.velocity); },
-          "Of the half step before, (n, 3), m/s.")
-      .def_property_readonly(
-          "spins", [](const Self &self) { return records(self, of(self).grains.spin); },
-          "Of the half step before, (n, 3), rad/s.")
+      .def_property_readonly("positions", &of_grains<&Packing::position>, "Centres, (n, 3), m.")
+      .def_property_readonly("velocities", &of_grains<&Packing::velocity>, "Of the half step before, (n, 3), m/s.")
+      .def_property_readonly("spins", &of_grains<&Packing::spin>, "Of the half step before, (n, 3), rad/s.")
       .def_property_readonly(
           "radii",
           [](const Self &self) {

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures of a packing from Python: they agree with each other and have a unit each."""
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import CONTACT, ToleranceTest, isostat
+
+
+class MeasuresTest(ToleranceTest):
+    @classmethod
+    def setUpClass(cls):
+        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact=CONTACT,
+                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
+        with tempfile.TemporaryDirectory() as cache:
+            cls.packing = isostat.prepare(scene, cache=cache).snapshot
+        cls.measures = cls.packing.measures()
+
+    def test_stress_and_fabric_are_those_of_the_history(self):
+        self.assert_close(-np.trace(self.packing.stress()) / 3, self.measures["p_LW"], 1e-12, "round-off of three sums")
+        fabric = self.packing.fabric()
+        self.assert_near(np.trace(fabric), 1, 1e-12, "round-off")
+        self.assert_near(np.diag(fabric), [self.measures[name] for name in ("Fxx", "Fyy", "Fzz")], 1e-12, "round-off")
+
+    def test_the_network_is_counted_as_in_the_history(self):
+        network = self.packing.network()
+        for name, column in (("redundancy_index", "IR"), ("redundancy_index_without_twist", "IR_no_twist"),
+                             ("redundancy_index_sliding", "IR_sliding"), ("coordination_number", "Z"),
+                             ("neither", "f_NSR"), ("sliding", "f_S"), ("grains_without_contact", "N0")):
+            self.assertEqual(network[name], self.measures[column], name)
+        self.assertGreater(self.packing.anisotropies()["mean_normal_force"], 0)
+        self.assertGreater(min(self.packing.stored_energy().values()), -1e-30)
+
+    def test_every_measure_has_its_unit(self):
+        self.assertEqual(set(isostat.measure_units()), set(self.measures))
+
+
+if __name__ == "__main__":
+    unittest.main()
