@@ -23,7 +23,7 @@ TOP = {
     "fem": {"fem", "base"},
     "coupling": {"coupling", "fem", "dem", "base"},
     "apps": {"apps", "coupling", "fem", "dem", "base"},
-    "python": {"python", "apps", "dem", "base"},
+    "python": {"python", "apps", "coupling", "fem", "dem", "base"},
 }
 
 # Library -> its parts, each with the parts it may include besides itself. A part is a folder or a file (without ending)

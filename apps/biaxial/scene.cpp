@@ -15,6 +15,7 @@ namespace
 {
 using namespace ranges;
 
+constexpr std::span<const char *const> materials(material_names, 3); ///< none of the user's own
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
 constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
 constexpr unsigned grains = kind_bit(LayerMaterial::grains);
@@ -48,7 +49,7 @@ constexpr Key block_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.mesh.points; }},
 
   {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
-   .choices = material_names,
+   .choices = materials,
    .text = "Linear elastic, parallel slip elements (Iwan), or a packing of grains at every Gauss point.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",

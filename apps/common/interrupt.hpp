@@ -23,4 +23,28 @@ inline void catch_signals()
 }
 
 inline bool stop_requested() { return detail::stop != 0; }
+
+/// Signals are caught as long as this lives, for a run within a program that has handlers of its own.
+/// tested: tests/python/column_test.py
+class SignalsCaught
+{
+public:
+  SignalsCaught()
+  {
+    sigaction(SIGINT, nullptr, &before_[0]);
+    sigaction(SIGTERM, nullptr, &before_[1]);
+    catch_signals();
+  }
+  ~SignalsCaught()
+  {
+    sigaction(SIGINT, &before_[0], nullptr);
+    sigaction(SIGTERM, &before_[1], nullptr);
+    detail::stop = 0;
+  }
+  SignalsCaught(const SignalsCaught &) = delete;
+  SignalsCaught &operator=(const SignalsCaught &) = delete;
+
+private:
+  struct sigaction before_[2] = {};
+};
 } // namespace isostat

@@ -42,22 +42,24 @@ enum class LayerMaterial
 {
   elastic,
   iwan,
-  grains ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
+  grains, ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
+  user    ///< given to the run by C++ or Python (apps/deposit/soil_material.hpp)
 };
 
 /// Their words in scenes and summaries, and those of Drainage.
-inline constexpr const char *material_names[] = {"elastic", "iwan", "grains"};
+inline constexpr const char *material_names[] = {"elastic", "iwan", "grains", "user"};
 inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
 
 /// A layer with its material.
 struct ColumnLayer : Layer
 {
   LayerMaterial material = LayerMaterial::elastic;
-  std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, but for grains
+  std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
   IwanParameters iwan;    ///< of no meaning to other materials; its stiffness is the layer's, see sand()
   SpecimenRequest grains; ///< of no meaning to other materials
 
+  bool from_formula() const { return shear_modulus || shear_velocity; }
   double small_strain_modulus() const; ///< G, Pa, whichever of the two was given (rho V_s^2)
   IwanParameters sand() const;         ///< `iwan` with the stiffness of the layer
 

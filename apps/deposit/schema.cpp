@@ -39,8 +39,8 @@ constexpr Section sections[] = {
   {.name = "water", .text = "Pore water; the water table is at the surface, which drains freely."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, but for grains, "
-           "exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic "
+           "and iwan, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -128,7 +128,8 @@ constexpr Key ground_keys[] = {
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
-           "the mean effective stress, or a packing of grains at every Gauss point, see [grains].",
+           "the mean effective stress, a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
+           "isostat.column.run() in Python takes by the name of the layer (docs/python.md).",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",

@@ -7,18 +7,25 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 namespace isostat
 {
 namespace
 {
-/// A layer at some points with their stress.
-std::unique_ptr<Material> formula_layer(const ColumnScene &scene, std::size_t layer,
-                                        const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ)
+std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user)
+{
+  return layer.material == LayerMaterial::user ? user.at(layer.name)(n_points) : formula_material(layer, n_points);
+}
+
+/// A layer without grains at some points with their stress.
+std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t layer,
+                                         const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ,
+                                         const UserMaterials &user)
 {
   try
     {
-      auto material = formula_material(scene.layers[layer], points.size());
+      auto material = layer_material(scene.layers[layer], points.size(), user);
       std::vector<Stress> stresses;
       for (std::size_t q : points)
         stresses.push_back(in_situ[q]);
@@ -31,6 +38,28 @@ std::unique_ptr<Material> formula_layer(const ColumnScene &scene, std::size_t la
                                    "layer's k0 or its material.",
                                    layer, scene.layers[layer].name, error.what()));
     }
+}
+
+void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
+{
+  std::set<std::string> asked;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    {
+      const ColumnLayer &layer = scene.layers[i];
+      if (layer.material != LayerMaterial::user)
+        continue;
+      asked.insert(layer.name);
+      if (!given.contains(layer.name))
+        throw InputError(fmt::format("layer.{} (\"{}\"): its material is \"user\", but none was given for this name. "
+                                     "Run it from Python with isostat.column.run(scene, materials={{\"{}\": ...}}), or "
+                                     "give the layer another material: elastic, iwan, grains.",
+                                     i, layer.name, layer.name));
+    }
+  for (const auto &[name, make] : given)
+    if (!asked.contains(name))
+      throw InputError(fmt::format("materials: one was given for \"{}\", but no layer of that name has the material "
+                                   "\"user\". Correct the name, or the layer's material.",
+                                   name));
 }
 } // namespace
 
@@ -54,8 +83,9 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
   return stresses;
 }
 
-SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads)
+SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user)
 {
+  check_user_materials(scene, user);
   const std::vector<Stress> in_situ = in_situ_stress(scene, mesh);
   std::vector<std::vector<std::size_t>> points(scene.layers.size());
   for (std::size_t q = 0; q < mesh.n_points(); ++q)
@@ -68,7 +98,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
     if (scene.layers[layer].material != LayerMaterial::grains)
       {
         if (!points[layer].empty())
-          parts.push_back({formula_layer(scene, layer, points[layer], in_situ), points[layer]});
+          parts.push_back({stressed_layer(scene, layer, points[layer], in_situ, user), points[layer]});
       }
     else
       for (std::size_t q : points[layer])

@@ -7,6 +7,9 @@
 #include "fem/material/composite.hpp"
 #include "fem/space/tables.hpp"
 
+#include <functional>
+#include <map>
+
 namespace isostat
 {
 /// A material that knows how long it was at work.
@@ -37,14 +40,20 @@ struct SoilMaterial
   std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`
 };
 
+/// Materials of the user's own by the name of their layer: each call makes one for so many points.
+using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Material>(std::size_t n_points)>>;
+
 /// Materials of all layers for the points of this rank, a part for each layer from the base up, brought to their stress
 /// in situ. All points with grains are one material, whose packings are placed on the ranks together, whatever lies
 /// between the layers.   Collective.
-/// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear
+/// @param user  of the layers whose material is user
+/// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear, or a user material
+/// that is missing or not asked for
 /// @throws RunFailure  stress not reached
-SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads);
+SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads,
+                           const UserMaterials &user = {});
 
-/// The material of one layer from a formula, without stress.   @pre layer.material is not grains
+/// The material of one layer from a formula, without stress.   @pre layer.material is elastic or iwan
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
 
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally

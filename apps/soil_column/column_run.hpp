@@ -26,8 +26,8 @@ public:
       : request_(request), scene_(request.scene), motions_(motions),
         space_(mesh_of(scene_), shaken_supports(scene_.base.compliant()),
                scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
-        soil_(soil_material(scene_, space_, request.threads)), run_(space_, *soil_.material, settings),
-        files_(request.folder, scene_, space_, motions_),
+        soil_(soil_material(scene_, space_, request.threads, request.materials)),
+        run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_),
         follower_(space_, files_.line(), files_.history().vertical_stress())
   {
     if (request.use != FolderUse::resume)

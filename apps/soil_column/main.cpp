@@ -13,50 +13,18 @@
 //   mpirun -n 2 soil_column SCENE --resume
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
-#include "base/error.hpp"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace
 {
 using namespace isostat;
 
-template <int dim>
-RunResult run_kind(const ColumnRequest &request)
-{
-  return request.scene.analysis.kind == AnalysisKind::dynamic ? run_dynamic<dim>(request)
-                                                              : run_consolidation<dim>(request);
-}
-
-RunResult run_dimension(const ColumnRequest &request)
-{
-  switch (request.scene.mesh.dimension)
-    {
-    case 1:
-      return run_kind<1>(request);
-    case 2:
-      return run_kind<2>(request);
-    default:
-      return run_kind<3>(request);
-    }
-}
-
 void run_scene(const SceneOptions &options)
 {
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
-  if (request.use == FolderUse::resume && request.scene.mesh.distributed)
-    throw InputError(fmt::format("{}: cannot be resumed, because a distributed run (mesh.distributed = true) keeps no "
-                                 "checkpoint. Start it anew with --overwrite.",
-                                 request.folder.string()));
-  on_first_rank([&] { check_result_folder(request.folder, request.use); });
-  const RunResult result = run_dimension(request);
-  if (!ranks().first())
-    return;
-  write_json(request.folder / "times.json", to_json(result.times));
-  write_json(request.folder / "summary.json", to_json(result.summary, request.scene));
-  leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",
-                !options.no_figures);
+  const RunResult result = run_column(request);
+  if (ranks().first())
+    leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",
+                  !options.no_figures);
 }
 
 constexpr SceneProgram soil_column{

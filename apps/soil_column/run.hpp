@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/common/scene_program.hpp"
+#include "apps/deposit/soil_material.hpp"
 #include "apps/soil_column/summary.hpp"
 
 namespace isostat
 {
-using ColumnRequest = RunRequest<ColumnScene>;
+struct ColumnRequest : RunRequest<ColumnScene>
+{
+  using RunRequest::RunRequest;
+  UserMaterials materials; ///< of layers whose material is user
+};
 
 struct RunResult
 {
@@ -13,10 +18,12 @@ struct RunResult
   RunTimes times;
 };
 
-/// Runs a scene to its end and leaves all files but the summary.   Collective over MPI_COMM_WORLD.
+/// Runs a scene to its end and leaves all files but summary.txt and figures.   Collective over MPI_COMM_WORLD.
 /// @throws InputError  before anything that is there is changed   @throws RunFailure  with step, time and checkpoint
 /// @throws Interrupted  after a signal, with a checkpoint
 /// tested: tests/apps/soil_column_test.py
+RunResult run_column(const ColumnRequest &request);
+/// The parts of it: one kind of analysis in so many dimensions, with neither times.json nor summary.json.
 template <int dim>
 RunResult run_dynamic(const ColumnRequest &request);
 template <int dim>

@@ -27,13 +27,12 @@ Json layers_json(const ColumnScene &scene)
   double top = 0;
   for (const ColumnLayer &layer : scene.layers)
     {
-      layers.push_back(
-          {{"name", layer.name},
-           {"top", top},
-           {"bottom", top + layer.thickness},
-           {"material", material_names[static_cast<int>(layer.material)]},
-           {"density", layer.density},
-           {"shear_modulus", layer.material == LayerMaterial::grains ? Json() : Json(layer.small_strain_modulus())}});
+      layers.push_back({{"name", layer.name},
+                        {"top", top},
+                        {"bottom", top + layer.thickness},
+                        {"material", material_names[static_cast<int>(layer.material)]},
+                        {"density", layer.density},
+                        {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()}});
       top += layer.thickness;
     }
   return layers;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of a run as arrays.   tested: tests/python/results_test.py"""
+"""Results of a run as arrays.   tested: tests/python/run_test.py"""
 import collections.abc
 import csv
 import importlib
@@ -90,6 +90,8 @@ class Results:
     provenance  text: version, compiler, seed ...
     """
 
+    program = "element_test"
+
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not (self.folder / "history.csv").is_file():
@@ -118,8 +120,8 @@ class Results:
         return _core.read_snapshot(str(self.snapshots[number]))
 
     def draw(self, name):
-        """The axes of one of the figures of element_test: results.draw("fig_stress_path")."""
-        return draw(self.folder, name)
+        """The axes of one of the figures that the program leaves: results.draw("fig_stress_path")."""
+        return draw(self.folder, name, self.program)
 
     def __repr__(self):
         return f"<isostat.Results of {self.folder}>"

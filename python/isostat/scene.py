@@ -22,23 +22,11 @@ class Scene(_core.Scene):
     """
 
     def __init__(self, source=None, /, *, set=None, **sections):
-        overrides = [f"{key}={override_text(value)}" for key, value in (set or {}).items()]
-        if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
-            if sections:
-                raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
-            text = pathlib.Path(source).read_text(encoding="utf-8") if pathlib.Path(source).is_file() else None
-            if text is None:
-                raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
-            super().__init__(_core.Scene._read(os.fspath(source), overrides).text, os.fspath(source), [])
-            return
-        if isinstance(source, str):
-            super().__init__(source, "scene", overrides)
-            return
-        super().__init__(toml_text({**(source or {}), **sections}), "scene", overrides)
+        super().__init__(*scene_source(_core.Scene, source, set, sections))
 
     def with_(self, **keys):
         """The scene with other values: scene.with_(**{"motion.damping": 0.05})."""
-        return Scene(self.text, set=keys)
+        return type(self)(self.text, set=keys)
 
     def to_dict(self):
         """Every key with its value, as nested dictionaries."""
@@ -46,6 +34,20 @@ class Scene(_core.Scene):
 
     def __repr__(self):
         return f"<isostat.Scene {self.title!r}>"
+
+
+def scene_source(kind, source, overrides, sections):
+    """Text, name and overrides of a compiled class of scenes from what its class in Python takes."""
+    given = [f"{key}={override_text(value)}" for key, value in (overrides or {}).items()]
+    if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
+        if sections:
+            raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
+        if not pathlib.Path(source).is_file():
+            raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
+        return kind._read(os.fspath(source), given).text, os.fspath(source), []
+    if isinstance(source, str):
+        return source, "scene", given
+    return toml_text({**(source or {}), **sections}), "scene", given
 
 
 def value_text(value):

@@ -64,7 +64,7 @@ TEST(ColumnSceneError, Materials)
       {"column.toml:6: layer.0.strength_ratio = 0.6; does not belong to a layer of material \"elastic\", only "
        "to iwan. Remove it or change the material."});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
-                   {"must be \"elastic\", \"iwan\" or \"grains\""});
+                   {"must be \"elastic\", \"iwan\", \"grains\" or \"user\""});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
   expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
                    {"layer.1.phase_transformation_ratio=0.6"});

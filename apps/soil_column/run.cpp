@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/run.hpp"
+
+#include "apps/deposit/ranks.hpp"
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace isostat
+{
+namespace
+{
+template <int dim>
+RunResult run_kind(const ColumnRequest &request)
+{
+  return request.scene.analysis.kind == AnalysisKind::dynamic ? run_dynamic<dim>(request)
+                                                              : run_consolidation<dim>(request);
+}
+
+RunResult run_dimension(const ColumnRequest &request)
+{
+  switch (request.scene.mesh.dimension)
+    {
+    case 1:
+      return run_kind<1>(request);
+    case 2:
+      return run_kind<2>(request);
+    default:
+      return run_kind<3>(request);
+    }
+}
+} // namespace
+
+RunResult run_column(const ColumnRequest &request)
+{
+  if (request.use == FolderUse::resume && request.scene.mesh.distributed)
+    throw InputError(fmt::format("{}: cannot be resumed, because a distributed run (mesh.distributed = true) keeps no "
+                                 "checkpoint. Start it anew with --overwrite.",
+                                 request.folder.string()));
+  on_first_rank([&] { check_result_folder(request.folder, request.use); });
+  RunResult result = run_dimension(request);
+  if (ranks().first())
+    {
+      write_json(request.folder / "times.json", to_json(result.times));
+      write_json(request.folder / "summary.json", to_json(result.summary, request.scene));
+    }
+  return result;
+}
+} // namespace isostat

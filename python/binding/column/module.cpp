@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The soil column. A module of its own, because it needs deal.II and MPI, which `import isostat` does not load.
+// tested: tests/python/column_test.py
+#include "apps/common/interrupt.hpp"
+#include "apps/deposit/ranks.hpp"
+#include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
+#include "base/files/replace_file.hpp"
+#include "coupling/batch/wave_moduli_cache.hpp"
+#include "fem/libraries.hpp"
+#include "python/binding/column/python_material.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+namespace isostat::python
+{
+namespace
+{
+/// Starts MPI, PETSc and p4est at the first run; they end with the interpreter.
+void start_libraries()
+{
+  static bool started = false;
+  if (std::exchange(started, true))
+    return;
+  int others = 0;
+  MPI_Initialized(&others);
+  if (others)
+    throw RunFailure("MPI has been started already, by mpi4py perhaps; run the first column before that");
+  auto *libraries = new Libraries;
+  py::module_::import("atexit").attr("register")(py::cpp_function([libraries] { delete libraries; }));
+}
+
+UserMaterials user_materials(const py::dict &laws)
+{
+  UserMaterials materials;
+  for (const auto &[key, law] : laws)
+    {
+      const auto name = py::cast<std::string>(key);
+      materials[name] = [name, law = law](std::size_t n_points) {
+        const py::gil_scoped_acquire gil;
+        return std::make_unique<PythonMaterial>(py::reinterpret_borrow<py::object>(law), name, n_points);
+      };
+    }
+  return materials;
+}
+
+void run(const ColumnScene &scene, const std::string &output, const py::dict &materials, bool overwrite, bool resume,
+         int threads, bool quiet)
+{
+  start_libraries();
+  SceneOptions options;
+  options.output = output;
+  options.command_line = "isostat.column.run() in Python";
+  options.overwrite = overwrite;
+  options.resume = resume;
+  options.threads = threads;
+  options.quiet = quiet;
+  ColumnRequest request(scene, options);
+  request.materials = user_materials(materials);
+  const py::gil_scoped_release free;
+  const SignalsCaught signals;
+  const RunResult result = run_column(request);
+  if (!ranks().first())
+    return;
+  const std::string text = to_text(result.summary, scene);
+  write_replacing(request.folder / "summary.txt", text);
+  if (!quiet)
+    fmt::print("{}{}", text, to_text(result.times));
+}
+
+/// (n, 2) of (n, 6, 6).
+py::array_t<double> wave_moduli(const py::array_t<double, py::array::c_style | py::array::forcecast> &stiffness)
+{
+  if (stiffness.ndim() != 3 || stiffness.shape(1) != 6 || stiffness.shape(2) != 6)
+    throw InputError("stiffness: must be an array of shape (n, 6, 6).");
+  py::array_t<double> found({stiffness.shape(0), py::ssize_t(2)});
+  for (py::ssize_t q = 0; q < stiffness.shape(0); ++q)
+    {
+      const WaveModuli moduli = max_wave_moduli(Eigen::Map<const Stiffness>(stiffness.data() + 36 * q).transpose());
+      found.mutable_at(q, 0) = moduli.p;
+      found.mutable_at(q, 1) = moduli.s;
+    }
+  return found;
+}
+} // namespace
+} // namespace isostat::python
+
+PYBIND11_MODULE(_column, module)
+{
+  namespace py = pybind11;
+  using namespace isostat;
+  module.doc() = "The compiled part of isostat.column; use what the package itself offers.";
+  py::class_<ColumnScene>(module, "ColumnScene")
+      .def(py::init(&parse_column_scene), py::arg("text"), py::arg("name"), py::arg("overrides"))
+      .def_static("_read", &read_column_scene, py::arg("path"), py::arg("overrides"))
+      .def_readonly("title", &ColumnScene::title, "What heads tables and figures.")
+      .def_property_readonly(
+          "folder", [](const ColumnScene &scene) { return scene.output.folder; },
+          "Where run() leaves results unless it is told: results/<name of the scene file>.")
+      .def_property_readonly(
+          "text", [](const ColumnScene &scene) { return to_toml(scene); },
+          "The whole scene as TOML: every key with its value and unit.")
+      .def("__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; })
+      .def("__str__", [](const ColumnScene &scene) { return to_toml(scene); });
+  module.def("run", &python::run);
+  module.def("wave_moduli", &python::wave_moduli);
+}

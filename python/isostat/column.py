@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The soil column, with materials of one's own. Needs the compiled part that is built with deal.II.
+
+tested: tests/python/column_test.py
+"""
+import abc
+import io
+import os
+
+import numpy as np
+
+from isostat import _core
+from isostat.results import Results
+from isostat.scene import Scene, scene_source
+
+try:
+    from isostat import _column
+except ImportError as error:
+    raise ImportError(f"the soil column is not in this installation ({error}). Build Isostat with deal.II "
+                      "(-DISOSTAT_FEM=ON, the default of its CMake) and take the package from there; the wheel of "
+                      "`pip install` has the grains alone.") from error
+
+
+class ColumnScene(_column.ColumnScene):
+    """A column of soil: mesh, water, layers, base, motions, load, analysis, output; given as an isostat.Scene is.
+
+    ColumnScene("apps/scenes/column/uniform_layer.toml", set={"analysis.duration": "2 s"})
+    Raises InputError with the place, the value, the allowed range and a remedy.
+    """
+
+    def __init__(self, source=None, /, *, set=None, **sections):
+        super().__init__(*scene_source(_column.ColumnScene, source, set, sections))
+
+    with_ = Scene.with_
+    to_dict = Scene.to_dict
+
+    def __repr__(self):
+        return f"<isostat.column.ColumnScene {self.title!r}>"
+
+
+class Material(abc.ABC):
+    """The law of a layer whose scene says material = "user", for all its n Gauss points at once.
+
+    The state is a dictionary of arrays that the class chooses; the solver keeps the committed one and that of the last
+    trial, writes it to checkpoints, and asks for a step as often as it needs. So update() must not change the state that
+    it is given. Order of components: xx, yy, zz, yz, xz, xy; tension positive; effective stress in Pa; shear strain as
+    gamma = 2 eps. Arrays that are given are read-only and valid during the call only.
+    """
+
+    @abc.abstractmethod
+    def initial(self, stress):
+        """The state in situ.   stress: effective, (n, 6)   returns the state"""
+
+    @abc.abstractmethod
+    def update(self, state, gradient):
+        """A step from a state.   gradient: increment of d u_i / d x_j, (n, 3, 3)   returns (stress (n, 6), new state)"""
+
+    @abc.abstractmethod
+    def stiffness(self, state):
+        """d stress / d strain, (n, 6, 6), Pa: the tangent of an implicit step, and what waves meet."""
+
+    def wave_moduli(self, state):
+        """rho V_p^2 and rho V_s^2, the largest over all directions, (n, 2), Pa: they bound the time step of waves.
+
+        Asked at every step. This one searches the directions of stiffness(); a formula of one's own is faster.
+        """
+        return _column.wave_moduli(self.stiffness(state))
+
+    def pack(self, state):
+        """The state as bytes, for a checkpoint."""
+        file = io.BytesIO()
+        np.savez(file, **state)
+        return file.getvalue()
+
+    def unpack(self, packed):
+        """The state of pack()."""
+        with np.load(io.BytesIO(packed), allow_pickle=False) as arrays:
+            return dict(arrays)
+
+
+def strain(gradient):
+    """eps_xx, eps_yy, eps_zz, gamma_yz, gamma_xz, gamma_xy of displacement gradients: (n, 6) of (n, 3, 3)."""
+    both = gradient + np.swapaxes(gradient, 1, 2)
+    return np.stack([both[:, 0, 0] / 2, both[:, 1, 1] / 2, both[:, 2, 2] / 2, both[:, 1, 2], both[:, 0, 2], both[:, 0, 1]],
+                    axis=1)
+
+
+def run(scene, output=None, *, materials=None, overwrite=False, resume=False, threads=1, quiet=True):
+    """Runs a column to its end, to the same bits as the program soil_column does, and leaves the same files.
+
+    scene       ColumnScene                                output      folder; None: the scene's, results/<its name>
+    materials   {name of a layer: Material} for the layers whose material is "user"
+    overwrite   replaces results that are there            resume      goes on from the checkpoint of `output`
+    threads     that share packings of grains; changes no bit of the result
+
+    Returns Results. Ctrl-C writes a checkpoint and raises KeyboardInterrupt. Raises InputError, and RunFailure with the
+    step, the time and the last checkpoint; what a Material raises passes through.
+    """
+    folder = os.fspath(output) if output is not None else scene.folder
+    if not folder:
+        raise _core.InputError("output: is missing, and the scene names no folder. Give one.")
+    for name, law in (materials or {}).items():
+        if not isinstance(law, Material):
+            raise _core.InputError(f"materials[{name!r}]: must be an isostat.column.Material, but is {law!r}.")
+    _column.run(scene, folder, materials or {}, overwrite, resume, threads, quiet)
+    return ColumnResults(folder)
+
+
+class ColumnResults(Results):
+    """A results folder of soil_column or run(): as Results, with draw() for its figures."""
+
+    program = "soil_column"
+
+    @property
+    def scene(self):
+        """The ColumnScene that was run, with every key resolved."""
+        return ColumnScene((self.folder / "scene.toml").read_text(encoding="utf-8"))

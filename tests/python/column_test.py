@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A column from Python whose layers have materials that are written in Python."""
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+from package import BINARIES, ToleranceTest, isostat
+from isostat import column
+
+SCENE = """title = "a pulse"
+[water]
+drainage = "dry"
+[[layer]]
+name = "sand"
+thickness = "5 m"
+cells = 5
+material = "user"
+[[layer]]
+name = "clay"
+thickness = "5 m"
+cells = 5
+material = "elastic"
+shear_velocity = "150 m/s"
+[[motion]]
+kind = "ricker"
+amplitude = "1 m/s2"
+frequency = "4 Hz"
+[analysis]
+duration = "1.2 s"
+[output]
+history_interval = "0.01 s"
+"""
+SHEAR, POISSON = 2000 * 200.0**2, 0.3
+
+
+def elastic_stiffness():
+    lame = 2 * SHEAR * POISSON / (1 - 2 * POISSON)
+    stiffness = np.diag([2 * SHEAR] * 3 + [SHEAR] * 3)
+    stiffness[:3, :3] += lame
+    return stiffness
+
+
+class Elastic(column.Material):
+    tangent = elastic_stiffness()
+
+    def initial(self, stress):
+        return {"stress": stress.copy()}
+
+    def update(self, state, gradient):
+        stress = state["stress"] + column.strain(gradient) @ self.tangent
+        return stress, {"stress": stress}
+
+    def stiffness(self, state):
+        return np.broadcast_to(self.tangent, (len(state["stress"]), 6, 6))
+
+
+class Hyperbolic(Elastic):
+    """Softens with shear strain: tau = G gamma / (1 + |gamma| / gamma_r), gamma_r = 2e-4."""
+
+    def update(self, state, gradient):
+        strained, state = super().update(state, gradient)
+        stress = strained.copy()
+        stress[:, 3:5] /= 1 + np.abs(stress[:, 3:5]) / (SHEAR * 2e-4)
+        return stress, state
+
+
+class Interrupts(Hyperbolic):
+    calls = 0
+
+    def __init__(self, last):
+        self.last = last
+
+    def update(self, state, gradient):
+        self.calls += 1
+        if self.calls == self.last:
+            os.kill(os.getpid(), signal.SIGINT)
+        return super().update(state, gradient)
+
+
+class ColumnTest(ToleranceTest):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.scene = column.ColumnScene(SCENE)
+
+    def run_with(self, law, name, **options):
+        return column.run(self.scene, self.folder / name, materials={"sand": law}, **options)
+
+    def run_program(self):
+        """The column with an elastic layer instead, by soil_column."""
+        scene = self.folder / "elastic.toml"
+        scene.write_text(SCENE.replace('"user"', '"elastic"\nshear_velocity = "200 m/s"'), encoding="utf-8")
+        folder = self.folder / "program"
+        subprocess.run([BINARIES / "soil_column", scene, "--output", folder, "--quiet", "--no-figures"], check=True,
+                       capture_output=True)
+        return scene, folder
+
+    def test_elastic_is_that_of_the_program(self):
+        program = isostat.read(self.run_program()[1]).history
+        ours = self.run_with(Elastic(), "python").history
+        self.assertEqual(list(ours), list(program))
+        self.assertGreater(np.max(np.abs(program["surface_ax"])), 1)
+        self.assert_near(np.max(np.abs(ours["surface_ax"] - program["surface_ax"])), 0, 1e-9, "m/s2, rounding")
+
+    def test_without_own_material_it_has_the_bits_of_the_program(self):
+        scene, program = self.run_program()
+        ours = column.run(column.ColumnScene(scene), self.folder / "python")
+        self.assertEqual((ours.folder / "history.csv").read_bytes(), (program / "history.csv").read_bytes())
+        self.assertEqual(ours.scene, column.ColumnScene(scene).with_(**{"output.folder": ours.scene.folder}))
+        self.assertEqual(ours.summary["points"], 20)
+
+    def test_softening_is_more_than_proportional(self):
+        scene, peaks = self.scene, []
+        for factor in (1, 5):
+            self.scene = scene.with_(**{"motion.0.amplitude": f"{factor} m/s2"})
+            run = self.run_with(Hyperbolic(), f"times_{factor}")
+            peaks.append(np.max(np.abs(run.history["surface_ux"])))
+        self.assertGreater(peaks[1] / peaks[0], 5.5)
+        self.assertTrue(run.draw("fig_motions"))
+
+    def test_interrupted_and_resumed_to_the_bit(self):
+        whole = self.run_with(Hyperbolic(), "whole")
+        before = signal.getsignal(signal.SIGINT)
+        with self.assertRaises(KeyboardInterrupt):
+            self.run_with(Interrupts(200), "parts")
+        self.assertEqual(signal.getsignal(signal.SIGINT), before)
+        parts = self.run_with(Interrupts(0), "parts", resume=True)
+        self.assertEqual((parts.folder / "history.csv").read_bytes(), (whole.folder / "history.csv").read_bytes())
+
+    def test_wave_moduli_of_an_isotropic_stiffness(self):
+        found = Elastic().wave_moduli({"stress": np.zeros((2, 6))})
+        p_modulus = 2 * SHEAR * (1 - POISSON) / (1 - 2 * POISSON)
+        self.assert_near(np.max(np.abs(found / [p_modulus, SHEAR] - 1)), 0, 1e-9, "directions are searched to rounding")
+
+    def test_mistakes(self):
+        class Flat(Elastic):
+            def update(self, state, gradient):
+                return np.zeros(6), state
+
+        class Breaks(Elastic):
+            def update(self, state, gradient):
+                stress, state = super().update(state, gradient)
+                stress[4, 2] = np.nan
+                return stress, state
+
+        class Raises(Elastic):
+            def update(self, state, gradient):
+                raise ZeroDivisionError("of the user")
+
+        class Alone(Elastic):
+            def update(self, state, gradient):
+                return super().update(state, gradient)[0]
+
+        for law, error, message in [(Flat(), isostat.InputError, r"must be an array of shape \(10, 6\), but has \(6\)"),
+                                    (Breaks(), isostat.RunFailure, r"the stress of point 4 is not finite"),
+                                    (Raises(), ZeroDivisionError, "of the user"),
+                                    (Alone(), isostat.InputError, r"must return \(stress, state\)")]:
+            with self.subTest(law), self.assertRaisesRegex(error, message):
+                self.run_with(law, type(law).__name__)
+        for materials, message in [({}, r'layer.0 \("sand"\).*none was given'),
+                                   ({"sand": Elastic(), "mud": Elastic()}, '"mud"'),
+                                   ({"sand": 3}, "must be an isostat.column.Material")]:
+            with self.subTest(message), self.assertRaisesRegex(isostat.InputError, message):
+                column.run(self.scene, self.folder / "none", materials=materials)
+        self.assertEqual(list(self.folder.glob("none/*")), [])
+
+    def test_the_program_says_where_a_user_material_comes_from(self):
+        scene = self.folder / "user.toml"
+        scene.write_text(SCENE, encoding="utf-8")
+        run = subprocess.run([BINARIES / "soil_column", scene, "--output", self.folder / "none"], capture_output=True,
+                             text=True, check=False)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("isostat.column.run(", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
