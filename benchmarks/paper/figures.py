@@ -83,9 +83,8 @@ def bands(panel, rows, columns):
 def draw(folder):
     plt.rcParams.update(STYLE)
     for name, function in FIGURES.items():
-        table = folder / f"{function.table}.csv"
-        if table.exists():
-            figure = function(Table(table), folder)
+        if all((folder / f"{table}.csv").exists() for table in function.tables):
+            figure = function(Table(folder / f"{function.tables[0]}.csv"), folder)
             if figure is not None:
                 figure.set_dpi(STYLE["savefig.dpi"])
                 figure.draw_without_rendering()  # so that ticks are those that savefig lays out
@@ -94,15 +93,15 @@ def draw(folder):
                 print(folder / f"{name}.png")
 
 
-def of_table(name):
-    """Says which table a figure is drawn from."""
+def of_tables(*names):
+    """Says from which tables a figure is drawn; it gets the first."""
     def mark(function):
-        function.table = name
+        function.tables = names
         return function
     return mark
 
 
-@of_table("undrained_curves")
+@of_tables("undrained_curves")
 def monotonic(table, _):
     """Figure 1: effective stress paths and stress-strain curves, beside laboratory anchors."""
     figure, ((path, curve),) = panels(1, 2, height=3.9)
@@ -139,7 +138,7 @@ def monotonic(table, _):
     return figure
 
 
-@of_table("undrained_curves")
+@of_tables("undrained_curves")
 def dense(table, _):
     """Why dense packings reach megapascals at constant volume: the same test with softer contacts."""
     figure, ((stress, ratio),) = panels(1, 2)
@@ -160,7 +159,7 @@ def dense(table, _):
     return figure
 
 
-@of_table("cyclic_tests")
+@of_tables("cyclic_tests")
 def cycles(table, _):
     """Figure 2 as an ensemble: cycles to liquefaction against void ratio, at the amplitude of the paper."""
     figure, ((panel, strains),) = panels(1, 2)
@@ -220,7 +219,7 @@ def phase_axis(axes, rows):
     axes[-1].set_xlabel("Share of the cycles to the onset; then whole half cycles, the first towards compression")
 
 
-@of_table("cyclic_curves")
+@of_tables("cyclic_curves")
 def redundancy(table, _):
     """Figure 3: redundancy index and contact fractions, mean and standard deviation over seeds."""
     rows = densest_liquefying(table)
@@ -246,7 +245,7 @@ def redundancy(table, _):
     return figure
 
 
-@of_table("cyclic_curves")
+@of_tables("cyclic_curves", "half_cycles")
 def fabric(table, folder):
     """Figure 4: fabric and its anisotropy, and the anisotropy of a half cycle against its strain."""
     rows = densest_liquefying(table)
@@ -275,7 +274,7 @@ def fabric(table, folder):
     return figure
 
 
-@of_table("drained_curves")
+@of_tables("drained_curves")
 def drained(table, _):
     """Drained tests beside the laboratory, the two pressures in columns."""
     figure, axes = panels(2, 2, height=5.4, sharex=True)
@@ -301,7 +300,7 @@ def drained(table, _):
     return figure
 
 
-@of_table("cyclic_tests")
+@of_tables("cyclic_tests")
 def resistance(table, folder):
     """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
     table = table.where(pace=plan.DEFAULT)
@@ -329,7 +328,7 @@ def resistance(table, folder):
     return figure
 
 
-@of_table("critical_states")
+@of_tables("critical_states")
 def critical_states(table, folder):
     """Ends of monotonic tests with the line through them; strain of liquefied specimens that drain."""
     figure, ((line, drained_strain),) = panels(1, 2)
@@ -363,7 +362,7 @@ def critical_states(table, folder):
     return figure
 
 
-@of_table("cyclic_path")
+@of_tables("cyclic_path")
 def path(table, _):
     """Figure 2 as the paper draws it, of one specimen."""
     figure, ((stress, strain),) = panels(1, 2, sharey=True)

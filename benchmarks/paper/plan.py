@@ -5,6 +5,7 @@ import dataclasses
 from speed_error import plan as speed_plan
 
 P0 = 200  # kPa, of the paper
+FRICTION = 18  # degrees
 PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
 # (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (docs/results/paper/limits.csv);
@@ -20,7 +21,9 @@ CRITICAL = (50, 200, 800)  # kPa: loose packings sheared to their critical state
 LOOSE = 11  # preparation friction of those, degrees
 AFTER_ONSET = 8  # reversals: four cycles
 LARGE = 5000  # grains
-FRICTION = 18  # degrees
+# Preparation friction, degrees, of large boxes of the paper's densities, instead of a search, whose trials take half an
+# hour each: the loosest that stand when friction is set (those of D_r = 0.30 lose their pressure), nearly the densest
+LARGE_DEGREES = {0.30: FRICTION, 0.88: 0.5}
 
 SCENE = speed_plan.GRADING.replace("{seed}", "{seed}{sizes}") + speed_plan.CONTACT.replace(
     "10 GPa", "{young:g} GPa").replace("18 deg", "{friction:g} deg") + """
@@ -122,10 +125,12 @@ class Packing:
     def settings(self):
         """Of the scene: how it is made."""
         way = WAYS[self.way]
+        hard_to_find = self.grains >= LARGE and self.young == 10 and not way.cell
+        degrees = self.degrees or (hard_to_find and LARGE_DEGREES.get(self.relative_density))
         lines = [f'domain = "{"periodic-cell" if way.cell else "rigid-box"}"',
                  f'pressure = "{way.pressure or self.pressure:g} kPa"']
-        if self.degrees:
-            lines.append(f'preparation_friction = "{self.degrees:g} deg"')
+        if degrees:
+            lines.append(f'preparation_friction = "{degrees:g} deg"')
         else:
             e_min, e_max = self.limits
             # a search costs more than a test, and small boxes scatter; the loosest give way when friction is raised
