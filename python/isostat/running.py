@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Preparing specimens and running scenes.   tested: tests/python/run_test.py"""
+import csv
 import os
+import pathlib
+import tempfile
 
 from isostat import _core
-from isostat.results import History, Results
+from isostat.results import History, Results, draw
 
 CACHE = os.path.join("results", "specimens")
 
@@ -61,6 +64,17 @@ class Run:
     def __init__(self, scene, done):
         self.scene, self.snapshot, self.finished = scene, done.snapshot, done.finished
         self.history = History(done.history, done.units)
+
+    def draw(self, name):
+        """The axes of one of the figures of element_test: run.draw("fig_stress_path")."""
+        with tempfile.TemporaryDirectory() as name_of_folder:
+            folder = pathlib.Path(name_of_folder)
+            (folder / "scene.toml").write_text(self.scene.text, encoding="utf-8")
+            with open(folder / "history.csv", "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(f"{column} ({self.history.units[column]})" for column in self.history)
+                writer.writerows(zip(*(column.tolist() for column in self.history.values())))
+            return draw(folder, name)
 
     def __repr__(self):
         return f"<isostat.Run {self.scene.title!r}, {len(self.history)} rows>"

@@ -56,6 +56,10 @@ class RunTest(ToleranceTest):
             self.assert_near(in_memory.history[name], results.history[name], 1e-9 * np.abs(results.history[name]),
                              f"digits of a history file, in {name}")
         np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
+        for drawn, stored in zip(in_memory.draw("fig_stress_path"), results.draw("fig_stress_path")):
+            for line, other in zip(drawn.lines, stored.lines):
+                self.assert_near(np.asarray(line.get_ydata(), float), np.asarray(other.get_ydata(), float), 1e-6,
+                                 "digits of a history file")
 
     def test_callbacks_see_the_packing(self):
         seen, moved = [], []
