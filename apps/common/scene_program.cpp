@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/scene/reader.hpp"
 
 #include <fmt/format.h>
 
@@ -30,6 +31,21 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));
 }
 
+/// Headers that the scenes of one program alone have.
+constexpr std::pair<const char *, const char *> programs[] = {
+    {"[[layer]]", "soil_column"}, {"[soil]", "biaxial"}, {"[[stage]]", "element_test"}, {"[[curve]]", "calibrate"}};
+
+/// @throws InputError  the scene is one of another program
+void check_program(const std::string &scene, const char *name)
+{
+  const std::string text = read_scene_text(scene);
+  for (const std::string_view line : split_lines(text))
+    for (const auto &[header, program] : programs)
+      if (line.starts_with(header) && std::string_view(program) != name)
+        throw InputError(fmt::format("{}: is a scene of {}, not of {}: it has {}. Run it with: {} {}", scene, program,
+                                     name, header, program, scene));
+}
+
 /// What needs no run. @return  true if that was not all
 bool print_something(const SceneProgram &program, const SceneOptions &options)
 {
@@ -39,10 +55,13 @@ bool print_something(const SceneProgram &program, const SceneOptions &options)
     fmt::print("{}", program.manual());
   else if (options.scene.empty())
     throw InputError(fmt::format("no scene given. Try {} {}, or --help.", program.name, program.first_scene));
-  else if (options.validate)
-    fmt::print("{}", program.resolved(options.scene, options.set));
   else
-    return true;
+    {
+      check_program(options.scene, program.name);
+      if (!options.validate)
+        return true;
+      fmt::print("{}", program.resolved(options.scene, options.set));
+    }
   return false;
 }
 } // namespace
@@ -76,6 +95,18 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
         "(compare {} with the output of --validate). Resume with the scene and --set values of the first run.",
         folder.string(), first_difference(scene, checkpoint), first_difference(checkpoint, scene),
         (folder / "scene.toml").string()));
+}
+
+bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene)
+{
+  if (use != FolderUse::resume || !std::filesystem::exists(folder / "summary.json"))
+    return false;
+  check_same_scene(folder, read_scene_text((folder / "scene.toml").string()), scene);
+  fmt::print(
+      "{}: this run has finished, there is nothing to resume; its results are in summary.txt. Start it anew with "
+      "--overwrite.\n",
+      folder.string());
+  return true;
 }
 
 std::string last_checkpoint(const std::filesystem::path &folder)

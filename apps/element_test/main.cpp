@@ -31,6 +31,8 @@ TestRun fresh_run(const RunRequest<Scene> &request, const StepSettings &how)
 void run(const SceneOptions &options)
 {
   const RunRequest<Scene> request(read_scene(options.scene, options.set), options);
+  if (has_finished(request.folder, request.use, to_toml(request.scene)))
+    return;
   check_result_folder(request.folder, request.use);
   const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
   TestRun test =

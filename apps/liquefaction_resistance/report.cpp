@@ -59,16 +59,20 @@ std::string table(const std::vector<RunResult> &results, std::vector<double> rat
   return text;
 }
 
+/// A line through two points has none that can be known.
+bool has_error(const PowerLaw &law) { return law.n_runs > 2; }
+
 std::string fit_text(const std::optional<PowerLaw> &law)
 {
   if (!law)
     return "\n  fit                      none: fewer than two ratios have a run that liquefied";
   const bool inside = law->min_cycles <= reference_cycles && law->most_cycles >= reference_cycles;
   return fmt::format(
-      "\n  fit                      CSR = {:.4f} N^-{:.3f}, b +- {:.3f}, R^2 = {:.3f}, {} runs{}\n  CSR at "
-      "15 cycles         {:.4f}{}",
-      law->a, law->b, law->b_error, law->r_squared, law->n_runs,
-      law->n_left_out > 0 ? fmt::format(" ({} did not liquefy and are left out)", law->n_left_out) : "",
+      "\n  fit                      CSR = {:.4f} N^-{:.3f}, {}, {} runs{}\n  CSR at 15 cycles         {:.4f}{}", law->a,
+      law->b,
+      has_error(*law) ? fmt::format("b +- {:.3f}, R^2 = {:.3f}", law->b_error, law->r_squared)
+                      : "whose error two runs cannot tell",
+      law->n_runs, law->n_left_out > 0 ? fmt::format(" ({} did not liquefy and are left out)", law->n_left_out) : "",
       law->at(reference_cycles), inside ? "" : " (extrapolated)");
 }
 
@@ -106,8 +110,8 @@ Json to_json(const Campaign &campaign, const std::optional<PowerLaw> &law)
   if (law)
     fit = {{"a", law->a},
            {"b", law->b},
-           {"b_error", law->b_error},
-           {"R2", law->r_squared},
+           {"b_error", has_error(*law) ? Json(law->b_error) : Json()},
+           {"R2", has_error(*law) ? Json(law->r_squared) : Json()},
            {"runs", law->n_runs},
            {"left_out", law->n_left_out},
            {"CSR_15", law->at(reference_cycles)}};

@@ -27,10 +27,10 @@ def soil_column(results, _column):
     s = results.numbers
     dynamic = s.get("analysis") == "dynamic"
     found = [Verdict("Ended", f"at its target, the end time of the scene, after {s['steps']} steps.", GOOD)]
-    if dynamic and s.get("max_ru", 0) >= LIQUEFIED_RU:
+    if dynamic and (s.get("max_ru") or 0) >= LIQUEFIED_RU:
         found.append(Verdict("Liquefied:", f"r_u reached {s['max_ru']:.3f} at a depth of {s['max_ru_depth']:.2f} m, "
                              f"t = {s['max_ru_time']:.4g} s."))
-    elif dynamic and s.get("max_ru", 0) > 0:
+    elif dynamic and (s.get("max_ru") or 0) > 0:
         found.append(Verdict("Not liquefied:", f"the largest r_u is {s['max_ru']:.3f}, at a depth of "
                              f"{s['max_ru_depth']:.2f} m; {LIQUEFIED_RU} counts as liquefied here."))
     if s.get("min_redundancy") is not None:

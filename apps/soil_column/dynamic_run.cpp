@@ -133,7 +133,7 @@ private:
         time};
     times_.packing_trials = static_cast<double>(cost.trials * n_packings);
     times_.packing_steps = static_cast<double>(cost.steps);
-    times_.in_packings = cost.busiest_seconds;
+    times_.in_packings = cost.batch_seconds;
     times_.all_packings = cost.rve_seconds;
     times_.waves = cost.wave_seconds;
   }

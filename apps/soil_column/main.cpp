@@ -21,6 +21,8 @@ using namespace isostat;
 void run_scene(const SceneOptions &options)
 {
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
+  if (has_finished(request.folder, request.use, to_toml(request.scene)))
+    return;
   const RunResult result = run_column(request);
   if (ranks().first())
     leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",

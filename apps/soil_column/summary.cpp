@@ -12,6 +12,16 @@ namespace
 {
 bool shaken(const ColumnScene &scene) { return scene.analysis.kind == AnalysisKind::dynamic; }
 
+/// r_u compares with the stress in situ, which the load of a consolidation has no part in.
+bool has_ru(const ColumnScene &scene) { return shaken(scene) && scene.water.drainage != Drainage::dry; }
+
+/// What a peak of horizontal acceleration is, if two axes move.
+const char *of_both_axes(const ColumnScene &scene)
+{
+  const auto horizontal = [](const ColumnMotion &motion) { return motion.axis != Axis::z; };
+  return std::ranges::count_if(scene.motions, horizontal) > 1 ? ", x and y as a vector" : "";
+}
+
 double amplification(const ColumnPeaks &peaks) { return peaks.input > 0 ? peaks.surface / peaks.input : 0; }
 
 /// Energy that came from nowhere, of the largest that any row has.
@@ -49,16 +59,17 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                   scene.layers.size() > 1 ? "s" : "", drainage_names[static_cast<int>(scene.water.drainage)], s.cells,
                   s.points, scene.mesh.dimension);
   if (shaken(scene))
-    text += fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
-                        "{:.4f} m/s2{}\n  peak surface             {:.4f} m/s2\n",
-                        scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
-                        scene.base.compliant() ? " (outcrop)" : "", p.surface);
+    text +=
+        fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
+                    "{:.4f} m/s2{}{}\n  peak surface             {:.4f} m/s2{}\n",
+                    scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
+                    scene.base.compliant() ? " (outcrop)" : "", of_both_axes(scene), p.surface, of_both_axes(scene));
   else
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
   if (p.input > 0)
     text += fmt::format("  amplification            {:.3f}\n", amplification(p));
   text += fmt::format("  peak shear strain        {:.5f} % at a depth of {:.2f} m\n", 100 * p.gamma, p.gamma_depth);
-  if (scene.water.drainage != Drainage::dry)
+  if (has_ru(scene))
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
                         p.ru_time);
   text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
@@ -81,8 +92,8 @@ namespace
 std::string packings_text(const RunTimes &t)
 {
   return fmt::format(
-      "  packings                 {:.0f} calls, {:.1f} time steps each; {:.1f} s on the busiest rank, {:.1f} "
-      "s on all\n  outside of packings      {:.2f} % of the wall time; wave velocities {:.1f} s\n",
+      "  packings                 {:.0f} calls, {:.1f} time steps each; {:.1f} s, on all cores together {:.1f} s\n"
+      "  outside of packings      {:.2f} % of the wall time; wave velocities {:.1f} s\n",
       t.packing_trials, t.packing_steps / t.packing_trials, t.in_packings, t.all_packings,
       100 * (1 - t.in_packings / t.wall), t.waves);
 }
@@ -123,9 +134,9 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"amplification", amplification(p)},
             {"peak_gamma", p.gamma},
             {"peak_gamma_depth", p.gamma_depth},
-            {"max_ru", p.ru},
-            {"max_ru_depth", p.ru_depth},
-            {"max_ru_time", p.ru_time},
+            {"max_ru", has_ru(scene) ? Json(p.ru) : Json()},
+            {"max_ru_depth", has_ru(scene) ? Json(p.ru_depth) : Json()},
+            {"max_ru_time", has_ru(scene) ? Json(p.ru_time) : Json()},
             {"settlement", s.last.settlement},
             {"energy_residual", s.last.residual},
             {"relative_energy_residual", relative_residual(s.last)},
@@ -153,7 +164,7 @@ Json to_json(const RunTimes &t)
           {"material", t.material},
           {"packing_calls", std::llround(t.packing_trials)},
           {"packing_steps", std::llround(t.packing_steps)},
-          {"busiest_packings", t.in_packings},
+          {"packings", t.in_packings},
           {"all_packings", t.all_packings},
           {"wave_velocities", t.waves}};
 }

@@ -35,7 +35,7 @@ struct RunTimes
   double wall = 0, solver = 0, material = 0; ///< s: from start to end, in steps without the material, in the material
   double steps = 0;                          ///< that were made, after a resume fewer than the run has
   double packing_trials = 0, packing_steps = 0; ///< calls of packings, their own time steps
-  double in_packings = 0, all_packings = 0;     ///< s: in packings of the busiest rank, of all ranks together
+  double in_packings = 0, all_packings = 0;     ///< s: wall clock in packings, on all cores together
   double waves = 0;                             ///< s: for their wave velocities
 };
 

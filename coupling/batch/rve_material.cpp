@@ -153,7 +153,6 @@ void RveMaterial::count_trial()
       cost_.steps += row.steps;
     }
   meter_.add_trial(costs);
-  cost_.busiest_seconds += std::ranges::max(loads_of(costs, owners(), batch_.exchange().size()));
   ++cost_.trials;
 }
 

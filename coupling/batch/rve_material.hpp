@@ -12,8 +12,7 @@ struct RveMaterialCost
   std::uint64_t trials = 0, steps = 0, moves = 0, stiffnesses = 0; ///< steps, moves: of all elements together
   double batch_seconds = 0;                                        ///< wall clock in trial()
   double rve_seconds = 0;                                          ///< in elements, summed over all of them
-  double busiest_seconds = 0; ///< in elements of the rank with most, summed over trials
-  double wave_seconds = 0;    ///< wall clock spent for stiffnesses of any kind
+  double wave_seconds = 0;                                         ///< wall clock spent for stiffnesses of any kind
 };
 
 /// A soil whose every Gauss point is `realisations` packings of grains: representative volume elements under the

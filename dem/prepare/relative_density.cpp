@@ -82,11 +82,12 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
   if (at_other == 0)
     return search.best;
   if (at_near * at_other > 0)
-    throw InputError(
-        fmt::format("specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
-                    "compression {} gives {:.4f}. Choose a {} density, more grains, or another grading or pressure.",
-                    target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
-                    other == 0 ? "lower" : "higher"));
+    throw InputError(fmt::format(
+        "specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
+        "compression {} gives {:.4f}, the {} there is. Choose a {} density, or another grading or pressure; walls "
+        "loosen a box of few grains: more grains, or specimen.domain = \"periodic-cell\", pack denser.",
+        target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
+        other == 0 ? "densest" : "loosest", other == 0 ? "lower" : "higher"));
   const double low = std::min(near, other), high = std::max(near, other);
   const double at_low = low == near ? at_near : at_other, at_high = low == near ? at_other : at_near;
   std::uintmax_t evaluations = 12;
