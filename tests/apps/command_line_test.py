@@ -155,8 +155,17 @@ class OutputFolder(AppTest):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
         self.assertFalse((self.folder / "out").exists())
         self.assert_done(self.run_test(self.scene, "-o", "out"))  # too short for a checkpoint
+        (self.folder / "out/summary.json").unlink()  # as if it had been stopped before its end
         before = contents(self.folder / "out")
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "nothing to resume")
+        self.assertEqual(contents(self.folder / "out"), before)
+
+    def test_resume_of_a_finished_run(self):
+        self.assert_done(self.run_test(self.scene, "-o", "out"))
+        before = contents(self.folder / "out")
+        result = self.run_test(self.scene, "-o", "out", "--resume")
+        self.assert_done(result)
+        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
         self.assertEqual(contents(self.folder / "out"), before)
 
     def test_resume_and_overwrite_exclude_each_other(self):
@@ -179,6 +188,7 @@ class OutputFolder(AppTest):
         self.assert_done(self.run_test(self.scene, "-o", "out", *every_256_steps))
         for checkpoint in (self.folder / "out/checkpoint").iterdir():
             checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
+        (self.folder / "out/summary.json").unlink()  # as if it had been stopped before its end
         before = contents(self.folder / "out")
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume", *every_256_steps), "last.h5")
         self.assertEqual(contents(self.folder / "out"), before)

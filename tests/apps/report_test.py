@@ -76,6 +76,7 @@ class Reports(ReportTest):
         """A folder in the way of the report: one line says so, and the run is done."""
         shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
         shutil.copy(self.runs / "cyclic.toml", self.folder)
+        (self.folder / "cyclic/summary.json").unlink()  # as if it had been stopped before its end
         (self.folder / "cyclic/report.html").unlink()
         (self.folder / "cyclic/report.html").mkdir()
         result = self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume")

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, history, settings
-from support import PATIENCE, main
+from support import PATIENCE, contents, main
 
 
 class Resume(ColumnTest):
@@ -54,14 +54,26 @@ class Resume(ColumnTest):
         self.finish(arguments)
 
     def refuse(self, change, *parts):
-        """A finished run cannot be resumed after `change` of its checkpoints."""
+        """A run that was stopped before its summary cannot be resumed after `change` of its checkpoints."""
         arguments = [self.scene, "-o", "out"]
         if not (self.folder / "out").exists():
             self.assert_done(self.run_column(*arguments))
+            (self.folder / "out/summary.json").unlink()
         for path in (self.folder / "out/checkpoint").iterdir():
             with h5py.File(path, "r+") as file:
                 change(file)
         self.assert_refused(self.run_column(*arguments, "--resume"), *parts)
+
+    def test_a_finished_run(self):
+        arguments = [self.scene, "-o", "out"]
+        self.assert_done(self.run_column(*arguments))
+        before = contents(self.folder / "out")
+        result = self.run_column(*arguments, "--resume")
+        self.assert_done(result)
+        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
+        self.assert_refused(self.run_column(*arguments, *settings(motion__0__amplitude="0.03 g"), "--resume"),
+                            "another scene")
+        self.assertEqual(contents(self.folder / "out"), before)
 
     def test_an_older_schema_is_refused(self):
         self.refuse(lambda file: file.attrs.modify("schema_version", np.uint64(1)), "out/checkpoint/last.h5",

@@ -204,7 +204,7 @@ TEST(RelativeDensity, IsFoundWithinTheTolerance)
 {
   const Cloud cloud = make_cloud(test::small_grading(400));
   test::Unobserved nobody;
-  const double tolerance = 0.01 * 0.273;
+  const double tolerance = 0.02 * 0.273; // so few grains jump from one void ratio to the next
   const PreparedDensity loose = find_preparation_friction(cloud, test::paper_law(), 0.78, tolerance, {{}, nobody});
   EXPECT_NEAR_BECAUSE(loose.void_ratio, 0.78, tolerance, "that is what was asked for");
   EXPECT_NEAR_BECAUSE(void_ratio(loose.state.volume(), loose.state.grains.solid_volume()), loose.void_ratio, 1e-12,
