@@ -12,6 +12,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <vector>
 
 namespace isostat
 {
@@ -28,6 +29,19 @@ std::string quoted(const fs::path &path)
   for (char c : path.string())
     word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
+}
+
+/// Whether the folder can be made; those that are made to find out go again.
+void try_writable_folder(const fs::path &folder)
+{
+  std::error_code failure;
+  std::vector<fs::path> missing;
+  for (fs::path path = fs::absolute(folder); !fs::exists(path, failure) && path.has_relative_path();
+       path = path.parent_path())
+    missing.push_back(path);
+  make_writable_folder(folder);
+  for (const fs::path &path : missing)
+    fs::remove(path, failure);
 }
 } // namespace
 
@@ -86,14 +100,15 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
                                  "Choose another --output.",
                                  folder.string()));
-  make_writable_folder(folder);
+  try_writable_folder(folder);
 }
 
 void open_result_folder(const fs::path &folder, FolderUse use)
 {
-  if (use != FolderUse::overwrite)
+  if (use == FolderUse::resume)
     return;
-  fs::remove_all(folder);
+  if (use == FolderUse::overwrite)
+    fs::remove_all(folder);
   make_writable_folder(folder);
 }
 
@@ -125,7 +140,7 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   const int status = std::system(command.c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : EXIT_FAILURE;
   if (code != 0 && code != without_report)
-    return fmt::format("figures were not drawn; see {}", log.string());
+    return fmt::format("figures were not drawn: {} ({})", last_line(log), log.string());
   if (code == without_report)
     fmt::print(stderr, "{}\n", last_line(log));
   return fmt::format("figures in {}", (folder / "figures").string()) +

@@ -22,14 +22,14 @@ inline FolderUse folder_use(bool overwrite) { return overwrite ? FolderUse::over
 /// What --output says, without a slash at the end, or the scene's own folder.
 std::filesystem::path output_folder(const std::filesystem::path &requested, const std::filesystem::path &of_scene);
 
-/// Looks whether a run may use the folder, and makes it if it is missing. Removes nothing: call it first, so that a
-/// mistake shows before hours of preparation.
+/// Looks whether a run may use the folder and could write to it. Leaves all as it is: call it first, so that a mistake
+/// shows before hours of preparation.
 /// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
 ///         look like results; --resume without a checkpoint; a path that cannot be written
 void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 
-/// With FolderUse::overwrite removes what is in the folder. Call it when the run is ready to start, so that old results
-/// survive a run that never does.      @pre check_result_folder()
+/// Makes the folder; with FolderUse::overwrite removes what was in it. Call it when the run is ready to start, so that
+/// old results survive a run that never does.      @pre check_result_folder()
 void open_result_folder(const std::filesystem::path &folder, FolderUse use);
 
 /// Whether the folder is there.     @throws InputError  it is a file

@@ -10,9 +10,14 @@ import importlib
 import pathlib
 import sys
 
-import matplotlib
+try:
+    import matplotlib
 
-from .common import BadInput, note
+    from .common import BadInput, note
+except ModuleNotFoundError as missing:
+    if missing.name not in ("matplotlib", "numpy", "h5py"):
+        raise
+    sys.exit(f"error: Python has no module {missing.name}: install it, apt-get install python3-{missing.name}")
 
 PROGRAMS = ("calibrate", "element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay",
             "biaxial")

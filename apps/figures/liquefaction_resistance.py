@@ -63,7 +63,11 @@ def draw_means(axes, runs):
 
 def draw_fit(axes, fit, low, high):
     n = np.geomspace(low, high, 200)
-    text = rf"$CSR = {fit['a']:.3f}\,N^{{-{fit['b']:.3f}}}$  ($b \pm {fit['b_error']:.3f}$, $R^2 = {fit['R2']:.2f}$)"
+    text = rf"$CSR = {fit['a']:.3f}\,N^{{-{fit['b']:.3f}}}$"
+    if fit["b_error"] is None:
+        text += "  (of two runs: no error)"
+    else:
+        text += rf"  ($b \pm {fit['b_error']:.3f}$, $R^2 = {fit['R2']:.2f}$)"
     axes.plot(n, fit["a"] * n ** -fit["b"], color=RED, linewidth=1.2, linestyle=(0, (5, 2)), zorder=2, label=text)
     axes.axvline(REFERENCE, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
     axes.plot(REFERENCE, fit["CSR_15"], "s", color=RED, markersize=5.5, zorder=5,

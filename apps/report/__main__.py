@@ -11,10 +11,15 @@ import argparse
 import pathlib
 import sys
 
-import matplotlib
+try:
+    import matplotlib
 
-from . import run
-from .folder import NUMBERS, NoResults, find_results
+    from . import run
+    from .folder import NUMBERS, NoResults, find_results
+except ModuleNotFoundError as missing:
+    if missing.name not in ("matplotlib", "numpy", "h5py"):
+        raise
+    sys.exit(f"error: Python has no module {missing.name}: install it, apt-get install python3-{missing.name}")
 
 
 def parse():

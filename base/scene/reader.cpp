@@ -174,14 +174,14 @@ std::string read_scene_text(const std::string &path)
 }
 
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
-                       const std::string &file)
+                       const std::string &file, bool or_folder)
 {
   namespace fs = std::filesystem;
   const auto absolute = [](const fs::path &path) { return fs::absolute(path).lexically_normal(); };
   const fs::path beside_scene = absolute(fs::path(scene_path).parent_path() / file), here = absolute(file);
   std::error_code ignored;
   for (const fs::path &path : {beside_scene, here})
-    if (fs::is_regular_file(path, ignored))
+    if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored)))
       return path.string();
   document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the "
                                    "scene file or else from the working directory; correct it.",

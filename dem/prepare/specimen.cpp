@@ -163,13 +163,23 @@ Specimen import(const Scene &scene)
   return specimen;
 }
 
-std::optional<Specimen> from_cache(const std::filesystem::path &path, const std::string &recipe)
+/// What the cache holds of the recipe; a damaged file is as good as none, since it is made anew.
+std::optional<Specimen> from_cache(const std::filesystem::path &path, const std::string &recipe, RunObserver &observer)
 {
   const std::lock_guard lock(hdf5_access);
   if (!std::filesystem::exists(path))
     return {};
-  Specimen specimen = read_specimen(path);
-  return specimen.provenance["recipe"] == recipe ? std::optional(std::move(specimen)) : std::nullopt;
+  try
+    {
+      Specimen specimen = read_specimen(path);
+      return specimen.provenance["recipe"] == recipe ? std::optional(std::move(specimen)) : std::nullopt;
+    }
+  catch (const InputError &error)
+    {
+      observer.event(
+          fmt::format("the specimen is prepared anew, because the one in the cache is damaged: {}", error.what()));
+      return {};
+    }
 }
 } // namespace
 
@@ -196,7 +206,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
     }
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
-  if (std::optional<Specimen> cached = from_cache(path, recipe))
+  if (std::optional<Specimen> cached = from_cache(path, recipe, observer))
     {
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;

@@ -51,11 +51,9 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
 {
   const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
   Scene scene = checked_scene(document);
-  std::error_code ignored;
-  const std::string file = specimen_place(scene.specimen.file).path;
-  if (!file.empty() && !std::filesystem::exists(file, ignored))
-    document.refuse("specimen.file", "is not there. Paths count from the working directory; prepare the specimen first "
-                                     "or correct the path.");
+  if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
+    scene.specimen.file =
+        found_file(document, "specimen.file", path, place.path, true) + (place.entry.empty() ? "" : "#" + place.entry);
   if (scene.output.folder.empty())
     scene.output.folder = "results/" + std::filesystem::path(path).stem().string();
   return scene;

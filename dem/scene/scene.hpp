@@ -86,7 +86,8 @@ struct Scene
 };
 
 /// Reads and checks a scene file. Angles of friction become their tangents here and nowhere else; an output folder left
-/// out becomes results/<scene file name without ending>; a relative specimen.file counts from the working directory.
+/// out becomes results/<scene file name without ending>; a relative specimen.file becomes absolute.
+/// It counts from the folder of the scene file or else from the working directory (found_file()).
 /// @param overrides  "a.b=c" strings from --set, applied before the checks; `stage.0.strain=...` addresses the array.
 ///        c is a TOML value, or else plain text (`specimen.pressure=200 kPa`, `=200kPa`). An override of one of several
 ///        keys that exclude each other (specimen.void_ratio, motion.strain_rate, grading.table ...) takes the place of

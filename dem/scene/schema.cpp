@@ -110,7 +110,8 @@ constexpr Key specimen_keys[] = {
    .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out.",
    .field = [](Scene &s) -> Field { return &s.specimen.preparation_friction; }},
   {.path = "specimen.file", .kind = Kind::text, .presence = Presence::optional, .value = "specimens/dr64.h5",
-   .group = "preparation", .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables.",
+   .group = "preparation", .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables; "
+   "counts from the folder of the scene file or else from the working directory.",
    .field = [](Scene &s) -> Field { return &s.specimen.file; }},
   {.path = "specimen.e_min", .value = "0.568", .range = positive,
    .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "

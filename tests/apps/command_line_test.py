@@ -78,6 +78,27 @@ class SpecimenMistakes(AppTest):
     def test_missing(self):
         self.refuse("scene.toml:", "specimen.file", "is not there")
 
+    def test_damaged_cache(self):
+        scene = self.write("make.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
+        self.assert_done(self.run_test(scene, "-o", "made"))
+        cached = next(self.cache.glob("specimen-*.h5"))
+        whole = cached.read_bytes()
+        cached.write_bytes(whole[: len(whole) // 2])
+        result = self.run_test(scene, "-o", "again")
+        self.assert_done(result)
+        self.assertIn("prepared anew, because the one in the cache is damaged", result.stderr)
+        self.assertEqual(cached.stat().st_size, len(whole))
+        self.assertEqual(*((self.folder / name / "history.csv").read_bytes() for name in ("made", "again")))
+
+    def test_beside_the_scene(self):
+        self.make_specimen()
+        (self.folder / "scenes").mkdir()
+        (self.folder / "specimen.h5").rename(self.folder / "scenes/specimen.h5")
+        self.write("scenes/scene.toml", tiny_scene(specimen='file = "specimen.h5"'))
+        self.assert_done(self.run_test("scenes/scene.toml", "-o", "out"))
+        text = (self.folder / "out/scene.toml").read_text(encoding="utf-8")
+        self.assertIn(str(self.folder / "scenes/specimen.h5"), text)
+
     def test_truncated(self):
         specimen = self.make_specimen()
         whole = specimen.read_bytes()
@@ -105,8 +126,10 @@ class SpecimenMistakes(AppTest):
         scene = self.write("scene.toml", tiny_scene(specimen="void_ratio = 0.3"))
         stiff = ("--set", "contact.young=10 GPa")
         self.assert_refused(self.run_test(scene, "-o", "out", "--overwrite", *stiff), "cannot be reached", "0.3000",
-                            "without friction")
+                            "without friction", "the densest there is", "periodic-cell")
         self.assertEqual((old / "scene.toml").read_text(encoding="utf-8"), "# old")
+        self.assert_refused(self.run_test(scene, "-o", "results/new", *stiff), "cannot be reached")
+        self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")
 
 
 class OutputFolder(AppTest):

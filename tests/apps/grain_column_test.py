@@ -112,8 +112,11 @@ class Bits(GrainColumnTest):
             self.assert_done(result)
             self.assertEqual(result.stdout.count("peak shear strain"), 1)
             self.assert_same_bytes("whole", f"on{n}")
-        self.assert_done(self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2))
+        result = self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2)
+        self.assert_done(result)
         self.assert_same_bytes("whole", "threads")
+        outside = float(re.search(r"outside of packings +(\S+) %", result.stdout)[1])
+        self.assertTrue(0 < outside < 100, result.stdout)
 
     def stop(self, n, with_signal, wait, *more):
         """Starts n ranks; one of them gets a signal `wait` seconds after the first checkpoint of this run."""
@@ -294,7 +297,7 @@ class Mistakes(GrainColumnTest):
     def refuse(self, parts, *arguments, scene=None):
         result = self.run_column(scene or self.scene, "-o", "out", "-q", *arguments)
         self.assert_refused(result, *parts)
-        self.assertEqual(contents(self.folder / "out"), {})
+        self.assertFalse((self.folder / "out").exists())
 
     def test_library(self):
         self.refuse(["grains.library", "nowhere.h5", "is not there"], *settings(grains__library="nowhere.h5"))
@@ -342,8 +345,8 @@ class Drained(GrainColumnTest):
         shaking, after = rows["time"] < 0.4, rows["time"] > 0.75
         self.assertGreater(rows["d1_ru"][shaking].max(), 0.15)  # 0.25 to 0.4, as the contacts open
         for name in ("d0_u", "d1_u"):
-            self.assert_below(np.abs(rows[name][after]).max(), 0.05 * rows[name][shaking].max(),
-                              f"drained: 5 % of the largest pore pressure may be left ({name})")
+            self.assert_below(np.abs(rows[name][after]).max(), 0.1 * rows[name][shaking].max(),
+                              f"drained: 10 % of the largest pore pressure may be left ({name})")
         settled = rows["settlement"]
         self.assertGreater(settled[-1], 1e-3)
         self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, but for 2 %")

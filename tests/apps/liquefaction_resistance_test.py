@@ -57,6 +57,17 @@ class LiquefactionResistance(AppTest):
         self.assertEqual(set(self.finish_times()) - set(before), {"csr0.25_seed3", "specimen_seed3"})
         self.assertEqual({name: t for name, t in self.finish_times().items() if name in before}, before)
 
+    def test_two_runs(self):
+        result = self.run_it(*RATIOS, "-n", "1", "-o", "out")
+        self.assert_done(result)
+        fit = json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"]
+        self.assertEqual(fit["runs"], 2, "both liquefy")
+        self.assertIn("whose error two runs cannot tell", result.stdout)
+        self.assertIsNone(fit["b_error"])
+        self.assertIsNone(fit["R2"])
+        self.assertNotIn("failed", result.stderr)
+        self.assertTrue((self.folder / "out/figures/resistance.png").exists())
+
     def check_fit(self, rows):
         """log N against log CSR, by numpy."""
         liquefied = [(float(row["CSR"]), float(row["N_liquefaction"])) for row in rows if row["N_liquefaction"]]

@@ -86,6 +86,14 @@ class Reports(ReportTest):
         self.assertIn("figures in cyclic/figures", result.stdout)
         self.assertNotIn("one page", result.stdout)
 
+    def test_a_package_that_is_missing_is_named(self):
+        self.write("matplotlib.py", "raise ModuleNotFoundError('No module', name='matplotlib')")
+        for module in ("figures", "report"):
+            result = subprocess.run(["/usr/bin/python3", "-m", module], cwd=self.folder, text=True, check=False,
+                                    env={"PYTHONPATH": f"{self.folder}:{SCENES.parent}"}, capture_output=True)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn("no module matplotlib: install it, apt-get install python3-matplotlib", result.stderr)
+
     @unittest.skipUnless(BROWSER, "chromium is not installed")
     def test_in_a_browser(self):
         """Nothing is wider than the page; the selected figure answers to wheel and keys, and comes back."""

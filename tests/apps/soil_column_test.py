@@ -88,6 +88,8 @@ class Scenes(ColumnTest):
         depth = summary["depths"][1]
         base = p0 * (2 / b * np.sin(b * depth / 10) * np.exp(-b**2 * t_v)).sum(axis=0)
         self.assert_close(rows["d1_u"][late], base[late], 1e-3, steps)
+        self.assertIsNone(summary["max_ru"], "the load, not the earth, carries the pressure")
+        self.assertNotIn("largest r_u", (folder / "summary.txt").read_text(encoding="utf-8"))
         with h5py.File(folder / "profiles.h5") as file:
             self.assertEqual(file["u"].shape, (201, 80))
             self.assertEqual(file["time"][()].tobytes(), rows["time"].tobytes())
@@ -122,6 +124,13 @@ class Mistakes(ColumnTest):
             text, where = self.changed(old, new)
             self.refuse([where, *parts], text=text)
 
+    def test_scene_of_another_program(self):
+        for program, scene, right in (("element_test", SCENES / "terzaghi.toml", "soil_column"),
+                                      ("soil_column", SCENES.parent / "quick_drained_dr64.toml", "element_test")):
+            result = self.run_app(program, scene, "-o", "other")
+            self.assert_refused(result, f"is a scene of {right}", f"Run it with: {right} {scene}")
+            self.assertFalse((self.folder / "other").exists())
+
     def test_motion_file(self):
         text = SOIL.replace('kind = "ricker"\namplitude = "0.05 g"\nfrequency = "4 Hz"',
                             'kind = "record"\nfile = "record.txt"')
@@ -145,7 +154,9 @@ class Mistakes(ColumnTest):
         self.refuse(["cannot be resumed", "distributed"], "--resume", *strip)
 
     def test_folder(self):
-        self.assert_done(self.run_column(self.scene, "-o", "out", *settings(analysis__duration="0.1 s")))
+        result = self.run_column(self.scene, "-o", "out", *settings(analysis__duration="0.1 s"))
+        self.assert_done(result)
+        self.assertIn("x and y as a vector", result.stdout, "there are two motions")
         self.refuse(["the results folder exists", "--overwrite", "--resume"], "--quiet")
         self.refuse(["another scene", "scene.toml"], "--resume", *settings(layer__1__thickness="5 m"))
 
