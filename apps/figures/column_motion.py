@@ -13,12 +13,19 @@ def input_name(column):
     return "outcrop" if column.base else "base"
 
 
-def peak_mark(axes, t, a, colour):
+def peak_text(drawn, of_all_steps):
+    """The largest value that is drawn and, if the steps between went higher, that of all steps."""
+    text = f"{drawn:.3g} m/s$^2$"
+    higher = of_all_steps is not None and f"{of_all_steps:.3g}" != f"{drawn:.3g}"
+    return text + f" ({of_all_steps:.3g} in all steps)" if higher else text
+
+
+def peak_mark(axes, t, a, colour, of_all_steps=None):
     """The largest value, marked and written, away from the curve."""
     at = int(np.argmax(np.abs(a)))
     axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
     side, up = (1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)
-    axes.annotate(f"{abs(a[at]):.3g} m/s$^2$", (t[at], a[at]), xytext=(5 * side, 2.5 * up), textcoords="offset points",
+    axes.annotate(peak_text(abs(a[at]), of_all_steps), (t[at], a[at]), xytext=(5 * side, 2.5 * up), textcoords="offset points",
                   ha="left" if side > 0 else "right", va="bottom" if up > 0 else "top", fontsize=9, color=colour,
                   zorder=6, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
 
@@ -39,7 +46,7 @@ def motions(column):
                 note(f"no column `{name}`; its curve is left out")
                 continue
             axes.plot(column.time, column[name], color=colour, linewidth=0.8)
-            peak_mark(axes, column.time, column[name], colour)
+            peak_mark(axes, column.time, column[name], colour, column.peaks.get(name))
             axes.set_ylim(-limit, limit)
             axes.set_ylabel(f"$a_{axis}$ (m/s$^2$)")
             panel_letter(axes, letter)

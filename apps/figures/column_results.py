@@ -64,7 +64,8 @@ class Grains:
 
 
 class Column:
-    """A run of soil_column. `moving` are the axes with motion; `points` the output depths with their column prefix."""
+    """A run of soil_column. `moving` are the axes with motion; `points` the output depths with their column
+    prefix; `peaks` the largest accelerations of all steps, m/s^2, of which the history has a part only."""
 
     def __init__(self, folder):
         self.columns = {name: values for name, values in read_history(folder / "history.csv").items()
@@ -82,6 +83,9 @@ class Column:
         self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name
         self.moving = [axis for axis in "xyz" if self.peak(f"input_a{axis}") > 0]
         self.horizontal = [axis for axis in "xy" if axis in self.moving]
+        one = len(self.moving) == 1  # else the summary's are those of vectors
+        self.peaks = {f"{where}_a{axis}": summary.get(f"peak_{where}") if one else None
+                      for axis in self.moving for where in ("input", "surface")}
         prefixes = sorted({match[1] for match in map(re.compile(r"(d\d+)_").match, self.columns) if match},
                           key=lambda prefix: int(prefix[1:]))
         depths = [quantity(depth) for depth in self.scene.get("output", {}).get("depths", [])]

@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
+TURNS = 1.5  # path over range of the strain from which a test counts as turning back
 MEDIAN_ROWS = 21
 UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "%": 1e-2}
 
@@ -117,8 +118,7 @@ class Run:
         self.cyclic = self.has("reversals") and np.nanmax(self["reversals"]) >= 1
         self.strain = self["gamma_xy"] if self.shear else self["eps_y"]
         self.strain_label = r"Shear strain $\gamma$ (%)" if self.shear else r"Axial strain $\varepsilon_1$ (%)"
-        self.progress = self._cycles() if self.cyclic else 100 * self.strain
-        self.progress_label = "Number of cycles" if self.cyclic else self.strain_label
+        self.progress, self.progress_label = self._progress()
 
     def has(self, name):
         return name in self.columns and np.isfinite(self.columns[name]).any()
@@ -135,6 +135,16 @@ class Run:
         below = np.flatnonzero(self.p_ratio < LIQUEFIED)
         return (int(below[0]), None) if below.size else (None, None)
 
+    def _progress(self):
+        """What the measures are drawn against, and its label: a path that turns back would cross itself."""
+        if self.cyclic:
+            return self._cycles(), "Number of cycles (first reversal at 0.25)"
+        steps = np.abs(np.diff(self.strain, prepend=self.strain[0]))
+        if np.nansum(steps) < TURNS * np.ptp(self.strain):
+            return 100 * self.strain, self.strain_label
+        symbol = r"\gamma" if self.shear else r"\varepsilon_1"
+        return 100 * np.nancumsum(steps), rf"Strain travelled $\int|\mathrm{{d}}{symbol}|$ (%)"
+
     def _cycles(self):
         """Cycles as a running number: first reversal 0.25, then half a cycle from each reversal to the next."""
         strain = self.strain
@@ -149,11 +159,17 @@ class Run:
             begin = 0.0 if count == 0 else 0.25 + 0.5 * (count - 1)
             moved = np.maximum.accumulate(np.abs(strain[start:end] - strain[start]))
             span = abs(strain[end] - strain[start]) if end < self.n_rows else 0.0
-            if end == self.n_rows:  # unfinished: as long as the longest of the last two half cycles, at least
-                span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), moved[-1])
+            if end == self.n_rows:  # unfinished: as long as the longest of the last two half cycles, or as its load says
+                span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), moved[-1] / self._loaded(start, length))
             spans[count] = span
             cycles[start:end] = begin + length * np.clip(moved / span if span > 0 else 0 * moved, 0, 1)
         return cycles
+
+    def _loaded(self, start, length):
+        """The part of its load that the last half cycle, or quarter, has behind it: of the largest one before."""
+        load = self["tau_xy"] if self.shear else self["q"]
+        whole = 4 * length * np.nanmax(np.abs(load[:start + 1] - load[0]))
+        return np.clip(np.nanmax(np.abs(load[start:] - load[start])) / whole, 0.05, 1) if whole > 0 else 1.0
 
 
 # --- drawing ---------------------------------------------------------------------------------------------------------

@@ -64,7 +64,7 @@ def stress_curves(pair, names):
         "p", r"Mean effective stress $p^\prime$ (kPa)")
     cyclic = all(run.cyclic for run in pair)
     progress = (lambda run: run.progress) if cyclic else (lambda run: 100 * run.strain)
-    progress_label = "Number of cycles" if cyclic else pair[0].strain_label
+    progress_label = pair[0].progress_label if cyclic else pair[0].strain_label
     figure, ((one, two), (three, four)) = panels_of(2, 2)
     draw_pair(one, pair, names, lambda run: run[path] / 1e3, lambda run: run[load] / 1e3)
     draw_pair(two, pair, names, lambda run: 100 * run.strain, lambda run: run[load] / 1e3)

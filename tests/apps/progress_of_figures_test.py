@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the figures of element tests are drawn against, and the peaks that the figures of columns name."""
+import json
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
+from figures.column_motion import peak_text  # noqa: E402  (the path comes first)
+from figures.common import Run  # noqa: E402
+from support import AppTest, main  # noqa: E402
+
+DIGITS = "round-off of a sum"
+
+
+class Progress(AppTest):
+    def run_of(self, strain, load, reversals):
+        rows = ["q (kPa),p (kPa),eps_y (-),reversals (-)"]
+        rows += [f"{q},100,{e},{n}" for e, q, n in zip(strain, load, reversals)]
+        self.write("history.csv", "\n".join(rows) + "\n")
+        self.write("summary.json", json.dumps({"p0": 1e5, "shear_stage_first_row": 0}))
+        return Run(self.folder)
+
+    def test_cycles(self):
+        """Two reversals, then half of the way back: a quarter, a half, and half of a half."""
+        run = self.run_of([0, 0.5, 1, 0, -1, -0.5, 0], [0, 15, 30, 0, -30, -15, 0], [0, 0, 1, 1, 2, 2, 2])
+        self.assert_close(run.progress, [0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0], 1e-12, DIGITS)
+        self.assertEqual(run.progress_label, "Number of cycles (first reversal at 0.25)")
+
+    def test_an_unfinished_half_cycle_is_not_drawn_as_a_whole_one(self):
+        """It has gone three times as far as the one before, but its load is half of the way up only."""
+        run = self.run_of([0, 1, -1, 5], [0, 30, -30, 0], [0, 1, 2, 2])
+        self.assert_close(run.progress[-2:], [0.75, 1.0], 1e-12, DIGITS)
+        whole = self.run_of([0, 1, -1, 5], [0, 30, -30, 30], [0, 1, 2, 2])
+        self.assert_close(whole.progress[-1], 1.25, 1e-12, DIGITS)
+
+    def test_a_path_that_turns_back(self):
+        """Compression, then extension: against the strain its measures would cross themselves."""
+        run = self.run_of([0, 0.01, 0.02, 0.01, -0.01], [0, 30, 40, 0, -20], [0] * 5)
+        self.assert_close(run.progress, [0, 1, 2, 3, 5], 1e-12, DIGITS)
+        self.assertIn("Strain travelled", run.progress_label)
+        straight = self.run_of([0, 0.01, 0.0199, 0.02], [0, 30, 40, 40], [0] * 4)
+        self.assert_close(straight.progress, 100 * np.array([0, 0.01, 0.0199, 0.02]), 1e-12, DIGITS)
+
+
+class Peaks(AppTest):
+    def test_of_all_steps(self):
+        self.assertEqual(peak_text(3.64, 3.861), "3.64 m/s$^2$ (3.86 in all steps)")
+        self.assertEqual(peak_text(3.861, 3.8612), "3.86 m/s$^2$")
+        self.assertEqual(peak_text(3.64, None), "3.64 m/s$^2$")
+
+
+if __name__ == "__main__":
+    main()
