@@ -52,7 +52,7 @@ def time_bar(figure, panels, norm, last, aspect=40):
     """The bar that explains the colours of time."""
     bar = figure.colorbar(plt.cm.ScalarMappable(norm, TIMES), ax=panels, aspect=aspect, pad=0.015,
                           extend="max" if norm.vmax < 0.98 * last else "neither", extendfrac=0.03)
-    later = f"; one colour from {norm.vmax:.3g} s, when the motion is over" if norm.vmax < 0.98 * last else ""
+    later = f"; one colour after {norm.vmax:.3g} s" if norm.vmax < 0.98 * last else ""
     bar.set_label(f"Time (s){later}")
 
 

@@ -159,8 +159,9 @@ class Run:
             begin = 0.0 if count == 0 else 0.25 + 0.5 * (count - 1)
             moved = np.maximum.accumulate(np.abs(strain[start:end] - strain[start]))
             span = abs(strain[end] - strain[start]) if end < self.n_rows else 0.0
-            if end == self.n_rows:  # unfinished: as long as the longest of the last two half cycles, or as its load says
-                span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), moved[-1] / self._loaded(start, length))
+            if end == self.n_rows:  # unfinished: as long as the longest of the last two, or as its load says
+                whole = moved[-1] / self._loaded(start, length)
+                span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), whole)
             spans[count] = span
             cycles[start:end] = begin + length * np.clip(moved / span if span > 0 else 0 * moved, 0, 1)
         return cycles

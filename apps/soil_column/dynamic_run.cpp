@@ -2,6 +2,7 @@
 // Shaking of a column.
 #include "apps/deposit/grain_files.hpp"
 #include "apps/soil_column/column_run.hpp"
+#include "apps/soil_column/resolution.hpp"
 
 #include <cmath>
 
@@ -57,6 +58,9 @@ private:
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
+    const std::string coarse = resumed_ ? "" : coarse_elements(scene_, *soil_.material, space_, this->motions_);
+    if (!coarse.empty() && ranks().first())
+      fmt::print(stderr, "warning: {}\n", coarse);
     soil_.material->seconds = 0;
   }
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column as a user runs it: its scenes, what a row holds, mistakes."""
 import json
+import re
 
 import h5py
 import numpy as np
@@ -143,6 +144,21 @@ class Mistakes(ColumnTest):
     def test_time_step_above_the_stable_one(self):
         self.refuse(["time step", "must be <=", "Give a smaller one"], "--overwrite",
                     *settings(analysis__time_step="10 ms"))
+
+    def test_elements_too_long(self):
+        short = settings(analysis__duration="0.1 s", motion__0__frequency="40 Hz",
+                         layer__0__material="elastic")
+        result = self.run_column(self.scene, "-o", "out", "-q", *short)
+        self.assert_done(result)
+        words = re.search(r"warning: the elements of layer.0 \(sand\) are too long for this motion: (\S+) nodes in a "
+                          r"wave length of \S+ m \(150 m/s at 40 Hz\), 10 are needed. Set layer.0.cells to (\d+) or",
+                          result.stderr)
+        self.assertIsNotNone(words, result.stderr)
+        self.assert_near(float(words[1]), 2 * 150 / 40, 0.05, "cells of 1 m, degree 2; digits of the message")
+        result = self.run_column(self.scene, "-o", "fine", "-q", *short, *settings(layer__0__cells=words[2],
+                                                                                   layer__1__cells=4 * int(words[2])))
+        self.assert_done(result)
+        self.assertEqual(result.stderr, "")
 
     def test_stress_beyond_the_strength(self):
         self.refuse(["layer.0 (sand)", "k0"], "--overwrite", *settings(layer__0__k0=0.2))

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <mpi.h>
+
+namespace isostat
+{
+namespace
+{
+/// The shear wave of each layer's slowest cell, by its mean slowness, m/s.
+std::vector<double> slowest_waves(const ColumnScene &scene, const Material &material, const CellTables &mesh)
+{
+  std::vector<WaveModuli> moduli(material.n_points());
+  material.wave_moduli(moduli);
+  std::vector<double> slowest(scene.layers.size(), std::numeric_limits<double>::max());
+  for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell)
+    {
+      const std::size_t layer = mesh.cell_layer[cell], n = mesh.points_per_cell();
+      double slowness = 0;
+      for (std::size_t point = cell * n; point < (cell + 1) * n; ++point)
+        slowness += std::sqrt(scene.layers[layer].density / moduli[point].s) / static_cast<double>(n);
+      slowest[layer] = std::min(slowest[layer], 1 / slowness);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+  return slowest;
+}
+} // namespace
+
+std::string coarse_elements(const ColumnScene &scene, const Material &material, const CellTables &mesh,
+                            const std::array<Motion, 3> &motions)
+{
+  const double frequency = std::max(motions[0].mean_frequency(), motions[1].mean_frequency());
+  const std::vector<double> slowest = slowest_waves(scene, material, mesh);
+  std::size_t worst = 0;
+  double fewest = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < slowest.size(); ++k)
+    {
+      const Layer &layer = scene.layers[k];
+      const double nodes = slowest[k] / frequency * scene.mesh.degree * layer.n_cells() / layer.thickness;
+      if (nodes < fewest)
+        worst = k, fewest = nodes;
+    }
+  if (frequency == 0 || fewest >= nodes_per_wave)
+    return "";
+  return fmt::format(
+      "the elements of layer.{}{} are too long for this motion: {:.1f} nodes in a wave length of {:.3g} m "
+      "({:.3g} m/s at {:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more.",
+      worst, scene.layers[worst].name.empty() ? "" : " (" + scene.layers[worst].name + ")", fewest,
+      slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, worst,
+      std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
+}
+} // namespace isostat
