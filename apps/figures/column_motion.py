@@ -25,9 +25,10 @@ def peak_mark(axes, t, a, colour, of_all_steps=None):
     at = int(np.argmax(np.abs(a)))
     axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
     side, up = (1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)
-    axes.annotate(peak_text(abs(a[at]), of_all_steps), (t[at], a[at]), xytext=(5 * side, 2.5 * up),
-                  textcoords="offset points", ha="left" if side > 0 else "right", va="bottom" if up > 0 else "top", fontsize=9, color=colour,
-                  zorder=6, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+    axes.annotate(peak_text(abs(a[at]), of_all_steps), (t[at], a[at]), xytext=(5 * side, 2.5 * up), zorder=6,
+                  textcoords="offset points", ha="left" if side > 0 else "right", va="bottom" if up > 0 else "top",
+                  fontsize=9, color=colour, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+
 
 
 def motions(column):

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
+import pathlib
+import re
+
 import h5py
 import numpy as np
 
@@ -130,6 +133,16 @@ class SpecimenMistakes(AppTest):
         self.assertEqual((old / "scene.toml").read_text(encoding="utf-8"), "# old")
         self.assert_refused(self.run_test(scene, "-o", "results/new", *stiff), "cannot be reached")
         self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")
+
+
+class Readme(AppTest):
+    def test_its_programs_are_built_by_the_demo(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        demo = (root / "scripts/demo.sh").read_text(encoding="utf-8")
+        built = re.search(r"--target ((?:.*\\\n)*.*)", demo)[1].split()
+        named = re.findall(r"build/release/bin/(\w+)", (root / "README.md").read_text(encoding="utf-8"))
+        self.assertIn("soil_column", named)
+        self.assertLessEqual(set(named), set(built))
 
 
 class OutputFolder(AppTest):
