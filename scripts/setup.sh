@@ -5,6 +5,7 @@
 #
 #   scripts/setup.sh            what building, testing and drawing need
 #   scripts/setup.sh --gates    and what scripts/check_all.sh needs
+#   scripts/setup.sh --packages and what scripts/package.sh needs
 set -euo pipefail
 
 packages=(
@@ -15,9 +16,10 @@ packages=(
   python3 python3-matplotlib python3-numpy python3-h5py
   python3-dev pybind11-dev python3-pip python3-setuptools python3-wheel
 )
-if [[ "${1:-}" == --gates ]]; then
-  packages+=(clang-format clang-tidy chromium)
-fi
+case "${1:-}" in
+  --gates) packages+=(clang-format clang-tidy chromium) ;;
+  --packages) packages+=(help2man dpkg-dev fakeroot file) ;;
+esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
 

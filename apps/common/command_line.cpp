@@ -12,6 +12,8 @@ namespace isostat
 {
 int run_command(CLI::App &line, int argc, char **argv, const std::function<void()> &program)
 {
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  line.set_version_flag("--version", fmt::format("{} (Isostat) {}", name, version()), "print the version and stop");
   try
     {
       line.parse(argc, argv);

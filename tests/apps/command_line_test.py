@@ -7,7 +7,7 @@ import re
 import h5py
 import numpy as np
 
-from support import AppTest, CYCLIC, contents, main, tiny_scene
+from support import AppTest, BIN, CYCLIC, contents, main, tiny_scene
 
 
 class SceneMistakes(AppTest):
@@ -133,6 +133,17 @@ class SpecimenMistakes(AppTest):
         self.assertEqual((old / "scene.toml").read_text(encoding="utf-8"), "# old")
         self.assert_refused(self.run_test(scene, "-o", "results/new", *stiff), "cannot be reached")
         self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")
+
+
+class Version(AppTest):
+    def test_every_program_tells(self):
+        apps = pathlib.Path(__file__).resolve().parents[2] / "apps"
+        programs = [main.parent.name for main in apps.glob("*/main.cpp") if (BIN / main.parent.name).exists()]
+        self.assertIn("element_test", programs)
+        for program in programs:
+            result = self.run_app(program, "--version")
+            self.assert_done(result)
+            self.assertRegex(result.stdout, rf"^{program}( \(Isostat\))? \d+\.\d+\.\d+ ")
 
 
 class Readme(AppTest):
