@@ -23,6 +23,20 @@ MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": varia
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
+def write(folder, found, add):
+    """The tables, those that are texts too, and what they say of the claims."""
+    if add:
+        found = {name: tables.merged(folder / f"{name}.csv", rows) if name in tables.ADDED else rows
+                 for name, rows in found.items()}
+    if found["undrained_states"] and found["cyclic_tests"]:
+        found["claims"] = claims.table(found)
+    for name, rows in found.items():
+        if rows:
+            tables.write_csv(folder / f"{name}.csv", rows)
+        if rows and name in MARKDOWN:
+            (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--grains", type=int, default=2000)
@@ -32,6 +46,8 @@ def main():
                         help=f"default: {' '.join(plan.FIGURES)}")
     parser.add_argument("--whole", action="store_true", help="all states, not what twenty minutes allow")
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
+    parser.add_argument("--add", action="store_true",
+                        help="rows of tests that are not among these stay in the tables of --output")
     parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
     options = parser.parse_args()
     if options.figures:
@@ -43,11 +59,7 @@ def main():
         return 0
     folder = pathlib.Path(options.output or pathlib.Path(options.work) / "tables")
     folder.mkdir(parents=True, exist_ok=True)
-    for name, rows in tables.Results(store, runs).tables().items():
-        if rows:
-            tables.write_csv(folder / f"{name}.csv", rows)
-        if rows and name in MARKDOWN:
-            (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
+    write(folder, tables.Results(store, runs).tables(), options.add)
     figures.draw(folder)
     return 0 if complete else 1
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The tests of the paper as ensembles, with the release build of scripts/demo.sh or test.sh.
 #
-#   scripts/paper.sh            its figures with 2,000 grains and three seeds: some twenty minutes on two cores, estimated
+#   scripts/paper.sh            its figures with 2,000 grains and three seeds: eleven minutes on two cores
 #   scripts/paper.sh --whole    with 10,000 grains as in the paper (some six CPU hours, estimated); then, with 2,000, resistance curves,
 #                               critical states, specimens made in other ways, slower tests (some three CPU hours)
 #

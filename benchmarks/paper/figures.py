@@ -267,7 +267,8 @@ def fabric(table, folder):
         part = halves.where(direction=direction)
         against.plot(part["strain travelled (%)"], np.abs(part["F_yx at its end"]), "o", color=colour, markersize=3,
                      label=direction)
-    against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%), all preparations")
+    which = ", all preparations" if len(halves.values("specimen")) > 1 else ""
+    against.set_xlabel(rf"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%){which}")
     against.set_ylabel("$|F_{[y-x]}|$ at its end")
     against.legend()
     figure.suptitle(title_of(rows), fontsize=9)

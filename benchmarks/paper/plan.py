@@ -258,14 +258,17 @@ def drained(grains, seeds, whole):
 
 
 def cyclic(grains, seeds, whole):
-    """Figures 2 to 4: the density of the paper with two more seeds, and a row of preparations, in boxes; one of these
-    slowly, for what happens around and after the onset."""
+    """Figure 2: the density of the paper with two more seeds, and a row of preparations, in boxes."""
     packings = [Packing(grains, seed, PAPER[1]) for seed in range(1, len(seeds) + 3)]
     packings += [Packing(grains, seed, degrees=d) for seed in seeds for d in PREPARATIONS
                  if whole or d % 2 or d == 10]
-    slow = [Packing(grains, seed, degrees=PACE_DEGREES) for seed in (range(1, len(seeds) + 3) if whole else seeds)]
-    return ([Run("cyclic", packing, **ends(whole)) for packing in packings] +
-            [Run("cyclic", packing, pace=SLOW, **ends(whole)) for packing in slow])
+    return [Run("cyclic", packing, **ends(whole)) for packing in packings]
+
+
+def onset(grains, seeds, whole):
+    """Figures 3 and 4: one of these preparations slowly, for what happens around and after the onset."""
+    seeds = range(1, len(seeds) + 3) if whole else seeds
+    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=SLOW, **ends(whole)) for seed in seeds]
 
 
 def resistance(grains, seeds, whole):
@@ -296,7 +299,7 @@ def paces(grains, seeds, whole):
                 **ends(whole) | ({"after": 3} if pace == "hundredth" else {})) for seed in seeds for pace in PACES]
 
 
-FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "drained": drained}
+FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "onset": onset, "drained": drained}
 PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "paces": paces}
 
 

@@ -4,7 +4,7 @@ import csv
 
 import numpy as np
 
-from paper import claims, lab, plan, resistance, states, variants
+from paper import lab, plan, resistance, states, variants
 from speed_error import paths
 
 STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
@@ -67,8 +67,6 @@ class Results:
                   "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
                   "critical_states": resistance.critical_states(self.tests)}
         tables["resistance"] = resistance.curves([row for row in tables["cyclic_tests"] if row["pace"] == plan.DEFAULT])
-        if tables["undrained_states"] and tables["cyclic_tests"]:
-            tables["claims"] = claims.table(tables)
         return tables
 
     def undrained_states(self):
@@ -172,6 +170,39 @@ def curves(groups, values, names):
                 row[name], row[f"{name} s.d."], *_ = paths.ensemble(found[:, column, k])
             rows.append(row)
     return rows
+
+
+# Tables whose rows stand for themselves
+ADDED = ("undrained_states", "undrained_curves", "drained_states", "drained_curves", "cyclic_tests", "half_cycles",
+         "cyclic_curves", "reconsolidation")
+# Columns of which two rows of one test or curve differ in none
+TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", "q_amp/(2 p0')", "pace",
+        "laboratory test")
+
+
+def merged(path, rows):
+    """These rows behind those of the table that is there, but for the tests and curves that are in `rows`."""
+    if not path.exists():
+        return rows
+    with open(path, newline="", encoding="utf-8") as file:
+        before = [{name: value_of(text) for name, text in row.items()} for row in csv.DictReader(file)]
+    new = {test_of(row) for row in rows}
+    return [row for row in before if test_of(row) not in new] + rows
+
+
+def test_of(row):
+    """To which test or curve a row belongs."""
+    return tuple(str(number(row.get(name, ""))) for name in TEST)
+
+
+def value_of(text):
+    """Of a cell of a table: a number, a truth value, or text; not a number where it is empty."""
+    if text in ("True", "False"):
+        return text == "True"
+    try:
+        return int(text) if text.isdigit() else float(text or "nan")
+    except ValueError:
+        return text
 
 
 def write_csv(path, rows):

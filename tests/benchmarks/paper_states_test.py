@@ -3,7 +3,9 @@
 """Numbers that the campaign of the paper takes from a test: on histories made by hand, and on laboratory tests whose
 peaks are in their description."""
 import pathlib
+import shutil
 import sys
+import tempfile
 import types
 import unittest
 
@@ -11,7 +13,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests/apps")]
-from paper import claims, lab, plan, resistance, states, variants  # noqa: E402  (the folders come first)
+from paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402  (the folders come first)
 from support import ToleranceTest  # noqa: E402
 
 
@@ -129,6 +131,17 @@ class States(ToleranceTest):
                 scenes = {}
                 for run in plan.runs_of(grains, 3, whole, tuple(plan.PARTS)):
                     self.assertEqual(scenes.setdefault(run.name, run.scene()), run.scene(), run.name)
+
+    def test_rows_of_other_tests_stay_in_a_table(self):
+        def row(seed, cycles, pace="default"):
+            return {"specimen": "9 deg, 200 kPa", "grains": 10000, "seed": seed, "p0' (kPa)": 200,
+                    "q_amp/(2 p0')": 0.15, "pace": pace, "cycles": cycles, "slow": False}
+        path = pathlib.Path(tempfile.mkdtemp()) / "cyclic_tests.csv"
+        self.addCleanup(shutil.rmtree, path.parent)
+        self.assertEqual(tables.merged(path, [row(1, 20.0)]), [row(1, 20.0)], "there is no table yet")
+        tables.write_csv(path, [row(1, 20.0), row(2, np.nan)])
+        found = tables.merged(path, [row(2, 21.5), row(1, 22.0, "tenth")])
+        self.assertEqual(found, [row(1, 20.0), row(2, 21.5), row(1, 22.0, "tenth")])
 
     def test_variants_are_means_over_their_seeds(self):
         rows = [{"variant": "a", "seed": seed, "cycles": value, "e": 0.7} for seed, value in ((1, 2.0), (2, 4.0))]
