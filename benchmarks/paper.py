@@ -8,7 +8,7 @@ other ways, slower tests and usual ones.
     paper.py --whole               the same to larger strains and over more states
     paper.py --whole --parts resistance critical ways paces               what the figures leave open
     paper.py --dry-run             the number of runs and their estimated time
-    paper.py --figures FOLDER      draws the figures of a folder of tables anew
+    paper.py --figures FOLDER      draws figures and judges claims anew from a folder of tables
 
 Finished runs are kept in --work and not run again; an interrupted command goes on from checkpoints.
 """
@@ -24,17 +24,23 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def write(folder, found, add):
-    """The tables, those that are texts too, and what they say of the claims."""
+    """The tables, and those that are read as texts."""
     if add:
         found = {name: tables.merged(folder / f"{name}.csv", rows) if name in tables.ADDED else rows
                  for name, rows in found.items()}
-    if found["undrained_states"] and found["cyclic_tests"]:
-        found["claims"] = claims.table(found)
     for name, rows in found.items():
         if rows:
             tables.write_csv(folder / f"{name}.csv", rows)
         if rows and name in MARKDOWN:
             (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
+
+
+def draw(folder):
+    """Figures and claims from the tables in a folder."""
+    needed = {name: tables.read_csv(folder / f"{name}.csv") for name in claims.TABLES}
+    if needed["undrained_states"] and needed["cyclic_tests"]:
+        write(folder, {"claims": claims.table(needed)}, add=False)
+    figures.draw(folder)
 
 
 def main():
@@ -48,10 +54,10 @@ def main():
     parser.add_argument("--output", help="folder of tables and figures; default: the folder `tables` in --work")
     parser.add_argument("--add", action="store_true",
                         help="rows of tests that are not among these stay in the tables of --output")
-    parser.add_argument("--figures", metavar="FOLDER", help="only draw from the tables in FOLDER")
+    parser.add_argument("--figures", metavar="FOLDER", help="only figures and claims, from the tables in FOLDER")
     options = parser.parse_args()
     if options.figures:
-        figures.draw(pathlib.Path(options.figures))
+        draw(pathlib.Path(options.figures))
         return 0
     runs = plan.runs_of(options.grains, options.seeds, options.whole, options.parts)
     store, complete = runner.run_campaign(options, runs)
@@ -60,7 +66,7 @@ def main():
     folder = pathlib.Path(options.output or pathlib.Path(options.work) / "tables")
     folder.mkdir(parents=True, exist_ok=True)
     write(folder, tables.Results(store, runs).tables(), options.add)
-    figures.draw(folder)
+    draw(folder)
     return 0 if complete else 1
 
 

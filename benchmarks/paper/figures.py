@@ -1,83 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the committed tables, nothing else: each figure from the CSV files of one folder."""
-import csv
+import matplotlib.pyplot as plt
+import numpy as np
 
-import matplotlib
+from paper import lab, plan, states
+from paper.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
+                           plain_logarithm)
+from paper.resistance import REFERENCE
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
-from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
-
-from paper import lab, plan, states  # noqa: E402
-from paper.resistance import REFERENCE  # noqa: E402
-
-BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
-STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
-         "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
 PRIME = r"$p^\prime$"
 PACE_NAMES = {plan.DEFAULT: "rate of the default", plan.SLOW: "a tenth of the default's rate"}
-
-
-class Table:
-    """Columns by name; numbers where they are numbers."""
-
-    def __init__(self, path):
-        with open(path, newline="", encoding="utf-8") as file:
-            self.rows = list(csv.DictReader(file))
-
-    def where(self, **conditions):
-        """Rows whose columns have these values."""
-        return self.of([row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())])
-
-    @classmethod
-    def of(cls, rows):
-        table = object.__new__(cls)
-        table.rows = rows
-        return table
-
-    def values(self, name):
-        return list(dict.fromkeys(row[name] for row in self.rows))
-
-    def __getitem__(self, name):
-        return np.array([float(row[name] or "nan") for row in self.rows])
-
-    def __bool__(self):
-        return bool(self.rows)
-
-
-def panels(rows, columns, width=7.2, height=3.2, **more):
-    figure, axes = plt.subplots(rows, columns, figsize=(width, height), layout="constrained", squeeze=False, **more)
-    for letter, panel in zip("abcdefgh", axes.flat):
-        panel.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
-    return figure, axes
-
-
-def legend_below(figure, panel, ncols, height):
-    """Of the whole figure, in the lowest `height` of it."""
-    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
-    figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
-
-
-def plain_logarithm(panel):
-    """Of the horizontal axis, with ticks at 1, 2, 5, 10 written as numbers."""
-    panel.set_xscale("log")
-    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    panel.xaxis.set_major_formatter("{x:g}")
-    panel.xaxis.set_minor_formatter(NullFormatter())
-
-
-def band(panel, x, mean, deviation, colour, label=None):
-    panel.plot(x, mean, color=colour, linewidth=1.1, label=label)
-    panel.fill_between(x, mean - np.nan_to_num(deviation), mean + np.nan_to_num(deviation), color=colour, alpha=0.18,
-                       linewidth=0)
-
-
-def bands(panel, rows, columns):
-    """Of each (column, colour, label) of the table of phases: mean and standard deviation."""
-    for column, colour, label in columns:
-        band(panel, rows["phase"], rows[column], rows[f"{column} s.d."], colour, label)
 
 
 def draw(folder):
@@ -91,14 +24,6 @@ def draw(folder):
                 figure.savefig(folder / f"{name}.png")
                 plt.close(figure)
                 print(folder / f"{name}.png")
-
-
-def of_tables(*names):
-    """Says from which tables a figure is drawn; it gets the first."""
-    def mark(function):
-        function.tables = names
-        return function
-    return mark
 
 
 @of_tables("undrained_curves")
@@ -122,7 +47,7 @@ def monotonic(table, _):
             curve.plot(anchor["eps_1 (%)"], anchor["q (kPa)"], marker, color=colour, markersize=5, mec="black",
                        zorder=5)
         else:
-            path.plot(anchor["p' (kPa)"], -10, "v", color=colour, markersize=5, mec="black", zorder=5)
+            path.plot(anchor["p' (kPa)"], -342, "^", color=colour, markersize=5, mec="black", zorder=5)
     for panel in (path, curve):
         panel.axhline(0, color="black", linewidth=0.6)
         panel.set_ylim(-350, 450)
@@ -132,7 +57,7 @@ def monotonic(table, _):
     curve.set_xlim(-5, 5)
     curve.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
     for marker, text in (("s", "laboratory, instability"), ("o", f"laboratory, least {PRIME}"),
-                         ("v", f"laboratory, least {PRIME} in extension ($q$ not read)")):
+                         ("^", f"laboratory, least {PRIME} in extension ($q$ not read)")):
         path.plot([], [], marker, color="white", mec="black", markersize=5, label=text)
     legend_below(figure, path, 3, 0.12)
     return figure
@@ -174,15 +99,16 @@ def cycles(table, _):
         panel.plot(rows["e"][np.isnan(number)], applied[np.isnan(number)], "^", color=colour, markersize=5, mfc="none")
     panel.axhline(17, color=GREY, linewidth=0.9, linestyle="--")
     panel.axhline(11, color=GREY, linewidth=0.9, linestyle=":")
-    panel.set_yscale("log")
+    plain_logarithm(panel.yaxis)
     panel.set_xlabel("Void ratio $e$")
     panel.set_ylabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
-    for marker, colour, text in (("D", RED, "$D_r$ = 0.64"), ("o", BLUE, "5 to 11 deg"),
-                                 ("^", GREY, "not liquefied when the test ended")):
+    for marker, colour, text in (("^", RED, "$D_r$ = 0.64, not liquefied when the test ended"),
+                                 ("o", BLUE, "5° to 11°"),
+                                 ("^", BLUE, "5° to 11°, not liquefied")):
         panel.plot([], [], marker, color=colour, markersize=4, label=text, mfc="none" if marker == "^" else colour)
     panel.plot([], [], "--", color=GREY, label="paper: 17")
     panel.plot([], [], ":", color=GREY, label="laboratory: 11")
-    legend_below(figure, panel, 5, 0.07)
+    legend_below(figure, panel, 3, 0.13)
     for pace, face in ((plan.DEFAULT, "none"), (plan.SLOW, BLUE)):
         rows = after.where(pace=pace)
         sides = [rows[f"largest strain after, {side} (%)"] for side in ("compression", "extension")]
@@ -206,17 +132,18 @@ def densest_liquefying(table):
 
 
 def title_of(rows):
-    return (f"{rows.rows[0]['specimen']}, {PACE_NAMES[rows.rows[0]['pace']]}, n = {rows['seeds'][0]:.0f} seeds: mean "
-            f"and standard deviation")
+    return (f"{rows.rows[0]['specimen']}, {PACE_NAMES[rows.rows[0]['pace']]}, n = {rows['seeds'][0]:.0f} seeds. Bands: "
+            f"range within the cycles to the onset, standard deviation behind it")
 
 
 def phase_axis(axes, rows):
+    last = int(np.ceil(rows["phase"][-1]))
     for panel in axes:
         panel.axvline(1, color=RED, linewidth=0.9, linestyle=":")
-        panel.set_xlim(0, rows["phase"][-1])
-        last = int(rows["phase"][-1])
-        panel.set_xticks(range(last + 1), ["0", "onset", *[f"{k}" for k in range(1, last)]])
-    axes[-1].set_xlabel("Share of the cycles to the onset; then whole half cycles, the first towards compression")
+        panel.set_xlim(0, last)
+        panel.set_xticks(range(last + 1), ["0", "onset", "reversal", *[f"{k}" for k in range(1, last - 1)]])
+    axes[-1].set_xlabel("Share of the half cycles to the onset; on to the next reversal; whole half cycles, the first "
+                        "towards compression")
 
 
 @of_tables("cyclic_curves")
@@ -227,11 +154,12 @@ def redundancy(table, _):
         return None
     figure, axes = panels(3, 1, height=6.2, sharex=True)
     index, ratio, fractions = axes[:, 0]
-    bands(index, rows, zip(states.COUNTS, (BLUE, ORANGE, GREEN, GREY), states.COUNTS.values()))
+    counts = {name: text for name, text in states.COUNTS.items() if name != "IR_walls"}
+    bands(index, rows, zip(counts, (BLUE, ORANGE, GREEN), counts.values()))
     for level in (1, 0.35):
         index.axhline(level, color=GREY, linewidth=0.8, linestyle="--")
     index.set_ylabel("Redundancy index $I_R$")
-    ratio.plot(rows["phase"], rows["p'/p0'"], color="black", linewidth=1.1)
+    bands(ratio, rows, [("p'/p0'", "black", None)])
     ratio.axhline(0.01, color=GREY, linewidth=0.8, linestyle="--")
     ratio.set_yscale("log")
     ratio.set_ylabel(f"{PRIME}/$p_0^\\prime$")
@@ -241,37 +169,47 @@ def redundancy(table, _):
     fractions.set_ylim(0, 0.85)
     fractions.legend(ncols=3, loc="upper left")
     phase_axis(axes[:, 0], rows)
-    figure.suptitle(title_of(rows), fontsize=9)
+    figure.suptitle(title_of(rows), fontsize=8)
     return figure
 
 
-@of_tables("cyclic_curves", "half_cycles")
-def fabric(table, folder):
-    """Figure 4: fabric and its anisotropy, and the anisotropy of a half cycle against its strain."""
+@of_tables("cyclic_curves")
+def fabric(table, _):
+    """Figure 4: fabric and its anisotropy, where enough contacts carry."""
     rows = densest_liquefying(table)
     if not rows:
         return None
-    figure, axes = panels(3, 1, height=6.6)
-    normals, anisotropy, against = axes[:, 0]
+    figure, axes = panels(2, 1, height=4.6, sharex=True)
+    normals, anisotropy = axes[:, 0]
     bands(normals, rows, (("Fyy", BLUE, "$F_{yy}$"), ("Fxx", ORANGE, "$F_{xx}$"), ("Fzz", GREEN, "$F_{zz}$")))
     bands(anisotropy, rows, (("F_yx", ORANGE, "$F_{[y-x]}$"), ("F_yz", GREEN, "$F_{[y-z]}$")))
     normals.axhline(1 / 3, color=GREY, linewidth=0.8, linestyle="--")
     anisotropy.axhline(0, color=GREY, linewidth=0.8, linestyle="--")
     normals.set_ylabel("Contact-normal fabric")
     anisotropy.set_ylabel("Fabric anisotropy")
-    normals.legend(ncols=3)
-    anisotropy.legend(ncols=2)
+    normals.legend(ncols=3, loc="upper left")
+    anisotropy.legend(ncols=2, loc="upper left")
     phase_axis([normals, anisotropy], rows)
-    halves = Table(folder / "half_cycles.csv").where(**{"q_amp/(2 p0')": plan.PAPER_RATIO})
+    figure.suptitle(title_of(rows), fontsize=8)
+    return figure
+
+
+@of_tables("half_cycles")
+def anisotropy(table, _):
+    """The paper's conclusion: anisotropy at the end of a half cycle against the strain of that half cycle."""
+    figure, ((against, numbers),) = panels(1, 2, sharey=True)
+    table = table.where(**{"q_amp/(2 p0')": plan.PAPER_RATIO})
     for direction, colour in (("compression", BLUE), ("extension", ORANGE)):
-        part = halves.where(direction=direction)
-        against.plot(part["strain travelled (%)"], np.abs(part["F_yx at its end"]), "o", color=colour, markersize=3,
-                     label=direction)
-    which = ", all preparations" if len(halves.values("specimen")) > 1 else ""
-    against.set_xlabel(rf"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%){which}")
+        for pace, face in ((plan.DEFAULT, "none"), (plan.SLOW, colour)):
+            part = table.where(direction=direction, pace=pace)
+            for panel, x in ((against, "strain travelled (%)"), (numbers, "half cycle")):
+                if part:
+                    panel.plot(part[x], np.abs(part["F_yx at its end"]), "o", color=colour, mfc=face, markersize=3,
+                               label=f"{direction}, {PACE_NAMES[pace]}")
+    against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%)")
+    numbers.set_xlabel("Number of the half cycle after the onset")
     against.set_ylabel("$|F_{[y-x]}|$ at its end")
-    against.legend()
-    figure.suptitle(title_of(rows), fontsize=9)
+    legend_below(figure, against, 2, 0.13)
     return figure
 
 
@@ -321,7 +259,7 @@ def resistance(table, folder):
                 cycles = np.nanquantile(rows["cycles"], (0, 1))
                 law = fit["CSR at 15 cycles"][0] * (cycles / REFERENCE)**-fit["b"][0]
                 panel.plot(cycles, law, color=colour, linewidth=0.9)
-        plain_logarithm(panel)
+        plain_logarithm(panel.xaxis)
         panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
         if panel.get_legend_handles_labels()[0]:
             panel.legend()
@@ -345,8 +283,8 @@ def critical_states(table, folder):
     if table:
         p = np.quantile(table["p' (kPa)"], (0, 1))
         line.plot(p / 1e3, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
-                  label=f"{table['Gamma'][0]:.3f} - {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
-    plain_logarithm(line)
+                  label=f"{table['Gamma'][0]:.3f} \N{MINUS SIGN} {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
+    plain_logarithm(line.xaxis)
     line.set_xlabel(f"Mean effective stress {PRIME} (MPa)")
     line.set_ylabel("Void ratio $e$")
     legend_below(figure, line, 3, 0.12)
@@ -373,10 +311,10 @@ def path(table, _):
     stress.set_ylabel("Deviatoric stress $q$ (kPa)")
     strain.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
     first = table.rows[0]
-    figure.suptitle(f"{first['specimen']}, seed {first['seed']}, {PACE_NAMES[first['pace']]}: one specimen, the one "
-                    f"whose cycles are nearest to 17", fontsize=9)
+    figure.suptitle(f"{first['specimen']}, seed {first['seed']}, {PACE_NAMES[first['pace']]}: one specimen", fontsize=9)
     return figure
 
 
 FIGURES = {"figure_1": monotonic, "dense": dense, "figure_2": cycles, "figure_2_path": path, "figure_3": redundancy,
-           "figure_4": fabric, "drained": drained, "resistance": resistance, "critical_states": critical_states}
+           "figure_4": fabric, "anisotropy": anisotropy,
+           "drained": drained, "resistance": resistance, "critical_states": critical_states}

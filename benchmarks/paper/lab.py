@@ -22,6 +22,12 @@ class Drained:
     axial: np.ndarray
     radial: np.ndarray
 
+    def until(self, strain):
+        """The same test, ended at this strain."""
+        rows = self.strain <= strain * (1 + 1e-6)
+        return dataclasses.replace(self, **{name: getattr(self, name)[rows] for name in
+                                            ("strain", "volume_strain", "axial", "radial")})
+
 
 def rows_of(path):
     with open(path, newline="", encoding="utf-8") as file:

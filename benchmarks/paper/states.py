@@ -83,11 +83,33 @@ def cyclic_numbers(history):
         below = np.flatnonzero(count[before] < 1)
         numbers[f"p'/p0' where I_R falls below 1, {name}"] = ratio[below[0]] if below.size else np.nan
     numbers.update(fabric_numbers(history, before))
+    numbers.update(swings(history, before))
+    numbers["p'/p0' at the end"] = ratio[-1]
     for column in FRACTIONS:
         numbers[f"{column} before"] = strain_mean(history, column, before)
         numbers[f"{column} after"] = strain_mean(history, column, behind) if behind else np.nan
     numbers["largest strain after, compression (%)"] = 100 * history.eps_y[behind].max() if behind else np.nan
     numbers["largest strain after, extension (%)"] = -100 * history.eps_y[behind].min() if behind else np.nan
+    if behind:
+        carries = ratio[behind] > FABRIC_FLOOR
+        numbers["correlation of I_R and |F_yx| after"] = np.corrcoef(
+            history.IR[behind][carries], np.abs(history.F_yx[behind][carries]))[0, 1]
+        soft = np.abs(history.q[behind]) < 0.1 * np.abs(history.q[before]).max()
+        way = np.diff(travelled(history, behind), prepend=0)
+        numbers["share of strain at |q| < q_amp/10 after"] = way[soft].sum() / way.sum()
+    return numbers
+
+
+def swings(history, before):
+    """Of the half cycles up to the onset: mean range of a number within one, and mean I_R of their thirds."""
+    half = history.reversals[before]
+    third = half[-1] / 3
+    numbers = {"mean I_R in the first third": history.IR[before][half <= third].mean(),
+               "mean I_R in the last third": history.IR[before][half >= 2 * third].mean()}
+    for name in ("IR", "f_S", "f_R"):
+        column = getattr(history, name)[before]
+        ranges = [np.ptp(column[half == k]) for k in np.unique(half)]
+        numbers[f"mean range of {name} in a half cycle before"] = np.mean(ranges)
     return numbers
 
 
@@ -132,9 +154,12 @@ def half_cycles(history):
         recovered = crossings(ratio, LIQUEFIED)
         first, last = (index[recovered[k]] if recovered.size else np.nan for k in (0, -1))
         sliding = history.f_S[part]
+        turns = np.flatnonzero(np.diff(np.sign(history.F_yx[part])) != 0)
         rows.append({"direction": "compression" if history.q[end] > 0 else "extension",
                      "strain travelled (%)": 100 * abs(history.eps_y[end] - history.eps_y[begin]),
                      "strain at its end (%)": 100 * history.eps_y[end], "least I_R": index.min(),
+                     "I_R at its beginning": index[0], "largest p'/p0'": ratio.max(),
+                     "I_R as F_yx changes sign": index[turns[-1] + 1] if turns.size else np.nan,
                      "I_R as p'/p0' first passes 0.01": first, "I_R as it last does": last,
                      "largest |F_yx|": largest_anisotropy(history, part), "F_yx at its end": history.F_yx[end],
                      "p'/p0' at the most sliding": ratio[int(np.argmax(sliding))],
@@ -142,21 +167,33 @@ def half_cycles(history):
     return rows
 
 
-def phases(history, points=41):
-    """Rows on an axis on which seeds can be averaged: share of the cycles to the onset (0 to 1), then whole
-    half cycles, the first towards compression, each by the share of the strain travelled in it (1 to 1 + n)."""
+def travelled(history, rows):
+    """Axial strain travelled since the first of the rows."""
+    return np.cumsum(np.abs(np.diff(history.eps_y[rows], prepend=history.eps_y[rows][:1])))
+
+
+def bins(measure, begin, points):
+    """Rows from `begin` on in equal parts of a measure that rises over them: a slice for each, none empty."""
+    edges = np.searchsorted(measure, np.linspace(0, measure[-1], points + 1)).clip(0, len(measure) - 1)
+    edges[-1] = len(measure)
+    return [slice(begin + low, begin + max(low + 1, high)) for low, high in zip(edges, edges[1:])]
+
+
+def phases(history, points=20):
+    """[(x, slice of rows)] on an axis on which seeds can be averaged: x from 0 to 1 is the share of the half cycles to
+    the onset, from 1 to 2 that of the strain travelled from the onset to the next reversal, then whole half cycles, the
+    first towards compression, each by the share of the strain travelled in it."""
     onset = history.onset
     if onset is None:
-        return np.array([]), np.array([], dtype=int)
-    steps = history.reversals[:onset + 1] / max(1, history.reversals[onset])
-    x = [np.linspace(0, 1, points)]
-    rows = [np.searchsorted(np.maximum.accumulate(steps), x[0], side="left").clip(0, onset)]
+        return []
+    way = travelled(history, slice(0, onset + 1))
+    ends = [0, *(row for row in history.reversal_rows if 0 < row < onset), onset]
+    measures = [(0, np.interp(way, way[ends], np.arange(len(ends))))]
     ends = [row for row in history.reversal_rows if row > onset]
+    if ends:
+        measures.append((onset, travelled(history, slice(onset, ends[0] + 1))))
     if len(ends) > 1 and history.q[ends[0]] > 0:
         ends = ends[1:]  # at a reversal in extension: seeds liquefy on either side
-    for k, (begin, end) in enumerate(zip(ends, ends[1:])):
-        way = np.cumsum(np.abs(np.diff(history.eps_y[begin:end + 1], prepend=history.eps_y[begin])))
-        share = np.linspace(0, 1, points)
-        x.append(1 + k + share)
-        rows.append(begin + np.searchsorted(way / max(way[-1], 1e-15), share).clip(0, end - begin))
-    return np.concatenate(x), np.concatenate(rows)
+    measures += [(begin, travelled(history, slice(begin, end + 1))) for begin, end in zip(ends, ends[1:])]
+    return [(section + (k + 0.5) / points, rows) for section, (begin, measure) in enumerate(measures)
+            for k, rows in enumerate(bins(measure, begin, points))]

@@ -92,7 +92,8 @@ class Results:
             axial, radial = h.p + 2 * h.q / 3, h.p - h.q / 3
             rows.append({**identity(run, h), "laboratory test": "",
                          **states.drained_numbers(h.eps_y, volume, axial, radial)})
-        for test in lab.drained_tests():
+        end = max((h.eps_y[-1] for _, h in self.of("drained")), default=1)
+        for test in (test.until(end) for test in lab.drained_tests()):
             rows.append({"specimen": f"laboratory, {test.pressure:g} kPa", "e": test.void_ratio,
                          "D_r (limits of its scene)": test.relative_density, "laboratory test": test.name,
                          **states.drained_numbers(test.strain, test.volume_strain, test.axial, test.radial)})
@@ -120,17 +121,13 @@ class Results:
         """Of the amplitude of the paper: means over the seeds that liquefy, on the axis of states.phases()."""
         rows = []
         for (_, label, _, ratio, pace), tests in self.groups("cyclic").items():
-            found = [(history, *states.phases(history)) for _, history in tests if history.onset is not None]
+            found = [(history, states.phases(history)) for _, history in tests if history.onset is not None]
             if ratio != plan.PAPER_RATIO or not found:
                 continue
-            shortest = min((x for _, x, _ in found), key=len)
-            for k, phase in enumerate(shortest):
-                row = {"specimen": label, "pace": pace, "phase": phase, "seeds": len(found)}
-                ratios = [history.p[rows_[k]] / history.p0 for history, _, rows_ in found]
-                row["p'/p0'"], row["p'/p0' s.d."], *_ = paths.ensemble(ratios)
-                for column in PHASED:
-                    values = [getattr(history, column)[rows_[k]] for history, _, rows_ in found]
-                    row[column], row[f"{column} s.d."], *_ = paths.ensemble(values)
+            for k, (x, _) in enumerate(min((axis for _, axis in found), key=len)):
+                row = {"specimen": label, "pace": pace, "phase": x, "seeds": len(found)}
+                for column in ("p'/p0'", *PHASED):
+                    row.update(phase_numbers(column, [(history, axis[k][1]) for history, axis in found]))
                 rows.append(row)
         return rows
 
@@ -151,6 +148,28 @@ class Results:
                              "p' (kPa)": h.p[k] / 1e3,
                              "q (kPa)": h.q[k] / 1e3, "eps_1 (%)": 100 * h.eps_y[k]})
         return rows
+
+
+def phase_numbers(column, found):
+    """Mean and standard deviation over the seeds, and the means of their least and largest value, in rows of one phase;
+    of p'/p0' those of its logarithm, and of fabric where enough contacts carry."""
+    means, lows, highs = [], [], []
+    for history, rows in found:
+        ratio = history.p[rows] / history.p0
+        values = np.log(np.maximum(ratio, 1e-9)) if column == "p'/p0'" else getattr(history, column)[rows]
+        values = values[ratio > states.FABRIC_FLOOR] if column.startswith("F") else values
+        if values.size:
+            for numbers, value in ((means, values.mean()), (lows, values.min()), (highs, values.max())):
+                numbers.append(value)
+    if len(means) < max(1, len(found) / 2):
+        return dict.fromkeys((column, f"{column} low", f"{column} high"), np.nan)
+    mean, deviation, *_ = paths.ensemble(means)
+    if column != "p'/p0'":
+        before = {column: mean, f"{column} s.d.": deviation}
+    else:
+        before = {column: np.exp(mean), f"{column} s.d. of ln": deviation}
+    back = np.exp if column == "p'/p0'" else float
+    return {**before, f"{column} low": back(np.mean(lows)), f"{column} high": back(np.mean(highs))}
 
 
 def curves(groups, values, names):
@@ -180,12 +199,17 @@ TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", 
         "laboratory test")
 
 
+def read_csv(path):
+    """Rows of a table; none if it is not there."""
+    if not path.exists():
+        return []
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{name: value_of(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
 def merged(path, rows):
     """These rows behind those of the table that is there, but for the tests and curves that are in `rows`."""
-    if not path.exists():
-        return rows
-    with open(path, newline="", encoding="utf-8") as file:
-        before = [{name: value_of(text) for name, text in row.items()} for row in csv.DictReader(file)]
+    before = read_csv(path)
     new = {test_of(row) for row in rows}
     return [row for row in before if test_of(row) not in new] + rows
 

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the figures of the campaign share: tables as columns, one style, panels, bands."""
+import csv
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
+
+BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
+STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
+         "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
+
+
+class Table:
+    """Columns by name; numbers where they are numbers."""
+
+    def __init__(self, path):
+        with open(path, newline="", encoding="utf-8") as file:
+            self.rows = list(csv.DictReader(file))
+
+    def where(self, **conditions):
+        """Rows whose columns have these values."""
+        return self.of([row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())])
+
+    @classmethod
+    def of(cls, rows):
+        table = object.__new__(cls)
+        table.rows = rows
+        return table
+
+    def values(self, name):
+        return list(dict.fromkeys(row[name] for row in self.rows))
+
+    def __getitem__(self, name):
+        return np.array([float(row[name] or "nan") for row in self.rows])
+
+    def __bool__(self):
+        return bool(self.rows)
+
+
+def panels(rows, columns, width=7.2, height=3.2, **more):
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height), layout="constrained", squeeze=False, **more)
+    for letter, panel in zip("abcdefgh", axes.flat):
+        panel.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
+    return figure, axes
+
+
+def legend_below(figure, panel, ncols, height):
+    """Of the whole figure, in the lowest `height` of it."""
+    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
+    figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
+
+
+def plain_logarithm(axis):
+    """Of one axis of a panel, with ticks at 1, 2, 5, 10 written as numbers."""
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(NullFormatter())
+
+
+def band(panel, x, mean, deviation, colour, label=None):
+    panel.plot(x, mean, color=colour, linewidth=1.1, label=label)
+    panel.fill_between(x, mean - np.nan_to_num(deviation), mean + np.nan_to_num(deviation), color=colour, alpha=0.18,
+                       linewidth=0)
+
+
+def bands(panel, rows, columns):
+    """Of each (column, colour, label) of the table of phases: to the onset the mean and the range within the cycles,
+    behind it mean and standard deviation."""
+    cyclic = rows["phase"] < 1
+    for column, colour, label in columns:
+        x, mean = rows["phase"], rows[column]
+        panel.plot(x, mean, color=colour, linewidth=1.1, label=label)
+        if f"{column} s.d. of ln" in rows.rows[0]:
+            factor = np.exp(np.nan_to_num(rows[f"{column} s.d. of ln"]))
+            low, high = mean / factor, mean * factor
+        else:
+            deviation = np.nan_to_num(rows[f"{column} s.d."])
+            low, high = mean - deviation, mean + deviation
+        panel.fill_between(x, np.where(cyclic, rows[f"{column} low"], low),
+                           np.where(cyclic, rows[f"{column} high"], high), color=colour, alpha=0.18, linewidth=0)
+
+
+def of_tables(*names):
+    """Says from which tables a figure is drawn; it gets the first."""
+    def mark(function):
+        function.tables = names
+        return function
+    return mark
