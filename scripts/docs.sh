@@ -30,8 +30,19 @@ rm -rf "$site/cpp"
 { grep -rlF '#nested-classes"' "$site/cpp" | xargs grep -LF 'name="nested-classes"' || true; } |
   xargs -r sed -i 's|<a href="#nested-classes">[^<]*</a>[^<]*||'
 
+# Debian's theme takes a style from the root of a web server and a script as a module: put both into the site, so that
+# pages work as files, too.
+javascript=/usr/share/javascript
+cp -L "$javascript/normalize.css/normalize.css" "$site/_static/styles/"
+sed -i 's|@import url(/javascript/normalize.css/normalize.css)|@import url(normalize.css)|' "$site/_static/styles/furo.css"
+scripts=$site/_static/scripts
+if grep -q '^import Gumshoe' "$scripts/furo.js"; then
+  sed '/^import Gumshoe/d' "$scripts/furo.js" | cat "$scripts/gumshoe-patched.js" - >"$scripts/whole.js"
+  mv "$scripts/whole.js" "$scripts/furo.js"
+fi
+
 # Equations: the part of Debian's MathJax that a page loads, with fonts as paths.
-mathjax=/usr/share/javascript/mathjax
+mathjax=$javascript/mathjax
 rm -rf "$site/_static/mathjax"
 mkdir -p "$site/_static/mathjax"/{config,jax/output,jax/input}
 cp -L "$mathjax/MathJax.js" "$site/_static/mathjax/"

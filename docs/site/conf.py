@@ -31,23 +31,28 @@ html_css_files = ["site.css"]
 html_copy_source = False
 html_last_updated_fmt = None
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"  # scripts/docs.sh copies it from the Debian package
-mathjax2_config = {"SVG": {"font": "TeX", "linebreaks": {"automatic": True}}, "messageStyle": "none"}
+myst_update_mathjax = False  # its setting is that of MathJax 3
+mathjax2_config = {"tex2jax": {"processClass": "math", "processEnvironments": True},
+                   "SVG": {"font": "TeX", "scale": 88, "linebreaks": {"automatic": True}}, "messageStyle": "none"}
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 highlight_language = "none"
 
+EQUATION = "```{math}\n:nowrap:\n\n\\\\begin{equation*}\n\\1\\\\end{equation*}\n```"
+
 
 def as_site(_app, docname, source):
     """What GitHub shows in its own way: equations in blocks named math, and links to folders."""
     folder = (ROOT / docname).parent
+    source[0] = re.sub(r"^%", r"\\%", source[0], flags=re.M)  # MyST would take it for a comment
     if not source[0].startswith("# "):  # a generated table
         source[0] = f"# {pathlib.PurePath(docname).name.capitalize()}\n\n{source[0]}"
-    text = re.sub(r"^(\s*)```math$", r"\1```{math}", source[0], flags=re.M)
+    text = re.sub(r"^```math\n(.*?)^```$", EQUATION, source[0], flags=re.M | re.S)
 
     def link(match):
         target = folder / match[2].split("#")[0]
-        if not target.is_dir():
+        if match[2].startswith("#") or not target.is_dir():
             return match[0]
         return f"[{match[1]}]({match[2].rstrip('/')}/README.md)" if (target / "README.md").is_file() else match[1]
 
@@ -60,7 +65,8 @@ def as_text(_app, _what, _name, _object, _options, lines):
     lines[:] = []
     for part in paragraphs:
         if any(re.search(r"\S   +\S", line) or line.startswith("  ") for line in part):
-            lines += ["::", "", *("    " + line for line in part), ""]
+            is_going_on = len(lines) > 1 and lines[-2].startswith("    ")
+            lines += [*([] if is_going_on else ["::", ""]), *("    " + line for line in part), ""]
         else:
             lines += [*(re.sub(r"([*_|`\\])", r"\\\1", line) for line in part), ""]
 
