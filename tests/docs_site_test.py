@@ -13,8 +13,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SKIPPED = 77
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax/MathJax.js")
-PAGES = ("index", "README", "installation", "first_scene", "user_guide", "python", "python_api", "scene_reference", "theory",
-         "cpp_api", "results", "gallery", "compared")
+PAGES = ("index", "../README", "installation", "first_scene", "user_guide", "python", "python_api", "scene_reference",
+         "theory", "cpp_api", "results", "gallery", "compared")
 
 
 def main(binaries):
@@ -30,7 +30,7 @@ def main(binaries):
     if done.returncode != 0:
         return 1
     site = build / "docs/html"
-    lost = [page for page in PAGES if not (site / ("README.html" if page == "README" else f"docs/{page}.html")).is_file()]
+    lost = [page for page in PAGES if not (site / "docs" / f"{page}.html").is_file()]
     equations = (site / "docs/theory.html").read_text(encoding="utf-8").count('class="math notranslate nohighlight"')
     print(f"pages that are not there: {lost}; equations in theory: {equations}")
     return 0 if not lost and equations > 20 else 1

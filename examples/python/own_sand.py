@@ -24,7 +24,8 @@ TEST = pathlib.Path(__file__).resolve().parents[2] / "apps/laboratory/drained/TM
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
 parser.add_argument("--small", action="store_true", help="few grains, two angles, seconds")
 parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("results/examples"))
-parser.add_argument("--laboratory", type=pathlib.Path, default=TEST, help="eps_a[%%],eps_v[%%],sigma_r[kPa],sigma_v[kPa]")
+parser.add_argument("--laboratory", type=pathlib.Path, default=TEST,
+                    help="eps_a[%%],eps_v[%%],sigma_r[kPa],sigma_v[kPa]")
 options = parser.parse_args()
 options.output.mkdir(parents=True, exist_ok=True)
 grains, end = (300, 0.01) if options.small else (600, 0.06)

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A packing as a material: strain in, stress out.
 
-The representative volume element is sheared at constant volume in cycles of growing strain, each from the same state:
-what a resonant column or a cyclic simple shear device gives. The figure shows loops, the decay of the secant modulus and
-the damping ratio.
+The representative volume element is sheared at constant volume in cycles of growing strain, each from the same state,
+as in a cyclic simple shear device. The figure shows loops, the decay of the secant modulus and the damping ratio.
 
     python3 rve_material.py [--small] [--output FOLDER]
 """

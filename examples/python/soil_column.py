@@ -45,7 +45,8 @@ def shake(name, middle):
     return column.run(scene, options.output / f"soil_column_{name}", overwrite=True)
 
 
-cases = {"loose": shake("loose", LOOSE), "dense": shake("dense", {**DENSE, "name": "denser", "thickness": "5 m", "cells": 10})}
+DENSER = {**DENSE, "name": "denser", "thickness": "5 m", "cells": 10}
+cases = {"loose": shake("loose", LOOSE), "dense": shake("dense", DENSER)}
 figure, (surface, pressure, loop) = plt.subplots(3, 1, figsize=(7, 8), layout="constrained")
 for (name, case), colour in zip(cases.items(), ("tab:red", "tab:blue")):
     h = case.history
