@@ -3,7 +3,7 @@
 /\/\/\//{
 s/<([a-z][a-z ]+)>/\\<\1\\>/g
 s/\\([rnt]\b)/\\\\\1/g
-s/@(pre|post|param|return|returns|tparam|file|note)\b/\x01\1/g
+s/@(pre|post|param|return|returns|tparam|throws|file|note)\b/\x01\1/g
 s/@/\\@/g
 s/\x01/@/g
 }
