@@ -3,8 +3,10 @@
 //
 //   isostat compare results/one results/other      two runs side by side in compare.html
 //   isostat report results/one                     figures and report.html once more, also of a run under way
+//   isostat convert packing.dump packing.h5        packings of LAMMPS, YADE, CSV and ParaView in and out
 //   isostat element_test SCENE                     the program beside this one, with everything that follows
 #include "apps/common/command_line.hpp"
+#include "apps/isostat/convert.hpp"
 #include "base/error.hpp"
 #include "base/record/installation.hpp"
 
@@ -43,6 +45,9 @@ constexpr Entry views[] = {
 /// The program of this name in the folder of this one; a build may have left some out.
 fs::path beside(const std::string &name) { return shared_folder().parent_path().parent_path() / "bin" / name; }
 
+constexpr Entry packings = {"convert",
+                            "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"};
+
 std::string help()
 {
   std::string text =
@@ -50,6 +55,7 @@ std::string help()
       "usage: isostat COMMAND ...\n\nresults\n";
   for (const Entry &view : views)
     text += fmt::format("  {:<25}{}\n", view.name, view.text);
+  text += fmt::format("\npackings\n  {:<25}{}\n", packings.name, packings.text);
   text += "\nprograms, which can also be called without `isostat`; each has --help\n";
   for (const Entry &program : programs)
     if (fs::exists(beside(program.name)))
@@ -97,5 +103,8 @@ void run(const std::vector<std::string> &words)
 
 int main(int argc, char **argv)
 {
-  return guarded([&] { run({argv + 1, argv + argc}); });
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == packings.name)
+    return convert(words);
+  return guarded([&] { run(words); });
 }

@@ -14,6 +14,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-specimen";
+const std::string snapshot_format = "isostat-snapshot"; // of a run, without a story
 
 std::string grain_fault(const Packing &grains)
 {
@@ -128,6 +129,8 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 Specimen read_specimen_description(const hdf5::Group &group)
 {
   Specimen specimen;
+  if (!group.has("provenance") && format_of(group) == snapshot_format)
+    return specimen;
   hdf5::read_field(group, "provenance", specimen.provenance);
   hdf5::read_field(group, "numbers", specimen.numbers);
   return specimen;

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "dem/io/sphere_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -166,50 +167,6 @@ void read_contacts(const fs::path &path, const IndexOfId &index_of_id, Snapshot 
     throw InputError(fmt::format("{}: a contact is listed twice; expected each once", path.string()));
 }
 
-/// The six numbers of a comment `# box xlo xhi ylo yhi zlo zhi`; false for any other comment.
-bool read_box_comment(const fs::path &path, std::size_t line, std::string_view text, RigidBox &box)
-{
-  std::vector<std::string_view> words = split_words(text.substr(text.find('#') + 1));
-  if (words.empty() || words[0] != "box")
-    return false;
-  std::array<double, 6> v{};
-  bool good = words.size() == 7;
-  for (std::size_t k = 0; good && k < 6; ++k)
-    good = parse(words[k + 1], v[k]) && std::isfinite(v[k]) && (k % 2 == 0 || v[k] > v[k - 1]);
-  if (!good)
-    reject(path, line, fmt::format("\"{}\"; expected # box xlo xhi ylo yhi zlo zhi, each pair rising (m)", text));
-  box = {Vec3(v[0], v[2], v[4]), Vec3(v[1], v[3], v[5])};
-  return true;
-}
-
-/// x y z r; false for a line that is no such thing.
-bool parse_sphere(std::string_view text, std::array<double, 4> &sphere)
-{
-  const std::vector<std::string_view> words = split_words(text);
-  bool good = words.size() == 4;
-  for (std::size_t k = 0; good && k < 4; ++k)
-    good = parse(words[k], sphere[k]);
-  return good;
-}
-
-/// A line of words only, such as `x y z r`.
-bool is_header(std::string_view text)
-{
-  double ignored = 0;
-  return std::ranges::none_of(split_words(text), [&](std::string_view word) { return parse(word, ignored); });
-}
-
-RigidBox bounding_box(const std::vector<Vec3> &centres, const std::vector<double> &radii)
-{
-  RigidBox box{centres[0], centres[0]};
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    {
-      box.lower = box.lower.cwiseMin(centres[i] - Vec3::Constant(radii[i]));
-      box.upper = box.upper.cwiseMax(centres[i] + Vec3::Constant(radii[i]));
-    }
-  return box;
-}
-
 void read_tables(const fs::path &folder, double density, Snapshot &snapshot)
 {
   snapshot.box = read_box(find_table(folder, "walls"));
@@ -217,55 +174,18 @@ void read_tables(const fs::path &folder, double density, Snapshot &snapshot)
   snapshot.grains = read_particles(find_table(folder, "particles"), snapshot.box, density, index_of_id);
   read_contacts(find_table(folder, "contacts"), index_of_id, snapshot);
 }
-
-void read_spheres(const fs::path &path, double density, Snapshot &snapshot)
-{
-  const std::string text = read_text(path);
-  const std::vector<std::string_view> lines = split_lines(text);
-  std::vector<Vec3> centres;
-  std::vector<double> radii;
-  std::vector<std::size_t> line_of;
-  bool box_given = false, header_seen = false;
-  for (std::size_t l = 0; l < lines.size(); ++l)
-    {
-      const std::vector<std::string_view> words = split_words(lines[l]);
-      if (words.empty())
-        continue;
-      if (words[0].front() == '#')
-        {
-          box_given = read_box_comment(path, l + 1, lines[l], snapshot.box) || box_given;
-          continue;
-        }
-      std::array<double, 4> s{};
-      if (!parse_sphere(lines[l], s))
-        {
-          if (centres.empty() && !std::exchange(header_seen, true) && is_header(lines[l]))
-            continue;
-          reject(path, l + 1, fmt::format("\"{}\"; expected four numbers x y z r (m)", lines[l]));
-        }
-      check_sphere(path, l + 1, Vec3(s.data()), s[3]);
-      centres.emplace_back(s.data());
-      radii.push_back(s[3]);
-      line_of.push_back(l + 1);
-    }
-  if (centres.empty())
-    throw InputError(fmt::format("{}: no spheres; expected lines x y z r (m)", path.string()));
-  if (!box_given)
-    snapshot.box = bounding_box(centres, radii);
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    check_inside(path, line_of[i], centres[i], snapshot.box);
-  snapshot.grains = make_packing(centres, radii, density);
-}
 } // namespace
 
 Snapshot import_tables(const fs::path &path, const Law &law, double density)
 {
   if (!(density > 0 && std::isfinite(density)))
     throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored))
+    return read_sphere_text(path, law, density).state;
   Snapshot snapshot;
   snapshot.law = law;
-  std::error_code ignored;
-  fs::is_directory(path, ignored) ? read_tables(path, density, snapshot) : read_spheres(path, density, snapshot);
+  read_tables(path, density, snapshot);
   return snapshot;
 }
 } // namespace isostat

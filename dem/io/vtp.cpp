@@ -75,18 +75,63 @@ std::vector<std::int64_t> counting(std::int64_t n, std::int64_t first)
   return values;
 }
 
-/// Piece with its points; `Verts` or `Lines` and the data follow.
-pugi::xml_node add_piece(pugi::xml_document &document, const Packing &grains, std::size_t n_verts, std::size_t n_lines)
+/// Piece with its points (x y z each); `Verts` or `Lines` and the data follow.
+pugi::xml_node add_piece(pugi::xml_node data, const std::vector<double> &points, std::size_t n_verts,
+                         std::size_t n_lines)
 {
-  pugi::xml_node piece = vtk_file(document, "PolyData").append_child("PolyData").append_child("Piece");
-  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(grains.n_grains());
+  pugi::xml_node piece = data.append_child("Piece");
+  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(points.size() / 3);
   piece.append_attribute("NumberOfVerts") = static_cast<unsigned long long>(n_verts);
   piece.append_attribute("NumberOfLines") = static_cast<unsigned long long>(n_lines);
   piece.append_attribute("NumberOfStrips") = 0;
   piece.append_attribute("NumberOfPolys") = 0;
-  add_array(piece.append_child("Points"), "position", vectors(grains.position, grains.n_grains()), 3);
+  add_array(piece.append_child("Points"), "position", points, 3);
   return piece;
 }
+
+/// What bounds the grains, as field data.
+void add_bounds(pugi::xml_node data, const Snapshot &s)
+{
+  const Vec3 &a = s.box.lower, &b = s.box.upper;
+  std::vector<double> values = {a[0], a[1], a[2], b[0], b[1], b[2]};
+  if (s.cell)
+    values.assign(s.cell->edges.data(), s.cell->edges.data() + 9);
+  pugi::xml_node field = data.append_child("FieldData");
+  add_array(field, s.cell ? "cell" : "box", values);
+  field.first_child().append_attribute("NumberOfTuples") = static_cast<unsigned long long>(values.size());
+}
+
+/// Lines of force chains, two points each, and what they carry.
+struct Chains
+{
+  std::vector<double> points, normal_force, shear_force;
+  std::vector<std::uint8_t> sliding, rolling;
+
+  void add_line(const Vec3 &from, const Vec3 &to, const Contact &contact, const YieldState &yield)
+  {
+    for (const Vec3 &x : {from, to})
+      {
+        points.insert(points.end(), x.begin(), x.end());
+        normal_force.push_back(contact.normal_force);
+        shear_force.push_back(contact.history.shear_force.norm());
+        sliding.push_back(yield.sliding);
+        rolling.push_back(yield.rolling);
+      }
+  }
+
+  void add(const Snapshot &s, const Contact &c)
+  {
+    const YieldState yield = s.law->yield(s.closed(c));
+    const Vec3 from = s.grains.centre(c.first), to = s.grains.centre(c.second), &normal = c.history.normal;
+    const double first = s.grains.radius(c.first) - 0.5 * c.overlap,
+                 second = s.grains.radius(c.second) - 0.5 * c.overlap;
+    // Another image of the second grain is further away than the sum of both radii.
+    if (!s.cell || (to - from - (first + second) * normal).norm() < first + second)
+      return add_line(from, to, c, yield);
+    add_line(from, from + first * normal, c, yield);
+    add_line(to - second * normal, to, c, yield);
+  }
+};
 } // namespace
 
 std::vector<double> grain_pressure(const Snapshot &snapshot)
@@ -112,7 +157,9 @@ void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapsho
   const Packing &grains = snapshot.grains;
   const std::size_t n = grains.n_grains();
   pugi::xml_document document;
-  pugi::xml_node piece = add_piece(document, grains, n, 0);
+  pugi::xml_node poly = vtk_file(document, "PolyData").append_child("PolyData");
+  add_bounds(poly, snapshot);
+  pugi::xml_node piece = add_piece(poly, vectors(grains.position, n), n, 0);
   pugi::xml_node verts = piece.append_child("Verts");
   add_array(verts, "connectivity", counting(n, 0));
   add_array(verts, "offsets", counting(n, 1));
@@ -128,31 +175,24 @@ void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapsho
 
 void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &snapshot)
 {
-  const Packing &grains = snapshot.grains;
-  const std::size_t n = snapshot.contacts.size();
-  std::vector<std::int64_t> ends, offsets;
-  std::vector<double> normal_force, shear_force;
-  std::vector<std::uint8_t> sliding, rolling;
+  Chains chains;
   for (const Contact &c : snapshot.contacts)
-    {
-      const YieldState yield = snapshot.law->yield(snapshot.closed(c));
-      ends.insert(ends.end(), {c.first, c.second});
-      offsets.push_back(static_cast<std::int64_t>(ends.size()));
-      normal_force.push_back(c.normal_force);
-      shear_force.push_back(c.history.shear_force.norm());
-      sliding.push_back(yield.sliding);
-      rolling.push_back(yield.rolling);
-    }
+    chains.add(snapshot, c);
+  const std::size_t n_points = chains.normal_force.size();
+  std::vector<std::int64_t> ends = counting(static_cast<std::int64_t>(n_points), 0), offsets;
+  for (std::size_t k = 2; k <= n_points; k += 2)
+    offsets.push_back(static_cast<std::int64_t>(k));
   pugi::xml_document document;
-  pugi::xml_node piece = add_piece(document, grains, 0, n);
+  pugi::xml_node poly = vtk_file(document, "PolyData").append_child("PolyData");
+  pugi::xml_node piece = add_piece(poly, chains.points, 0, offsets.size());
   pugi::xml_node lines = piece.append_child("Lines");
   add_array(lines, "connectivity", ends);
   add_array(lines, "offsets", offsets);
-  pugi::xml_node data = piece.append_child("CellData");
-  add_array(data, "normal_force", normal_force);
-  add_array(data, "shear_force", shear_force);
-  add_array(data, "sliding", sliding);
-  add_array(data, "rolling", rolling);
+  pugi::xml_node data = piece.append_child("PointData");
+  add_array(data, "normal_force", chains.normal_force);
+  add_array(data, "shear_force", chains.shear_force);
+  add_array(data, "sliding", chains.sliding);
+  add_array(data, "rolling", chains.rolling);
   save_xml(document, path);
 }
 } // namespace isostat

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/io/sphere_text.hpp"
 #include "dem/state/snapshot.hpp"
 
 #include <filesystem>
@@ -15,12 +16,23 @@ namespace isostat
 std::vector<double> grain_pressure(const Snapshot &snapshot);
 
 /// Writes the grains as points (ParaView: "Point Gaussian" or "Glyph", scaled by radius) with point data id, radius,
-/// velocity, spin, coordination (contacts with grains and walls) and pressure. VTK XML PolyData, base64, written aside
-/// and renamed. Throws RunFailure.
+/// velocity, spin, coordination (contacts with grains and walls) and pressure, and with field data `box` (lower and
+/// upper corner, m) or `cell` (edges a, b, c, m). VTK XML PolyData, base64, written aside and renamed. Throws
+/// RunFailure.
 /// tested: tests/dem/io/vtp_test.cpp
 void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
 
-/// Writes the force chains: one line between the centres of each touching pair, with cell data normal_force and
-/// shear_force (N, magnitudes), sliding and rolling (0 or 1). Contacts with walls are not drawn.
+/// Grains from such a file, or from one of another program with points, point data `radius` (m) and, if they are there,
+/// id, velocity, spin and the field data; ascii, or base64 without compression. Brings back every bit of what is named
+/// here; contacts, law and density are not in the file.
+/// @param density  kg/m3     @throws InputError
+/// tested: tests/dem/io/packing_files_test.cpp
+ForeignPacking read_grains_vtp(const std::filesystem::path &path, const Law &law, double density);
+
+/// Writes the force chains: one line between the centres of each touching pair, with point data normal_force and
+/// shear_force (N, magnitudes), sliding and rolling (0 or 1), the same at both ends, so that the filter "Tube" can vary
+/// its radius by them. A contact through a face of a periodic cell is drawn as two lines, from each of its grains to
+/// the point of contact as that grain sees it. Contacts with walls are not drawn.
+/// tested: tests/dem/io/vtp_test.cpp
 void write_force_chains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
 } // namespace isostat

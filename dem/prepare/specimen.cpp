@@ -3,11 +3,11 @@
 
 #include "base/error.hpp"
 #include "base/files/hash.hpp"
-#include "dem/io/specimen_library.hpp"
-#include "dem/io/text_tables.hpp"
+#include "dem/io/packing_files.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/prepare/grading.hpp"
+#include "dem/prepare/packing_check.hpp"
 #include "dem/prepare/relative_density.hpp"
 #include "dem/prepare/space_filling.hpp"
 
@@ -141,25 +141,33 @@ void check_domain(const Scene &scene, const Snapshot &state)
                                  scene.specimen.file, is, scene.specimen.domain));
 }
 
-Specimen import(const Scene &scene)
+Specimen import(const Scene &scene, RunObserver &observer)
 {
   const SpecimenPlace place = specimen_place(scene.specimen.file);
   const std::filesystem::path path = place.path;
   if (path.extension() == ".h5")
     {
-      const bool in_library = !place.entry.empty() || is_specimen_library(path);
-      Specimen specimen = in_library ? read_library_entry(path, place.entry) : read_specimen(path);
+      Specimen specimen = read_stored_packing(path, place.entry);
       check_domain(scene, specimen.state);
       specimen.state.law = scene.contact;
       describe(scene, specimen);
       return specimen;
     }
+  ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density});
+  const std::string remedy =
+      fmt::format("convert it once: isostat convert {} {} --length-unit mm, and give that file", path.string(),
+                  std::filesystem::path(path).replace_extension(".h5").filename().string());
+  for (const std::string &warning : check_packing(read.state, path.string(), remedy))
+    read.notes.push_back(warning);
+  for (const std::string &note : read.notes)
+    observer.event(fmt::format("warning: {}: {}", path.string(), note));
   Specimen specimen;
-  specimen.state = sorted_along_curve(import_tables(path, scene.contact, scene.grading.density));
+  specimen.state = sorted_along_curve(read.state);
   check_domain(scene, specimen.state);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
   describe(scene, specimen);
+  observer.event("imported:\n" + figures_text(packing_figures(specimen.state), specimen.state));
   return specimen;
 }
 
@@ -202,7 +210,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
   if (!scene.specimen.file.empty())
     {
       const std::lock_guard lock(hdf5_access);
-      return import(scene);
+      return import(scene, observer);
     }
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packings in and out.   tested: tests/python/snapshot_test.py
 #include "base/files/hdf5.hpp"
+#include "base/units.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/io/text_tables.hpp"
 #include "dem/io/vtp.hpp"
+#include "dem/prepare/convert.hpp"
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
 
@@ -17,10 +19,62 @@ Snapshot read_stored(const std::string &path)
   const hdf5::File file = hdf5::File::open(path);
   return read_snapshot(file.root().group("snapshot"));
 }
+void warn(const std::vector<std::string> &notes)
+{
+  for (const std::string &note : notes)
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
+      throw py::error_already_set();
+}
+
+Specimen read_packing(const std::string &path, const std::string &length_unit, double density,
+                      const std::string &domain, const Law &law, bool anyway)
+{
+  const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
+  const CheckedPacking packing = read_any_packing(path, {{law, density, scale}, domain, anyway});
+  warn(packing.notes);
+  return packing.specimen;
+}
+
+PackingFormat wanted_format(const std::string &path, const std::string &format)
+{
+  return format.empty() ? format_of_file(path) : format_named(format);
+}
+
+void bind_packings(py::module_ &module)
+{
+  module.def(
+      "read_packing", &read_packing, py::arg("path"), py::kw_only(), py::arg("length_unit") = "m",
+      py::arg("density") = 2650.0, py::arg("domain") = "", py::arg("law") = Law(), py::arg("anyway") = false,
+      "A packing as a Specimen, whatever wrote it: HDF5 of Isostat, LAMMPS dump or data file (units si, atom_style\n"
+      "sphere), text of YADE, CSV, VTP. Refuses what cannot be meant (spheres in mm read as metres, deep overlaps,\n"
+      "spheres outside the box) unless `anyway`; what had to be assumed is a warning.\n\n"
+      "length_unit: of the file, \"mm\" ...; density: kg/m3, where the file does not say it; domain: "
+      "\"periodic-cell\"\n"
+      "where the file has a box that repeats itself.");
+  module.def(
+      "write_packing",
+      [](const std::string &path, const Specimen &specimen, const std::string &format) {
+        warn(write_packing(path, specimen, wanted_format(path, format)));
+      },
+      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "",
+      "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
+      "\"lammps-dump\", \"lammps-data\", \"yade\", \"csv\" or \"vtp\". What the format cannot hold is a warning.");
+  module.def(
+      "convert",
+      [](const std::string &from, const std::string &to, const std::string &length_unit, double density,
+         const std::string &domain, const std::string &format, bool anyway) {
+        const PackingFormat wanted = wanted_format(to, format);
+        warn(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
+      },
+      py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
+      py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false,
+      "What `isostat convert` does: read_packing, then write_packing.");
+}
 } // namespace
 
 void bind_files(py::module_ &module)
 {
+  bind_packings(module);
   py::class_<Specimen>(module, "Specimen", "A prepared packing with the story of how it was made.")
       .def(py::init([](const Snapshot &state) {
              return Specimen{state, {}, {}};

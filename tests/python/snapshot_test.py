@@ -5,6 +5,7 @@ import gc
 import pathlib
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -63,6 +64,28 @@ class SnapshotTest(ToleranceTest):
             np.testing.assert_array_equal(isostat.import_tables(str(text)).positions, CENTRES)
             isostat.write_vtp(str(pathlib.Path(folder) / "three.vtp"), again)
             self.assertIn("PolyData", (pathlib.Path(folder) / "three.vtp").read_text()[:200])
+
+    def test_packings_of_other_programs(self):
+        small = isostat.Snapshot.from_spheres(CENTRES, [R] * 3, cell=R * np.array([[5, 0.5, 0], [0, 5, 0], [0, 0, 5]]))
+        metres = isostat.Snapshot.from_spheres(1e3 * CENTRES, [1e3 * R] * 3, box=1e3 * BOX)
+        with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            source = f"{folder}/a.h5"
+            isostat.write_packing(source, isostat.Specimen(small))
+            for ending in ("dump", "data", "txt", "csv", "vtp", "h5"):
+                target = f"{folder}/b.{ending}"
+                isostat.convert(source, target)
+                again = isostat.read_packing(target).snapshot
+                np.testing.assert_array_equal(again.positions, small.positions)
+                np.testing.assert_array_equal(again.cell if ending != "dump" else small.cell, small.cell)
+            isostat.write_packing(f"{folder}/c.csv", isostat.Specimen(metres))
+            with self.assertRaisesRegex(isostat.InputError, "largest radius"):
+                isostat.read_packing(f"{folder}/c.csv")
+            self.assert_close(isostat.read_packing(f"{folder}/c.csv", length_unit="mm").snapshot.radii, R, 1e-15,
+                              "one rounding")
+            warnings.simplefilter("error")
+            with self.assertRaisesRegex(UserWarning, "periodic cell"):
+                isostat.write_packing(f"{folder}/d.txt", isostat.Specimen(small))
 
     def test_wrong_spheres_are_refused(self):
         make = isostat.Snapshot.from_spheres

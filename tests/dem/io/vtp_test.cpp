@@ -88,16 +88,40 @@ TEST_F(Vtp, ForceChainsKeepTheirNumbers)
   write_force_chains_vtp(folder / "c.vtp", s);
   const pugi::xml_node piece = load(folder / "c.vtp");
   EXPECT_EQ(piece.attribute("NumberOfLines").as_int(), 2);
-  EXPECT_EQ(array<std::int64_t>(piece.child("Lines"), "connectivity"), (std::vector<std::int64_t>{0, 1, 1, 2}));
+  EXPECT_EQ(array<std::int64_t>(piece.child("Lines"), "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
+  const std::vector<double> ends = array<double>(piece.child("Points"), "position");
+  ASSERT_EQ(ends.size(), 12u);
+  EXPECT_EQ(Vec3(&ends[6]), s.grains.centre(1));
+  EXPECT_EQ(Vec3(&ends[9]), s.grains.centre(2));
   EXPECT_EQ(array<std::int64_t>(piece.child("Lines"), "offsets"), (std::vector<std::int64_t>{2, 4}));
-  const pugi::xml_node data = piece.child("CellData");
-  EXPECT_EQ(array<double>(data, "normal_force"), (std::vector<double>{12.3, 4.5}));
+  const pugi::xml_node data = piece.child("PointData"); // which "Tube" wants
+  EXPECT_EQ(array<double>(data, "normal_force"), (std::vector<double>{12.3, 12.3, 4.5, 4.5}));
   EXPECT_EQ(array<double>(data, "shear_force")[0], 8.61);
-  EXPECT_EQ(array<std::uint8_t>(data, "sliding"), (std::vector<std::uint8_t>{1, 0})); // 8.61 = 0.7 * 12.3
-  EXPECT_EQ(array<std::uint8_t>(data, "rolling"), (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(array<std::uint8_t>(data, "sliding"), (std::vector<std::uint8_t>{1, 1, 0, 0})); // 8.61 = 0.7 * 12.3
+  EXPECT_EQ(array<std::uint8_t>(data, "rolling"), (std::vector<std::uint8_t>{0, 0, 0, 0}));
   s.contacts.clear();
   write_force_chains_vtp(folder / "c.vtp", s);
   EXPECT_EQ(load(folder / "c.vtp").attribute("NumberOfLines").as_int(), 0);
+}
+
+/// A contact through a face of the cell ends at the point of contact on either side; none is as long as the cell.
+TEST_F(Vtp, ForceChainsAreCutAtTheCell)
+{
+  Snapshot s;
+  s.grains = make_packing({Vec3(0.2, 1, 1), Vec3(1.9, 1, 1), Vec3(1.41, 1, 1)}, {0.25, 0.25, 0.25}, 2650);
+  s.cell = PeriodicCell::with_edges(Vec3(2, 2, 2));
+  s.contacts = {{0, 1, 0.2, 3, {-Vec3::UnitX(), {}, {}, {}}}, {1, 2, 0.01, 4, {-Vec3::UnitX(), {}, {}, {}}}};
+  for (Contact &c : s.contacts)
+    c.history.shear_force = c.history.bending_moment = c.history.twisting_moment = Vec3::Zero();
+  write_force_chains_vtp(folder / "c.vtp", s);
+  const pugi::xml_node piece = load(folder / "c.vtp");
+  EXPECT_EQ(piece.attribute("NumberOfLines").as_int(), 3);
+  const std::vector<double> ends = array<double>(piece.child("Points"), "position");
+  ASSERT_EQ(ends.size(), 18u);
+  const double x[] = {0.2, 0.05, 2.05, 1.9, 1.9, 1.41};
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR_BECAUSE(ends[3 * k], x[k], 1e-15, "round-off of one sum");
+  EXPECT_EQ(array<double>(piece.child("PointData"), "normal_force"), (std::vector<double>{3, 3, 3, 3, 4, 4}));
 }
 
 /// Two opposite forces on a grain: sigma = f (r - u/2) 2 / V along one axis, p a third of it.

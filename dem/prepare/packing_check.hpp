@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "dem/state/snapshot.hpp"
+
+#include <string>
+#include <vector>
+
+namespace isostat
+{
+/// What tells at a glance whether a packing is what its file was meant to say.
+struct PackingFigures
+{
+  std::size_t n_grains = 0;
+  double d50 = 0, smallest = 0, largest = 0; ///< diameters, m; d50 by volume
+  Vec3 edges = Vec3::Zero();                 ///< lengths of the edges of box or cell, m
+  double void_ratio = 0;                     ///< from the volume of the domain; above -1
+  double overlap = 0;                        ///< largest, over the smaller radius [-]
+  std::uint32_t first = 0, second = 0;       ///< ids of the grains that have it
+  std::size_t n_deep = 0;                    ///< pairs that overlap by more than too_deep
+  double beyond_wall = 0;                    ///< largest part of a radius that stands beyond a wall [-]
+  std::uint32_t outermost = 0;               ///< id of that grain
+  bool overlaps_known = true; ///< false: the cell is narrower than two of its grains, so that pairs meet twice
+};
+
+/// Overlap, of the smaller radius, above which a packing is no state that contact laws know.
+inline constexpr double too_deep = 0.3;
+
+/// tested: tests/dem/prepare/packing_check_test.cpp
+PackingFigures packing_figures(const Snapshot &snapshot);
+
+/// The figures as lines of text with a name each, indented by two.
+std::string figures_text(const PackingFigures &figures, const Snapshot &snapshot);
+
+/// Guards whatever another program has written: refuses what no packing of soil is.
+/// @param file    for messages
+/// @param remedy  how lengths are scaled, such as "give --length-unit mm"; for messages
+/// @return warnings, whole sentences: overlaps above 5 % of a radius, a box much wider than what it holds
+/// @throws InputError  radii above 5 cm or below 1 um, overlaps above 30 % of a radius, spheres that stand beyond a
+///         wall by more than that
+/// tested: tests/dem/prepare/packing_check_test.cpp, tests/apps/convert_test.py
+std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const std::string &remedy);
+} // namespace isostat
