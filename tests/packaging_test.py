@@ -35,7 +35,8 @@ class Recipes(unittest.TestCase):
 
     def test_spack(self):
         tree = ast.parse((PACKAGING / "spack/package.py").read_text(encoding="utf-8"))
-        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and ast.unparse(node.func) == "depends_on"]
+        calls = [node for node in ast.walk(tree)
+                 if isinstance(node, ast.Call) and ast.unparse(node.func) == "depends_on"]
         found = {re.match(r"[\w-]+", call.args[0].value)[0] for call in calls if isinstance(call.args[0], ast.Constant)}
         self.assertLessEqual({spack for spack, _ in NAMES.values()} | set(NO_CMAKE_FILE), found)
 
@@ -44,7 +45,8 @@ class Recipes(unittest.TestCase):
         host = re.search(r"\n  host:\n((?:    - .*\n)+)", text)[1]
         found = set(re.findall(r'- "?([\w-]+)', host))
         self.assertLessEqual({conda for _, conda in NAMES.values() if conda} | set(NO_CMAKE_FILE.values()), found)
-        version = re.search(r"project\(isostat VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
+        cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+        version = re.search(r"project\(isostat VERSION ([0-9.]+)", cmake)
         self.assertIn(f'version: "{version[1]}"', text)
         try:
             import yaml
