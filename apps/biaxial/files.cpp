@@ -4,6 +4,7 @@
 #include "apps/deposit/instant.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/files/vtk_xml.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/measure/summary.hpp"
 
 #include <cmath>
@@ -112,6 +113,7 @@ void BlockFiles::write_h5() const
 {
   auto file = hdf5::File::create(folder_ / "maps.h5");
   hdf5::Group root = file.root();
+  set_format(root, "isostat-block-maps", 1);
   std::vector<double> x, z;
   for (const auto &place : space_.position)
     {

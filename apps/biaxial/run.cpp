@@ -84,7 +84,7 @@ private:
     open_result_folder(request_.folder, request_.use);
     write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                      {{"threads", std::to_string(request_.threads)}});
-    history_ = std::make_unique<Recorder>(request_.folder, columns);
+    history_ = std::make_unique<Recorder>(request_.folder, columns, 0, to_toml(scene_));
     files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
   }
 

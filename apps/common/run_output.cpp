@@ -3,7 +3,6 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
-#include "base/files/hdf5.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +37,8 @@ bool PreparationOutput::after_step(const Assembly &assembly, const DriveState &,
 RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::string, double> &specimen, bool quiet,
                      const Checkpoint *resumed)
     : folder_(std::move(folder)), scene_(scene), scene_text_(to_toml(scene)), specimen_(specimen),
-      written_(resumed ? resumed->written : WrittenSoFar{}), recorder_(folder_, history_columns(scene), written_.rows),
+      written_(resumed ? resumed->written : WrittenSoFar{}),
+      recorder_(folder_, history_columns(scene), written_.rows, scene_text_),
       grains_(folder_ / "grains.pvd", scene.output.paraview ? written_.snapshots : 0),
       chains_(folder_ / "force_chains.pvd", scene.output.paraview ? written_.snapshots : 0), progress_(quiet)
 {
@@ -63,10 +63,7 @@ void RunOutput::record(const Assembly &assembly, const DriveState &state, const 
 void RunOutput::store_snapshot(const Snapshot &snapshot)
 {
   const std::string name = fmt::format("{:04d}", written_.snapshots);
-  hdf5::File file = hdf5::File::create(folder_ / "snapshots" / ("snapshot_" + name + ".h5"));
-  file.root().set_attribute("format", std::string("isostat-snapshot"));
-  write_snapshot(file.root().create_group("snapshot"), snapshot);
-  file.commit();
+  write_snapshot_file(folder_ / "snapshots" / ("snapshot_" + name + ".h5"), snapshot);
   if (scene_.output.paraview)
     {
       write_grains_vtp(folder_ / "paraview" / ("grains_" + name + ".vtp"), snapshot);

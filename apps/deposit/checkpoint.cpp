@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/record/checkpoint_folder.hpp"
+#include "base/record/file_format.hpp"
 
 #include <fmt/format.h>
 
@@ -71,8 +72,7 @@ const std::vector<double> &ColumnCheckpoint::vector(const std::string &name) con
 void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint)
 {
   write_newest(folder, [&](hdf5::Group root) {
-    set_format(root, format_name, schema_version);
-    root.set_attribute("scene", checkpoint.scene);
+    set_format(root, format_name, schema_version, checkpoint.scene);
     root.set_attribute("step", checkpoint.state.step);
     hdf5::write_bytes(root, "material", checkpoint.state.material);
     put(root, "state_", checkpoint.state);

@@ -165,9 +165,7 @@ void GrainFiles::write_packings(double time)
       {
         const Snapshot snapshot = element->snapshot();
         const fs::path stem = folder_ / "grains" / fmt::format("d{}_{:05d}", k, n_snapshots_);
-        auto file = hdf5::File::create(stem.string() + ".h5");
-        write_snapshot(file.root(), snapshot);
-        file.commit();
+        write_snapshot_file(stem.string() + ".h5", snapshot);
         write_grains_vtp(stem.string() + ".vtp", snapshot);
       }
   for (std::size_t k = 0; k < pictures_.size(); ++k)

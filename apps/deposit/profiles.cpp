@@ -4,11 +4,18 @@
 
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
+#include "base/record/file_format.hpp"
 
 #include <fmt/format.h>
 
 namespace isostat
 {
+namespace
+{
+const std::string format_name = "isostat-column-profiles";
+constexpr std::uint64_t schema_version = 1;
+} // namespace
+
 ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
                          std::size_t resume_rows)
     : path_(std::move(path)), depths_(std::move(depths))
@@ -17,6 +24,7 @@ ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths,
     load(resume_rows);
   hdf5::File file = hdf5::File::create(path_);
   hdf5::Group root = file.root();
+  set_format(root, format_name, schema_version);
   const std::size_t m = depths_.size(), chunk = std::max<std::size_t>(1, 4096 / m);
   root.write("depth", std::span<const double>(depths_), "m");
   root.write("sigma_v0", std::span<const double>(sigma_v0), "Pa");
@@ -33,6 +41,7 @@ void ProfileFile::load(std::size_t rows)
 {
   const hdf5::File file = hdf5::File::open(path_);
   const hdf5::Group root = file.root();
+  refuse_newer(root, schema_version);
   const std::size_t m = depths_.size();
   if (root.read<double>("depth") != depths_)
     throw InputError(fmt::format("{}: has other depths; resume with the scene of the first run", path_.string()));

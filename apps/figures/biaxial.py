@@ -154,7 +154,9 @@ def band(block):
         axes[0].legend(loc="lower right")
     for panel, (field, low, bar, label) in zip(axes[1:], maps):
         image = block.show(panel, field, low, np.quantile(field, 0.99), label)
+        panel.set_xlabel("$x$ (m)")
         figure.colorbar(image, ax=panel, label=bar, shrink=0.8)
+    axes[1].set_ylabel("$z$ (m)")
     return figure
 
 
@@ -165,7 +167,9 @@ def grain_maps(block):
     for panel, name, label in zip(axes, ("void_ratio", "redundancy"), ("Void ratio $e$", "Redundancy index $I_R$")):
         field = block.maps[name][-1]
         image = block.show(panel, field, *np.quantile(field, [0.01, 0.99]), f"{100 * block.strain[-1]:.2g} %")
+        panel.set_xlabel("$x$ (m)")
         figure.colorbar(image, ax=panel, label=label, shrink=0.8)
+    axes[0].set_ylabel("$z$ (m)")
     return figure
 
 

@@ -18,6 +18,7 @@
 #include "base/files/hdf5.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_file.hpp"
 
@@ -74,9 +75,7 @@ std::vector<fs::path> snapshot_files(const fs::path &results)
 /// @throws InputError  missing, truncated or not HDF5; HDF5 of another program
 Snapshot read_stored_snapshot(const fs::path &path)
 {
-  const hdf5::File file = hdf5::File::open(path);
-  const hdf5::Group root = file.root();
-  const std::string format = root.has_attribute("format") ? root.attribute<std::string>("format") : "";
+  const std::string format = format_of(hdf5::File::open(path).root());
   if (format == "isostat-specimen")
     return read_specimen(path).state;
   if (format != "isostat-snapshot")
@@ -84,7 +83,7 @@ Snapshot read_stored_snapshot(const fs::path &path)
         "{}: {}, expected format = \"isostat-snapshot\" or \"isostat-specimen\". {}.", path.string(),
         format.empty() ? std::string("HDF5, but without the attribute format") : fmt::format("format = \"{}\"", format),
         remedy));
-  return read_snapshot(root.group("snapshot"));
+  return read_snapshot_file(path);
 }
 /// All tables of a series, grown snapshot by snapshot.
 class Tables

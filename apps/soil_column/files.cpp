@@ -31,7 +31,7 @@ ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const D
 template <int dim>
 void ColumnFiles<dim>::open(const ColumnCheckpoint *resumed)
 {
-  recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"));
+  recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"), scene_text_);
   if (line_)
     profiles_ =
         std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,

@@ -43,22 +43,4 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
   throw InputError(fmt::format("{}: no checkpoint to resume from{}", folder.string(),
                                problems.empty() ? ": none was written. Start anew with --overwrite." : problems));
 }
-
-void set_format(hdf5::Group root, const std::string &format, std::uint64_t version)
-{
-  root.set_attribute("format", format);
-  root.set_attribute("schema_version", version);
-}
-
-void expect_format(const hdf5::Group &root, const std::string &format, std::uint64_t version, const std::string &kind,
-                   const std::string &remedy)
-{
-  const std::string path = root.file_path().string();
-  if (!root.has_attribute("format") || root.attribute<std::string>("format") != format)
-    throw InputError(fmt::format("{}: not a {} of Isostat (no attribute format = \"{}\")", path, kind, format));
-  const auto found = root.attribute<std::uint64_t>("schema_version");
-  if (found != version)
-    throw InputError(fmt::format("{}: {} schema {} was written by another version; this one reads {}. {}", path, kind,
-                                 found, version, remedy));
-}
 } // namespace isostat

@@ -17,12 +17,4 @@ void write_newest(const std::filesystem::path &folder, const std::function<void(
 /// @throws InputError when there is none, naming what is wrong with each
 /// tested: tests/dem/io/checkpoint_test.cpp
 void read_newest(const std::filesystem::path &folder, const std::function<void(const std::filesystem::path &)> &read);
-
-/// Marks a file as one of a format, and refuses one that is not.
-/// @param kind, remedy  what the file is, and what to do with one of another version
-/// @throws InputError from expect_format()
-void set_format(hdf5::Group root, const std::string &format, std::uint64_t version);
-void expect_format(const hdf5::Group &root, const std::string &format, std::uint64_t version,
-                   const std::string &kind = "checkpoint",
-                   const std::string &remedy = "Finish the run with the version that began it.");
 } // namespace isostat

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/file_format.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -17,7 +18,14 @@ namespace isostat
 {
 namespace fs = std::filesystem;
 
-Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows)
+namespace
+{
+const std::string format_name = "isostat-history";
+constexpr std::uint64_t schema_version = 1;
+} // namespace
+
+Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows,
+                   const std::string &scene)
     : csv_(folder / "history.csv"), hdf5_(folder / "history.h5"), columns_(std::move(columns)), n_rows_(resume_rows)
 {
   assert(!columns_.empty());
@@ -30,7 +38,7 @@ Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, st
     throw RunFailure(
         fmt::format("{}: cannot make the folder: {}; choose another output folder", folder.string(), error.message()));
   if (resume_rows == 0)
-    start_anew();
+    start_anew(scene);
   else
     resume();
 }
@@ -53,11 +61,12 @@ std::string Recorder::header() const
   return line + "\n";
 }
 
-void Recorder::start_anew()
+void Recorder::start_anew(const std::string &scene)
 {
   write_replacing(csv_, header());
   csv_bytes_ = header().size();
   hdf5::File file = hdf5::File::create(hdf5_);
+  set_format(file.root(), format_name, schema_version, scene);
   hdf5::Group series = file.root().create_group("history");
   for (const RecordColumn &column : columns_)
     series.create_series(column.name, column.unit.empty() ? "-" : column.unit);
@@ -100,6 +109,7 @@ void Recorder::resume()
 void Recorder::resume_hdf5()
 {
   hdf5::File file = hdf5::File::update(hdf5_);
+  refuse_newer(file.root(), schema_version);
   if (!file.root().has("history"))
     throw InputError(fmt::format("{}: no group \"history\"; restore the file or start the run anew", hdf5_.string()));
   hdf5::Group series = file.root().group("history");

@@ -19,8 +19,8 @@ struct RecordColumn
 /// The time series of a run, one row at a time, in two forms in the run folder:
 ///
 ///     history.csv   header `name (unit)`, 10 significant digits; rows are added behind, always whole lines
-///     history.h5    group `history`, one dataset per column with all digits and attribute `unit`; written aside,
-///     renamed
+///     history.h5    group `history`, one dataset per column with all digits and attribute `unit`; format
+///                   "isostat-history"; written aside, renamed
 ///
 /// Rows reach the CSV every `rows_per_line_flush` rows and at flush(); both files agree after flush(). Call flush()
 /// before a checkpoint is written and store n_rows() in it: a resumed run then continues both files as if never
@@ -36,7 +36,9 @@ public:
   /// @param resume_rows  0: start anew, replacing what is there. Otherwise both files are cut to their first
   /// resume_rows
   ///                     rows; InputError if they hold fewer, or other columns
-  Recorder(const std::filesystem::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0);
+  /// @param scene  kept as attribute of history.h5, see file_format.hpp
+  Recorder(const std::filesystem::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0,
+           const std::string &scene = "");
   /// Flushes; a failure is lost here, so call flush() where it matters.
   ~Recorder();
   Recorder(const Recorder &) = delete;
@@ -50,7 +52,7 @@ public:
   std::size_t n_rows() const { return n_rows_; }
 
 private:
-  void start_anew();
+  void start_anew(const std::string &scene);
   void resume();
   std::uintmax_t bytes_of_lines() const; ///< of header and first n_rows_ rows in the CSV
   void resume_hdf5();

@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/hdf5_fields.hpp"
-#include "base/record/checkpoint_folder.hpp"
+#include "base/record/file_format.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 
 #include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 namespace isostat
@@ -32,8 +33,7 @@ Checkpoint read_file(const std::filesystem::path &path)
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint)
 {
   write_newest(folder, [&](hdf5::Group root) {
-    set_format(root, format_name, schema_version);
-    root.set_attribute("scene", checkpoint.scene);
+    set_format(root, format_name, schema_version, checkpoint.scene);
     write_snapshot(root.create_group("state"), checkpoint.state);
     hdf5::write_field(root, "drive", checkpoint.drive);
     hdf5::write_field(root, "written", checkpoint.written);

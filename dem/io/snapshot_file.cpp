@@ -2,6 +2,7 @@
 #include "dem/io/snapshot_file.hpp"
 
 #include "base/error.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/contact/law_parameters.hpp"
 
 #include <algorithm>
@@ -15,6 +16,9 @@ namespace isostat
 namespace
 {
 using hdf5::Group;
+
+const std::string format_name = "isostat-snapshot";
+constexpr std::uint64_t schema_version = 1;
 
 /// One field of all rows as a column, whole numbers with 32 bits, and back.
 template <typename Row, typename T>
@@ -61,6 +65,15 @@ Law read_law(const Group &group)
   return law;
 }
 
+/// One over the fourth number of each record: masses and moments of inertia.
+std::vector<double> inverses(const AlignedVector<double> &records, std::size_t n_grains)
+{
+  std::vector<double> values(n_grains);
+  for (std::size_t i = 0; i < n_grains; ++i)
+    values[i] = 1 / records[4 * i + 3];
+  return values;
+}
+
 void write_grains(Group group, const Packing &grains)
 {
   const std::size_t n = 4 * grains.n_grains();
@@ -74,6 +87,8 @@ void write_grains(Group group, const Packing &grains)
   records("velocity", grains.velocity, "m/s, 1/kg", "vx vy vz 1/mass");
   records("spin", grains.spin, "rad/s, 1/(kg m2)", "wx wy wz 1/inertia");
   group.write("id", grains.id, "-");
+  group.write("mass", inverses(grains.velocity, grains.n_grains()), "kg");
+  group.write("inertia", inverses(grains.spin, grains.n_grains()), "kg m2");
 }
 
 Packing read_grains(const Group &group, double density)
@@ -238,5 +253,21 @@ Snapshot read_snapshot(const Group &group)
   if (group.has("cell"))
     snapshot.cell = read_cell(group.group("cell"));
   return snapshot;
+}
+
+void write_snapshot_file(const std::filesystem::path &path, const Snapshot &snapshot)
+{
+  hdf5::File file = hdf5::File::create(path);
+  set_format(file.root(), format_name, schema_version);
+  write_snapshot(file.root().create_group("snapshot"), snapshot);
+  file.commit();
+}
+
+Snapshot read_snapshot_file(const std::filesystem::path &path)
+{
+  const hdf5::File file = hdf5::File::open(path);
+  const Group root = file.root();
+  refuse_newer(root, schema_version);
+  return read_snapshot(format_of(root).empty() && root.has("grains") ? root : root.group("snapshot"));
 }
 } // namespace isostat

@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/hdf5_fields.hpp"
-#include "base/record/checkpoint_folder.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <cmath>
@@ -86,11 +86,6 @@ std::string fault(const Snapshot &state)
 }
 } // namespace
 
-std::string format_of(const hdf5::Group &root)
-{
-  return root.has_attribute("format") ? root.attribute<std::string>("format") : "";
-}
-
 void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
                       const std::string &remedy)
 {
@@ -100,6 +95,7 @@ void expect_specimens(const hdf5::Group &root, const std::string &format, std::u
                                  found.empty() ? "HDF5, but without the attribute format; another program wrote it"
                                                : fmt::format("format = \"{}\"", found),
                                  format, remedy));
+  refuse_newer(root, version);
   const auto found_version = root.attribute<std::uint64_t>("schema_version");
   if (found_version != version)
     throw InputError(

@@ -19,7 +19,7 @@ struct Specimen
 
 constexpr std::uint64_t specimen_schema_version = 1;
 
-/// Writes an HDF5 file: root attributes format = "isostat-specimen" and schema_version, groups `provenance` and
+/// Writes an HDF5 file: root attributes of file_format.hpp with format = "isostat-specimen", groups `provenance` and
 /// `numbers` (one attribute each entry), group `snapshot` as in snapshot_file.hpp. Written aside and renamed. Throws
 /// RunFailure if the state is one that read_specimen would refuse, or the file cannot be written.
 /// @param path  its folder must exist
@@ -36,8 +36,6 @@ Specimen read_specimen(const std::filesystem::path &path);
 void write_specimen(hdf5::Group group, const Specimen &specimen);
 Specimen read_specimen(const hdf5::Group &group);
 
-/// What a file calls itself; empty where it does not say.
-std::string format_of(const hdf5::Group &root);
 /// @param remedy  what to give instead
 /// @throws InputError  a file of another format or version
 void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,

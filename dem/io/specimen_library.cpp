@@ -2,7 +2,7 @@
 #include "dem/io/specimen_library.hpp"
 
 #include "base/error.hpp"
-#include "base/record/checkpoint_folder.hpp"
+#include "base/record/file_format.hpp"
 
 #include <algorithm>
 #include <cctype>

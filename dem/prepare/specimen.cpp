@@ -11,6 +11,7 @@
 #include "dem/prepare/relative_density.hpp"
 #include "dem/prepare/space_filling.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <mutex>
@@ -171,6 +172,21 @@ Specimen import(const Scene &scene, RunObserver &observer)
   return specimen;
 }
 
+/// A friction left out is none: says so where the packing was made with more than the test will ever have.
+void note_friction(const Scene &scene, RunObserver &observer)
+{
+  double friction = scene.contact->friction;
+  for (const Stage &stage : scene.stages)
+    if (const auto *set = as<Friction>(stage))
+      friction = std::max(friction, set->friction);
+  const double made_with = scene.specimen.preparation_friction.value_or(0);
+  const auto degrees = [](double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; };
+  if (made_with > friction)
+    observer.event(fmt::format("warning: the packing is prepared with a friction of {:.4g} deg and tested with {:.4g} "
+                               "deg; give contact.friction the angle of the test, or prepare with less",
+                               degrees(made_with), degrees(friction)));
+}
+
 /// What the cache holds of the recipe; a damaged file is as good as none, since it is made anew.
 std::optional<Specimen> from_cache(const std::filesystem::path &path, const std::string &recipe, RunObserver &observer)
 {
@@ -212,6 +228,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       const std::lock_guard lock(hdf5_access);
       return import(scene, observer);
     }
+  note_friction(scene, observer);
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
   if (std::optional<Specimen> cached = from_cache(path, recipe, observer))

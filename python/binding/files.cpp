@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packings in and out.   tested: tests/python/snapshot_test.py
-#include "base/files/hdf5.hpp"
 #include "base/units.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
@@ -14,11 +13,8 @@ namespace isostat::python
 {
 namespace
 {
-Snapshot read_stored(const std::string &path)
-{
-  const hdf5::File file = hdf5::File::open(path);
-  return read_snapshot(file.root().group("snapshot"));
-}
+Snapshot read_stored(const std::string &path) { return read_snapshot_file(path); }
+
 void warn(const std::vector<std::string> &notes)
 {
   for (const std::string &note : notes)

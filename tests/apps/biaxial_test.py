@@ -3,10 +3,14 @@
 """The program biaxial: an elastic block against its closed form, a weak element, a block of packings, refusals."""
 import json
 import os
+import pathlib
+import sys
 
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
+from figures.biaxial import Block, band, rate_maps, shear_maps  # noqa: E402  (the path comes first)
 from support import AppTest, main, tiny_scene
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
@@ -75,6 +79,13 @@ class Biaxial(AppTest):
             self.assert_close(maps["shear_strain"][-1], strain / (1 - nu), 1e-9, solved)
             self.assert_close(maps["q"][-1], modulus * strain / 2, 1e-9, solved)
             self.assertTrue((self.folder / "run/paraview/block_00001.vtu").exists())
+
+    def test_maps_have_labels(self):
+        self.assert_done(self.run_block(ELASTIC.format(degree=1)))
+        block = Block(self.folder / "run")
+        for draw in band, shear_maps, rate_maps:
+            panels = [axes for axes in draw(block).axes if axes.get_label() != "<colorbar>"]
+            self.assertEqual([axes.get_xlabel() == "" for axes in panels], [False] * len(panels), draw.__name__)
 
     def test_weak_element_shears_more(self):
         weak = ("weak.cells=1", "weak.column=1", "weak.row=2", "weak.factor=0.5")

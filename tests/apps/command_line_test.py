@@ -93,6 +93,15 @@ class SpecimenMistakes(AppTest):
         self.assertEqual(cached.stat().st_size, len(whole))
         self.assertEqual(*((self.folder / name / "history.csv").read_bytes() for name in ("made", "again")))
 
+    def test_friction_left_out(self):
+        text = tiny_scene(stages=CYCLIC.format(steps=10))
+        frictionless = "".join(line for line in text.splitlines(keepends=True)
+                               if not line.startswith(("friction", "rolling", "twisting")))
+        for name, scene in ("bare", frictionless), ("usual", text):
+            result = self.run_test(self.write(f"{name}.toml", scene), "-o", name)
+            self.assertEqual("prepared with a friction of 10 deg and tested with 0 deg" in result.stderr,
+                             name == "bare", result.stderr)
+
     def test_beside_the_scene(self):
         self.make_specimen()
         (self.folder / "scenes").mkdir()

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""docs/file_formats.md against the files that the programs write: every dataset with its unit and number of dimensions,
+every attribute, every column of history.csv stands in the section of its format."""
+import csv
+import pathlib
+import re
+
+import h5py
+
+from biaxial_test import ELASTIC
+from column_support import SCENES, settings
+from grain_column_test import GrainColumnTest
+from support import CYCLIC, main, tiny_scene
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/file_formats.md"
+ROOT = {"format", "schema_version", "units", "program", "program_version"}
+CELL = 'domain = "periodic-cell"\npreparation_friction = "10 deg"'
+SHEAR = '[[stage]]\nkind = "undrained-simple-shear"\nstrain = 0.02\nmax_steps = 500\n'
+
+
+def described():
+    """{section: {name: (shape, unit)}} of the tables of the page; the section is the first `name` of its heading."""
+    sections, here = {}, {}
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            name = re.search(r"`([^`]+)`", line)
+            here = sections.setdefault(name[1] if name else line[3:], {})
+        elif line.startswith("| `"):
+            names, shape, unit = (cell.strip() for cell in line.split("|")[1:4])
+            here.update({name: (shape, unit) for name in re.findall(r"`([^`]+)`", names)})
+    return sections
+
+
+def general(name):
+    """Names with numbers as the page has them: dK_gamma_xz, ENTRY/snapshot/..."""
+    name = re.sub(r"^(s\d{4}|i[0-9a-f]{16})(?=/|@|$)", "ENTRY", name)
+    return re.sub(r"(?<=history/)([dp])\d+_", r"\1K_", name)
+
+
+def packing_of(name):
+    """The name within a packing, or None."""
+    found = re.match(r"(?:ENTRY/)?(?:snapshot|state)(?:/|(?=@))(.+)", name)
+    return found and found[1]
+
+
+class FileFormats(GrainColumnTest):
+    def check(self, path, page):
+        with h5py.File(path) as file:
+            self.assertLessEqual(ROOT, set(file.attrs), path)
+            section = file.attrs["format"]
+            self.assertIn(section, page, f"{path}: its format is not in {PAGE.name}")
+            items = {"": file}
+            file.visititems(lambda name, item: items.__setitem__(name, item))
+            for name, item in items.items():
+                name = general(name)
+                if isinstance(item, h5py.Dataset):
+                    shape, unit = self.row(page, section, name, path)
+                    self.assertIn(item.attrs["unit"], unit.split(" or "), f"{path}: {name}")
+                    self.assertEqual(item.ndim, shape.count(",") + 1, f"{path}: {name} has the shape {item.shape}")
+                for attribute in set(item.attrs) - {"unit"} - (set() if name else ROOT | {"scene"}):
+                    self.row(page, section, f"{name}@{attribute}", path)
+
+    def row(self, page, section, name, path):
+        inner = packing_of(name)
+        table = page["packing"] if inner else page[section]
+        if "provenance@" in name or "numbers@" in name and "specimen" in section:
+            table, inner = page["isostat-specimen"], name.removeprefix("ENTRY/")
+        self.assertIn(inner or name, table, f"{path}: not in {PAGE.name}, section {section}")
+        return table[inner or name]
+
+    def test_every_item_is_listed(self):
+        page = described()
+        self.make_files()
+        files = [path for place in (self.folder, self.cache) for path in place.rglob("*.h5") if path.is_file()]
+        for path in files:
+            self.check(path, page)
+        formats = set()
+        for path in files:
+            with h5py.File(path) as file:
+                formats.add(file.attrs["format"])
+        self.assertEqual(formats, {name for name in page if name.startswith("isostat-")})
+        for path in self.folder.rglob("history.csv"):
+            with open(path, encoding="utf-8") as file:
+                for column in next(csv.reader(file)):
+                    name, unit = re.fullmatch(r"(\S+) \((.*)\)", column).groups()
+                    listed = page["isostat-history"][general("history/" + name)]
+                    self.assertIn(unit, listed[1].split(" or "), f"{path}: {name}")
+
+    def make_files(self):
+        every = "checkpoint = \"1e-9 min\"\nenergy = true"
+        for name, scene in (("box", tiny_scene(stages=CYCLIC.format(steps=600), output=every)),
+                            ("cell", tiny_scene(specimen=CELL, stages=SHEAR, output=every))):
+            self.assert_done(self.run_test(self.write(f"{name}.toml", scene), "-o", name, "-q"))
+        self.whole()
+        for name, change in (("terzaghi", {}), ("uniform_layer", {"analysis__duration": "0.1 s"})):
+            self.assert_done(self.run_column(SCENES / f"{name}.toml", "-o", name, "-q", *settings(**change)))
+        block = self.write("block.toml", ELASTIC.format(degree=1))
+        self.assert_done(self.run_app("biaxial", block, "-o", "block", "-q", "--no-figures"))
+
+
+if __name__ == "__main__":
+    main()
