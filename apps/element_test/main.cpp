@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// element_test SCENE: a true-triaxial element test on spheres in a rigid frictionless box, or that and simple shear in
+// element_test SCENE: a triaxial element test on spheres in a rigid frictionless box, or that and simple shear in
 // a periodic cell, from a scene file to figures.
 //
 //        | sigma_y              prepare   cloud -> isotropic compression -> friction -> balance   (or a file)
@@ -44,7 +44,7 @@ void run(const SceneOptions &options)
 constexpr SceneProgram element_test{
     .name = "element_test",
     .description =
-        "Element tests on spheres: true-triaxial and simple shear, drained, undrained monotonic, undrained cyclic",
+        "Element tests on spheres: triaxial and simple shear, drained, undrained monotonic, undrained cyclic",
     .first_scene = "apps/scenes/quick_cyclic_liquefies.toml",
     .scene_text = "scene file (TOML); see docs/scene_reference.md",
     .set_example = "motion.damping=0.3",

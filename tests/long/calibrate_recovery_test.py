@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""calibrate finds known parameters again: tests at a known angle of friction, rolling limit and modulus, on specimens
-of other seeds than those it is given. Not part of the usual tests: ctest --preset long, half an hour on two cores.
+"""calibrate finds known parameters again: drained tests at a known angle of friction, rolling limit and modulus, on
+specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, half an hour on two
+cores. The rolling limit misses its bound at present: docs/results/calibration.md.
 
 First a search over wide bounds with few specimens, then one around what it found with many. Specimens of 1,000 grains
-scatter: with these three curves one per curve tells friction to 0.7 deg, the rolling limit to 18 % and the modulus to
-9 % (standard deviations, from derivatives of the curves), and n of them to that over sqrt(n), the laboratory's
-included; without the undrained curve it is 0.9 deg, 24 % and 10 %. The rolling limit shows below some 0.3 only, where
-moments reach it, and the more the stiffer rolling is (alpha_r = 1 here; with 0.3 a limit of 0.35 and one of 1 have the
-same curves)."""
+scatter: with these two curves one per curve tells friction to 1.4 deg, the rolling limit to 27 % and the modulus to 7 %
+(standard deviations, from derivatives of the curves), and n of them to that over sqrt(n), the laboratory's included.
+The rolling limit shows below some 0.3 only, where moments reach it, and the more the stiffer rolling is (alpha_r = 1
+here; with 0.3 a limit of 0.35 and one of 1 have the same curves)."""
 import concurrent.futures
 import csv
 import json
@@ -29,12 +29,9 @@ ROLLING_STIFFNESS = 1.0
 START = {"contact.friction": 18.0, "contact.rolling.limit": 0.4, "contact.young": 0.4}
 WIDE = {"contact.friction": (10, 35), "contact.rolling.limit": (0.05, 0.8), "contact.young": (0.05, 1.5)}
 AROUND = {"contact.friction": (-4, 4), "contact.rolling.limit": (1 / 1.6, 1.6), "contact.young": (1 / 1.4, 1.4)}
-CURVES = {"dense": ("drained", 4), "loose": ("drained", 20), "loose_undrained": ("undrained", 20)}  # and preparation
-STAGES = {"drained": "drained", "undrained": "undrained-monotonic"}
-COLUMNS = {"drained": {"strain": "eps_1 (-)", "volume": "eps_v (-)", "axial": "sigma_1 (Pa)", "radial": "sigma_3 (Pa)"},
-           "undrained": {"strain": "eps_1 (-)", "p": "p' (Pa)", "q": "q (Pa)"}}
+CURVES = {"dense": 4, "loose": 20}  # preparation friction, deg
 GRAINS, STRAIN, RATE = 1000, 0.08, 4e-3
-LABORATORY_SEEDS = range(101, 221)  # those of the trials begin with 1
+LABORATORY_SEEDS = range(101, 181)  # those of the trials begin with 1
 FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 40, "trials": 14, "design": 0}
 CORES = len(os.sched_getaffinity(0))
 
@@ -62,11 +59,11 @@ UNITS = {"contact.friction": "deg", "contact.rolling.limit": "", "contact.young"
 CURVE = """[[curve]]
 name = "{name}"
 file = "{name}.csv"
-test = "{test}"
+test = "drained"
 preparation_friction = "{preparation} deg"
 strain_end = {strain}
 strains = "logarithmic"
-columns = {{ {columns} }}
+columns = {{ strain = "eps_1 (-)", volume = "eps_v (-)", axial = "sigma_1 (Pa)", radial = "sigma_3 (Pa)" }}
 """
 
 
@@ -79,10 +76,8 @@ def plan_text(scene, start, bounds, sizes):
     parameters = "".join(PARAMETER.format(key=key, low=text(key, bounds[key][0]), high=text(key, bounds[key][1]),
                                           start=text(key, start[key]),
                                           scale="linear" if key == "contact.friction" else "log") for key in TRUTH)
-    columns = {test: ", ".join(f'{key} = "{column}"' for key, column in of_test.items())
-               for test, of_test in COLUMNS.items()}
-    curves = "".join(CURVE.format(name=name, test=test, preparation=preparation, strain=STRAIN, columns=columns[test])
-                     for name, (test, preparation) in CURVES.items())
+    curves = "".join(CURVE.format(name=name, preparation=preparation, strain=STRAIN)
+                     for name, preparation in CURVES.items())
     return PLAN.format(scene=scene, grains=GRAINS, rate=RATE, **sizes) + parameters + curves
 
 
@@ -93,14 +88,13 @@ def around(found):
             **{key: (found[key] * AROUND[key][0], found[key] * AROUND[key][1]) for key in others}}
 
 
-def run_one(folder, name, seed):
-    test, preparation = CURVES[name]
+def run_one(folder, name, preparation, seed):
     settings = {"grading.grains": GRAINS, "grading.cloud_edge": f"{10 * (GRAINS / 10000) ** (1 / 3)} mm",
                 "grading.seed": seed, "contact.friction": f"{TRUTH['contact.friction']} deg",
                 "contact.rolling.limit": TRUTH["contact.rolling.limit"],
                 "contact.rolling.stiffness": ROLLING_STIFFNESS, "contact.young": f"{TRUTH['contact.young']} GPa",
-                "specimen.preparation_friction": f"{preparation} deg", "stage.0.kind": STAGES[test],
-                "stage.0.strain": STRAIN, "motion.inertial_number": RATE}
+                "specimen.preparation_friction": f"{preparation} deg", "stage.0.strain": STRAIN,
+                "motion.inertial_number": RATE}
     out = folder / "truth" / f"{name}_{seed}"
     subprocess.run([BINARIES / "element_test", SCENE, "-o", out, "--threads", "1", "--no-figures", "--quiet",
                     *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))],
@@ -110,17 +104,17 @@ def run_one(folder, name, seed):
     eps_x, strain, eps_z, p, q = (np.array([float(row[column]) for row in rows]) for column in
                                   ("eps_x (-)", "eps_y (-)", "eps_z (-)", "p (Pa)", "q (Pa)"))
     grid = STRAIN * np.linspace(0, 1, 61) ** 2
-    columns = (strain, eps_x + strain + eps_z, p + 2 * q / 3, p - q / 3) if test == "drained" else (strain, p, q)
-    return [np.interp(grid, strain, column) for column in columns]
+    return [np.interp(grid, strain, y) for y in (strain, eps_x + strain + eps_z, p + 2 * q / 3, p - q / 3)]
 
 
 def write_laboratory(folder):
     """The mean over many specimens, as the laboratory would tell it."""
     with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
-        for name, (test, _) in CURVES.items():
-            curves = pool.map(lambda seed: run_one(folder, name, seed), LABORATORY_SEEDS)
-            np.savetxt(folder / f"{name}.csv", np.mean(list(curves), axis=0).T, delimiter=",", fmt="%.9g", comments="",
-                       header=",".join(COLUMNS[test].values()))
+        for name, preparation in CURVES.items():
+            curves = pool.map(lambda seed: run_one(folder, name, preparation, seed), LABORATORY_SEEDS)
+            mean = np.mean(list(curves), axis=0)
+            np.savetxt(folder / f"{name}.csv", mean.T, delimiter=",", fmt="%.9g", comments="",
+                       header="eps_1 (-),eps_v (-),sigma_1 (Pa),sigma_3 (Pa)")
 
 
 class Recovery(unittest.TestCase):
