@@ -132,8 +132,8 @@ def densest_liquefying(table):
 
 
 def title_of(rows):
-    return (f"{rows.rows[0]['specimen']}, {PACE_NAMES[rows.rows[0]['pace']]}, n = {rows['seeds'][0]:.0f} seeds. Bands: "
-            f"range within the cycles to the onset, standard deviation behind it")
+    return (f"{rows.rows[0]['specimen']}, {PACE_NAMES[rows.rows[0]['pace']]}, n = {rows['seeds'][0]:.0f} seeds\n"
+            f"Bands: range within the cycles to the onset, standard deviation behind it")
 
 
 def phase_axis(axes, rows):
@@ -239,11 +239,11 @@ def drained(table, _):
     return figure
 
 
-@of_tables("cyclic_tests")
+@of_tables("cyclic_tests", "resistance")
 def resistance(table, folder):
     """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
     table = table.where(pace=plan.DEFAULT)
-    fits = Table(folder / "resistance.csv") if (folder / "resistance.csv").exists() else None
+    fits = Table(folder / "resistance.csv")
     figure, (row,) = panels(1, 2, sharey=True)
     colours = (RED, GREEN, BLUE)
     for panel, labels, names in (
@@ -254,7 +254,7 @@ def resistance(table, folder):
             rows = table.where(specimen=label)
             if rows:
                 panel.plot(rows["cycles"], rows["q_amp/(2 p0')"], "o", color=colour, markersize=4, label=name)
-            fit = fits and fits.where(specimen=label)
+            fit = fits.where(specimen=label)
             if fit:
                 cycles = np.nanquantile(rows["cycles"], (0, 1))
                 law = fit["CSR at 15 cycles"][0] * (cycles / REFERENCE)**-fit["b"][0]

@@ -92,8 +92,8 @@ class Results:
             axial, radial = h.p + 2 * h.q / 3, h.p - h.q / 3
             rows.append({**identity(run, h), "laboratory test": "",
                          **states.drained_numbers(h.eps_y, volume, axial, radial)})
-        end = max((h.eps_y[-1] for _, h in self.of("drained")), default=1)
-        for test in (test.until(end) for test in lab.drained_tests()):
+        end = max((h.eps_y[-1] for _, h in self.of("drained")), default=0)
+        for test in (test.until(end) for test in lab.drained_tests() if rows):
             rows.append({"specimen": f"laboratory, {test.pressure:g} kPa", "e": test.void_ratio,
                          "D_r (limits of its scene)": test.relative_density, "laboratory test": test.name,
                          **states.drained_numbers(test.strain, test.volume_strain, test.axial, test.radial)})
