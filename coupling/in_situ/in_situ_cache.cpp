@@ -3,11 +3,15 @@
 
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
+#include "base/record/file_format.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
+#include <fstream>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace isostat
@@ -31,6 +35,35 @@ Specimen described(const InSituState &state)
                       {"vertical_stress_Pa", stress(1, 1)},
                       {"K0", 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1)}};
   return specimen;
+}
+
+/// Whether a file of HDF5 that may have been a library cannot be opened, or lacks entries in part.
+bool is_damaged(const std::filesystem::path &path)
+{
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  std::string start(signature.size(), ' ');
+  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start != signature)
+    return false;
+  try
+    {
+      if (!is_specimen_library(path))
+        return false;
+    }
+  catch (const InputError &)
+    {
+      return true;
+    }
+  refuse_newer(hdf5::File::open(path).root(), library_schema_version);
+  try
+    {
+      list_library(path);
+      return false;
+    }
+  catch (const InputError &)
+    {
+      return true;
+    }
 }
 } // namespace
 
@@ -60,7 +93,7 @@ void append_states(std::vector<InSituState> &states, std::span<const std::byte> 
 
 InSituCache::InSituCache(std::filesystem::path path) : path_(std::move(path))
 {
-  if (!path_.empty() && std::filesystem::exists(path_))
+  if (!path_.empty() && std::filesystem::exists(path_) && !is_damaged(path_))
     entries_ = list_library(path_);
 }
 
@@ -78,6 +111,12 @@ void InSituCache::add(const std::vector<InSituState> &states) const
 {
   if (path_.empty() || states.empty())
     return;
+  if (std::filesystem::exists(path_) && is_damaged(path_))
+    {
+      const std::string aside = path_.string() + ".damaged";
+      std::filesystem::rename(path_, aside);
+      fmt::print(stderr, "states in situ were made anew, because their cache was damaged; it is kept as {}\n", aside);
+    }
   std::set<std::string> taken;
   if (std::filesystem::exists(path_)) // as it is now, another program may have added something
     for (const LibraryEntry &e : list_library(path_))

@@ -26,11 +26,13 @@ void append_states(std::vector<InSituState> &states, std::span<const std::byte> 
 class InSituCache
 {
 public:
-  /// @param path  need not exist; empty: nothing is kept     @throws InputError  not a specimen library
+  /// @param path  need not exist; empty: nothing is kept. A damaged one counts as empty.
+  /// @throws InputError  another kind of file, or newer than the program
   explicit InSituCache(std::filesystem::path path);
 
   std::optional<Snapshot> find(const std::string &recipe) const;
-  /// Adds what is not there yet, aside and renamed.   @throws RunFailure  cannot be written: the file is as before
+  /// Adds what is not there yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
+  /// stderr says so.   @throws RunFailure  cannot be written: the file is as before
   void add(const std::vector<InSituState> &states) const;
 
 private:

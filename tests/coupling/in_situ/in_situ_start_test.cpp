@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/in_situ/in_situ_start.hpp"
 
+#include "base/error.hpp"
 #include "tests/coupling/rve_column.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -56,5 +57,26 @@ TEST_F(Start, WhatTheCacheHoldsIsNotPreparedAgain)
   EXPECT_TRUE(second.prepared().empty());
   for (std::size_t id : {3, 5, 7})
     EXPECT_EQ(second.specimen(id).grains.position, first.specimen(id).grains.position);
+}
+
+TEST_F(Start, ADamagedCacheIsMadeAnew)
+{
+  const std::filesystem::path path = folder / "cache.h5";
+  const std::vector<InSituState> prepared = start(InSituCache("")).prepared();
+  InSituCache(path).add(prepared);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  const InSituCache damaged(path);
+  EXPECT_EQ(start(damaged).prepared().size(), 2u);
+  damaged.add(prepared);
+  EXPECT_TRUE(std::filesystem::exists(folder / "cache.h5.damaged"));
+  EXPECT_TRUE(start(InSituCache(path)).prepared().empty());
+}
+
+TEST_F(Start, AFileOfAnotherKindIsNoDamagedCache)
+{
+  const std::filesystem::path path = folder / "notes.txt";
+  put(path, "precious");
+  EXPECT_THROW(InSituCache cache(path), InputError);
+  EXPECT_EQ(get(path), "precious");
 }
 } // namespace isostat
