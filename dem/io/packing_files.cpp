@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/file_format.hpp"
 #include "dem/io/lammps.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
