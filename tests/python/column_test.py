@@ -5,6 +5,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -124,6 +125,20 @@ class ColumnTest(ToleranceTest):
             peaks.append(np.max(np.abs(run.history["surface_ux"])))
         self.assertGreater(peaks[1] / peaks[0], 5.5)
         self.assertTrue(run.draw("fig_motions"))
+
+    def test_signals_stay_those_of_the_interpreter(self):
+        """PETSc would leave the handlers of the system: no BrokenPipeError, no faulthandler. In a fresh interpreter."""
+        program = ("import faulthandler, pathlib, sys; from isostat import column\n"
+                   "def masks():\n"
+                   "    words = pathlib.Path('/proc/self/status').read_text().split()\n"
+                   "    return [int(words[words.index(k) + 1], 16) % 2**31 for k in ('SigCgt:', 'SigIgn:')]\n"
+                   "faulthandler.enable(); before = masks()\n"
+                   "column.run(column.ColumnScene(sys.argv[1]), sys.argv[2])\n"
+                   "print(before, masks(), before == masks(), sep='; ')")
+        scene, _ = self.run_program()
+        result = subprocess.run([sys.executable, "-c", program, scene, self.folder / "fresh"], capture_output=True,
+                                text=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, check=True)
+        self.assertTrue(result.stdout.strip().endswith("True"), result.stdout)
 
     def test_interrupted_and_resumed_to_the_bit(self):
         whole = self.run_with(Hyperbolic(), "whole")
