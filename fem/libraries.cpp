@@ -5,13 +5,11 @@
 
 namespace isostat
 {
-/// PETSc keeps the addresses of its arguments, so they live as long as it does. It leaves handlers of signals alone:
-/// they are those of the program, or of the Python interpreter that runs a column.
+/// PETSc keeps the addresses of its arguments, so they live as long as it does.
 struct Libraries::Session
 {
-  char name[8] = "isostat", no_handlers[19] = "-no_signal_handler";
-  char *arguments[3] = {name, no_handlers, nullptr}, **first = arguments;
-  int n_arguments = 2;
+  char name[8] = "isostat", *arguments[2] = {name, nullptr}, **first = arguments;
+  int n_arguments = 1;
   dealii::Utilities::MPI::MPI_InitFinalize libraries{n_arguments, first, 1};
 };
 

@@ -3,6 +3,7 @@
 """Runs of element_test that are stopped, killed, resumed, or watched more or less closely go on to the same bits."""
 import pathlib
 import random
+import re
 import signal
 import time
 
@@ -45,8 +46,20 @@ class Resume(AppTest):
             arguments = [self.scene, "-o", "parts", *more, "--resume"]
         self.assertEqual(codes[0], wanted_code)
         if codes[-1] != 0:
-            self.assert_done(self.run_test(*arguments))
+            result = self.run_test(*arguments)
+            self.assert_done(result)
+            if "--resume" in arguments:
+                self.check_speed(result.stdout)
         self.assert_same_results("whole", "parts")
+
+    def check_speed(self, text):
+        """Steps/s of a resumed run count the steps of this run, not those before."""
+        said = re.search(r"run +(\d+) steps, the last (\d+) in ([\d.]+) s \((\d+) steps/s\)", text)
+        self.assertIsNotNone(said, text)
+        steps, last, seconds, speed = map(float, said.groups())
+        self.assertLess(last, steps)
+        if seconds > 0.5:
+            self.assert_near(speed * seconds, last, 0.2 * last, "seconds printed with one decimal")
 
     def test_sigterm(self):
         started = (self.folder / "parts/provenance.txt", False)

@@ -5,11 +5,18 @@ import json
 import pathlib
 import sys
 
+import matplotlib
 import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.colors import PowerNorm  # noqa: E402
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures.column_motion import peak_text  # noqa: E402  (the path comes first)
+from figures.column_soil import time_bar  # noqa: E402
 from figures.common import Run  # noqa: E402
+from figures.element_test import draw_pressure  # noqa: E402
 from support import AppTest, main  # noqa: E402
 
 DIGITS = "round-off of a sum"
@@ -43,6 +50,29 @@ class Progress(AppTest):
         self.assertIn("Strain travelled", run.progress_label)
         straight = self.run_of([0, 0.01, 0.0199, 0.02], [0, 30, 40, 40], [0] * 4)
         self.assert_close(straight.progress, 100 * np.array([0, 0.01, 0.0199, 0.02]), 1e-12, DIGITS)
+
+
+class Panels(AppTest):
+    def scale_of(self, pressures):
+        rows = [f"{k},{p},{0.01 * k},0" for k, p in enumerate(pressures)]
+        self.write("history.csv", "q (kPa),p (kPa),eps_y (-),reversals (-)\n" + "\n".join(rows) + "\n")
+        self.write("summary.json", json.dumps({"p0": 1e5, "shear_stage_first_row": 0}))
+        axes = plt.figure().subplots()
+        self.addCleanup(plt.close, "all")
+        draw_pressure(Run(self.folder), axes)
+        return axes.get_yscale(), axes.get_ylim()[0]
+
+    def test_decades_are_for_what_liquefies(self):
+        self.assertEqual(self.scale_of([100, 150, 160]), ("linear", 0))
+        self.assertEqual(self.scale_of([100, 50, 0.5])[0], "log")
+
+    def test_time_bar_says_where_its_colours_end(self):
+        """A motion of 0.87 s in a run of 4 s: the bar ends there, and says that later times have one colour."""
+        for last, said in (4.0, "Time (s); one colour after 0.87 s"), (0.87, "Time (s)"):
+            figure, panels = plt.subplots(1, 2)
+            self.addCleanup(plt.close, figure)
+            time_bar(figure, panels, PowerNorm(1.0, 0, 0.87), last)
+            self.assertEqual(figure.axes[-1].get_ylabel(), said)
 
 
 class Peaks(AppTest):

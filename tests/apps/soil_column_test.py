@@ -60,7 +60,10 @@ class Scenes(ColumnTest):
         self.assertGreater(np.abs(rows["base_ax"] - rows["input_ax"]).max(), 0.1)
 
     def test_recorded_motion_liquefies(self):
-        summary, rows, _ = self.run_scene("recorded_motion", *settings(analysis__duration="6 s"))
+        summary, rows, folder = self.run_scene("recorded_motion", *settings(analysis__duration="6 s"))
+        self.assertIn("x and y as a vector", (folder / "summary.txt").read_text(encoding="utf-8"))
+        self.assert_close(np.hypot(rows["surface_ax"], rows["surface_ay"]).max(), summary["peak_surface"], 0.2,
+                          "rows are a part of the steps, peaks are of all")
         self.assertGreater(summary["max_ru"], 0.95)
         self.assertLess(summary["max_ru_depth"], 8)
         # undrained: vertical total stress does not change

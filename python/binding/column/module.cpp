@@ -10,6 +10,8 @@
 #include "fem/libraries.hpp"
 #include "python/binding/column/python_material.hpp"
 
+#include <array>
+#include <csignal>
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -17,6 +19,28 @@ namespace isostat::python
 {
 namespace
 {
+/// Gives every signal the handler back that it had: those of the interpreter, which ignores SIGPIPE, and of faulthandler.
+class HandlersKept
+{
+public:
+  HandlersKept()
+  {
+    for (int signal = 1; signal < n_signals; ++signal)
+      sigaction(signal, nullptr, &before_[signal]);
+  }
+  HandlersKept(const HandlersKept &) = delete;
+  HandlersKept &operator=(const HandlersKept &) = delete;
+  ~HandlersKept()
+  {
+    for (int signal = 1; signal < n_signals; ++signal)
+      sigaction(signal, &before_[signal], nullptr);
+  }
+
+private:
+  static constexpr int n_signals = 32; ///< without those of real time
+  std::array<struct sigaction, n_signals> before_{};
+};
+
 /// Starts MPI, PETSc and p4est at the first run; they end with the interpreter.
 void start_libraries()
 {
@@ -27,6 +51,7 @@ void start_libraries()
   MPI_Initialized(&others);
   if (others)
     throw RunFailure("MPI has been started already, by mpi4py perhaps; run the first column before that");
+  const HandlersKept kept; // PETSc sets others, and then those of the system
   auto *libraries = new Libraries;
   py::module_::import("atexit").attr("register")(py::cpp_function([libraries] { delete libraries; }));
 }
