@@ -117,8 +117,13 @@ void leave_report(const CalibrationPlan &plan, const SceneMaker &scenes, const T
                   const std::string &ending, const fs::path &folder)
 {
   fmt::print("{}", write_report({plan, scenes, trials, 0, trials.best(), ending}, folder));
-  fmt::print("\n  this call: {} runs in {}\n  best set ready to run: {}\n", trials.n_runs(),
-             duration_text(trials.seconds()), (folder / "best_scene.toml").string());
+  fmt::print("\n  this call: {} runs in {}\n", trials.n_runs(), duration_text(trials.seconds()));
+  if (trials.is_complete(trials.all()[trials.best()]))
+    fmt::print("  best set ready to run: {}; with the state of each curve: {}\n", (folder / "best_scene.toml").string(),
+               (folder / "best").string());
+  else
+    fmt::print(
+        "  NO SET RAN: in every trial a run failed, and none can be recommended. Other bounds or densities may.\n");
 }
 
 void calibrate(const Options &options)

@@ -45,11 +45,20 @@ Trials::Trials(const CalibrationPlan &plan, const SceneMaker &scenes, fs::path f
     laboratory_.push_back(read_laboratory(curve, scenes_.pressure(curve)));
 }
 
+bool Trials::is_complete(const Trial &trial) const
+{
+  for (std::size_t c = 0; c < trial.curves.size(); ++c)
+    if (!plan_.curves[c].blind && trial.curves[c] && !trial.curves[c]->failure.empty())
+      return false;
+  return true;
+}
+
 std::size_t Trials::best() const
 {
+  const auto rank = [this](const Trial &trial) { return std::pair(!is_complete(trial), trial.misfit); };
   std::size_t best = trials_.size();
   for (std::size_t t = 0; t < trials_.size(); ++t)
-    if (trials_[t].done && (best == trials_.size() || trials_[t].misfit < trials_[best].misfit))
+    if (trials_[t].done && (best == trials_.size() || rank(trials_[t]) < rank(trials_[best])))
       best = t;
   return best;
 }

@@ -45,7 +45,10 @@ public:
          std::function<void(const std::string &)> say);
 
   const std::vector<Trial> &all() const { return trials_; }
-  std::size_t best() const; ///< smallest misfit; the first of equals    @pre one trial or more is done
+  /// Smallest misfit, the first of equals; of trials all of whose fitted curves ran, if there are any.
+  /// @pre one trial or more is done    tested: tests/apps/calibrate_test.py
+  std::size_t best() const;
+  bool is_complete(const Trial &trial) const; ///< whether no run of a fitted curve failed
   bool is_known(const Point &values) const;
 
   /// Runs the fitted curves of points, all runs side by side.   @return the numbers of their trials

@@ -58,6 +58,8 @@ std::string read_text(const fs::path &path)
   if (n < 0 || closed != Z_OK || (code != Z_OK && code != Z_STREAM_END))
     throw InputError(fmt::format("{}: the gzip data are damaged or cut off after {} bytes of text; copy the file again",
                                  path.string(), text.size()));
+  if (text.starts_with("\xEF\xBB\xBF")) // byte-order mark, as spreadsheets leave it
+    text.erase(0, 3);
   return text;
 }
 

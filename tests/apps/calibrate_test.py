@@ -167,6 +167,21 @@ class Results(Calibrate):
         self.assert_done(self.run_it("-o", "out", "--no-figures", plan=plan))  # nor are they tried again
         self.assertEqual(contents(self.folder / "out/runs"), before)
 
+    def test_a_failed_trial_is_not_the_best(self):
+        plan = self.write("dense.toml", plan_text(4, key="specimen.relative_density", bounds="[0.05, 0.99]")
+                          .replace("density\"\n", "density\"\nstart = 0.1\n")
+                          .replace("[misfit]\n", "[misfit]\npenalty = 1e-6\n"))
+        result = self.run_it("-o", "out", "--no-figures", plan=plan)
+        self.assert_done(result)
+        best = self.trials()[self.result()["best"] - 1]
+        self.assertEqual(best["failed curves"], "")
+        self.assertGreater(float(best["misfit (-)"]), min(float(row["misfit (-)"]) for row in self.trials()))
+
+    def test_a_file_with_a_byte_order_mark(self):
+        lab = self.folder / "lab.csv"
+        lab.write_bytes(b"\xef\xbb\xbf" + lab.read_bytes())
+        self.assert_done(self.run_it("--dry-run"))
+
 
 class Resume(Calibrate):
     def test_sigkill(self):
