@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sentences of the paper that can be true or false, each with what the tests say of it."""
 import dataclasses
+import operator
 
 import numpy as np
 
@@ -111,14 +112,12 @@ def above(one, other):
     return lambda row: float(row[one] > row[other])
 
 
-def share(holds, row, needed):
-    """Whether it holds; not a number where the number that it needs is none."""
-    return float(holds) if np.isfinite(row.get(needed, np.nan)) else np.nan
-
-
-def exceeds(name, least, part_of=None):
-    """Whether a column is above `least`, or above that part of another one."""
-    return lambda row: share(row.get(name, np.nan) > least * (row[part_of] if part_of else 1), row, name)
+def sentence(holds, *names):
+    """Whether it holds of the numbers in these columns; not a number where one of them is none."""
+    def value(row):
+        numbers = [row.get(name, np.nan) for name in names]
+        return float(holds(*numbers)) if np.isfinite(numbers).all() else np.nan
+    return value
 
 
 def of_halves(number):
@@ -202,15 +201,15 @@ CYCLIC = (
           of_liquefied(above("largest strain after, extension (%)", "largest strain after, compression (%)")),
           why="not known; usual rates give more compression, too (pace)"),
     Claim("Strain accumulates while q is near zero: more than half of it below q_amp/10, after the onset",
-          of_liquefied(exceeds("share of strain at |q| < q_amp/10 after", 0.5))),
+          of_liquefied(sentence(lambda part: part > 0.5, "share of strain at |q| < q_amp/10 after"))),
     Claim("p' comes back in each half cycle after the onset, above 0.01 p0'",
-          of_halves(lambda r: share(r.get("largest p'/p0'", np.nan) > states.LIQUEFIED, r, "largest p'/p0'"))),
+          of_halves(sentence(lambda ratio: ratio > states.LIQUEFIED, "largest p'/p0'"))),
     Claim("I_R above 1 at the start", of_liquefied(lambda row: float(row["IR at the start"] > 1))),
     Claim("I_R varies cyclically before the onset: by more than 5 % within a half cycle, on average",
-          of_liquefied(exceeds("mean range of IR in a half cycle before", 0.05, "IR at the start"))),
+          of_liquefied(sentence(lambda swing, start: swing > 0.05 * start,
+                                "mean range of IR in a half cycle before", "IR at the start"))),
     Claim("I_R decreases before the onset: mean of the last third of the cycles below that of the first",
-          of_liquefied(lambda r: share(r.get("mean I_R in the last third", np.nan) <
-                                       r.get("mean I_R in the first third", np.nan), r, "mean I_R in the last third"))),
+          of_liquefied(sentence(operator.lt, "mean I_R in the last third", "mean I_R in the first third"))),
     Claim("I_R below 1 at the onset (Eq. 2)", of_liquefied(lambda row: float(row[PRIME_IR] < 1))),
     Claim("I_R below 1 at the onset (without twisting)", of_liquefied(lambda row: float(row[NO_TWIST] < 1))),
     Claim("I_R passes 1 at the onset: p'/p0' where it first does so",
@@ -219,17 +218,15 @@ CYCLIC = (
     Claim("I_R as p'/p0' comes back above 0.01", of_halves(lambda r: r[LAST_IR]), 1.3,
           why="rate and damping: with local damping alone at 2 1/s it is 1.1 (pace)"),
     Claim("Each reversal after the onset drops I_R, by more than a tenth",
-          of_halves(lambda r: share(r["least I_R"] < 0.9 * r.get("I_R at its beginning", np.nan), r,
-                                    "I_R at its beginning"))),
+          of_halves(sentence(lambda least, begin: least < 0.9 * begin, "least I_R", "I_R at its beginning"))),
     Claim("Least I_R of a half cycle after the onset", of_halves(lambda r: r["least I_R"]), 0.35,
           why="rate and damping, as above"),
     Claim("More contacts slide than roll, before", of_liquefied(above("f_S before", "f_R before"))),
     Claim("More contacts slide than roll, after", of_liquefied(above("f_S after", "f_R after"))),
     Claim("More contacts slide and roll at once than roll only, after", of_liquefied(above("f_SR after", "f_R after"))),
     Claim("The sliding fraction swings more than the rolling one before the onset",
-          of_liquefied(lambda r: share(r.get("mean range of f_S in a half cycle before", np.nan) >
-                                       r.get("mean range of f_R in a half cycle before", np.nan), r,
-                                       "mean range of f_R in a half cycle before"))),
+          of_liquefied(sentence(operator.gt, "mean range of f_S in a half cycle before",
+                                "mean range of f_R in a half cycle before"))),
     Claim("More contacts roll after the onset than before", of_liquefied(above("f_R after", "f_R before")),
           why="rolling alone is rare on average, 1 to 2 % of contacts, 3 to 8 % at the onset"),
     Claim("The sliding fraction is largest where p'/p0' passes 0.01",
@@ -248,10 +245,9 @@ CYCLIC = (
     Claim("Contacts turn with the load: F_yy - F_xx has its sign at the end of a half cycle",
           of_halves(lambda r: float((r["F_yx at its end"] > 0) == (r["direction"] == "compression")))),
     Claim("Anisotropy changes its sign where I_R is below 1",
-          of_halves(lambda r: share(r.get("I_R as F_yx changes sign", np.nan) < 1, r, "I_R as F_yx changes sign"))),
+          of_halves(sentence(lambda index: index < 1, "I_R as F_yx changes sign"))),
     Claim("High redundancy goes with uniform contacts: I_R and anisotropy correlate negatively, after",
-          of_liquefied(lambda r: share(r.get("correlation of I_R and |F_yx| after", np.nan) < 0, r,
-                                       "correlation of I_R and |F_yx| after"))),
+          of_liquefied(sentence(lambda correlation: correlation < 0, "correlation of I_R and |F_yx| after"))),
     Claim("Anisotropy falls as the network forms anew: less at the end of a half cycle than at its largest",
           of_halves(lambda r: float(abs(r["F_yx at its end"]) < 0.95 * r["largest |F_yx|"]))),
     Claim("Anisotropy grows with the half cycles after the onset (rank correlation > 0)",

@@ -153,23 +153,21 @@ class Results:
 def phase_numbers(column, found):
     """Mean and standard deviation over the seeds, and the means of their least and largest value, in rows of one phase;
     of p'/p0' those of its logarithm, and of fabric where enough contacts carry."""
-    means, lows, highs = [], [], []
+    logarithmic = column == "p'/p0'"
+    seeds = []  # mean, least and largest value of each
     for history, rows in found:
         ratio = history.p[rows] / history.p0
-        values = np.log(np.maximum(ratio, 1e-9)) if column == "p'/p0'" else getattr(history, column)[rows]
+        values = np.log(np.maximum(ratio, 1e-9)) if logarithmic else getattr(history, column)[rows]
         values = values[ratio > states.FABRIC_FLOOR] if column.startswith("F") else values
         if values.size:
-            for numbers, value in ((means, values.mean()), (lows, values.min()), (highs, values.max())):
-                numbers.append(value)
-    if len(means) < max(1, len(found) / 2):
+            seeds.append((values.mean(), values.min(), values.max()))
+    if len(seeds) < max(1, len(found) / 2):
         return dict.fromkeys((column, f"{column} low", f"{column} high"), np.nan)
+    means, lows, highs = zip(*seeds)
     mean, deviation, *_ = paths.ensemble(means)
-    if column != "p'/p0'":
-        before = {column: mean, f"{column} s.d.": deviation}
-    else:
-        before = {column: np.exp(mean), f"{column} s.d. of ln": deviation}
-    back = np.exp if column == "p'/p0'" else float
-    return {**before, f"{column} low": back(np.mean(lows)), f"{column} high": back(np.mean(highs))}
+    back = np.exp if logarithmic else float
+    return {column: back(mean), f"{column} s.d. of ln" if logarithmic else f"{column} s.d.": deviation,
+            f"{column} low": back(np.mean(lows)), f"{column} high": back(np.mean(highs))}
 
 
 def curves(groups, values, names):
