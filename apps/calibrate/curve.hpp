@@ -19,12 +19,6 @@ struct Curve
   std::vector<double> other;  ///< drained: volumetric strain [-], from 0; undrained: mean effective stress p', Pa
 };
 
-/// Reads a laboratory file.
-/// @param pressure  effective, before the test, Pa: what the first row has to agree with
-/// @throws InputError with file:line  no such column; a column without unit or with a wrong one; strains that go back;
-///         a file that ends before strain_end; a first stress that is not the pressure, and shares that are no strains
-Curve read_laboratory(const PlanCurve &plan, double pressure);
-
 /// Reads history.csv of a finished run of element_test, with the strains of the laboratory's kind.
 /// @throws InputError  damaged files
 Curve read_model(const std::filesystem::path &folder, const PlanCurve &plan);
@@ -38,8 +32,9 @@ struct Comparison
 {
   Curve laboratory, mean, deviation; ///< deviation: standard deviation over the seeds; 0 for one
   double q_scale = 0, other_scale = 0;
-  double misfit = 0;  ///< [-]
-  double scatter = 0; ///< of the mean over seeds: its standard error, in the same measure [-]
+  double misfit = 0; ///< [-]
+  /// Of the mean over seeds: its standard error, in the same measure [-]; nothing for one seed.
+  std::optional<double> scatter;
 };
 
 /// The distance of the mean of the model's curves to the laboratory's, with v the volumetric strain of a drained and p'

@@ -21,9 +21,9 @@ fs::path laboratory_file(const fs::path &folder, const PlanCurve &curve)
 {
   return folder / "laboratory" / (curve.name + ".csv");
 }
+} // namespace
 
-/// Compares what is there with the plan; only the budget may differ.
-void check_kept(const fs::path &folder, const CalibrationPlan &plan, const std::string &scene)
+void check_calibration_folder(const fs::path &folder, const CalibrationPlan &plan, const std::string &scene)
 {
   CalibrationPlan kept = parse_plan(read_text(folder / "plan.toml"), (folder / "plan.toml").string());
   kept.budget = plan.budget;
@@ -32,13 +32,12 @@ void check_kept(const fs::path &folder, const CalibrationPlan &plan, const std::
   for (const PlanCurve &curve : plan.curves)
     check_file(laboratory_file(folder, curve), read_text(curve.path));
 }
-} // namespace
 
 void open_calibration_folder(const fs::path &folder, const CalibrationPlan &plan, const std::string &scene,
                              bool overwrite)
 {
   open_campaign_folder(
-      folder, "plan.toml", [&] { check_kept(folder, plan, scene); }, overwrite);
+      folder, "plan.toml", [&] { check_calibration_folder(folder, plan, scene); }, overwrite);
   write_replacing(folder / "plan.toml", to_toml(plan));
   fs::create_directories(folder / "laboratory");
   fs::create_directories(folder / "runs");

@@ -15,11 +15,16 @@
 
 namespace isostat
 {
+/// That what a folder keeps is of this plan; only the budget may differ.
+/// @throws InputError  with the first line that differs
+void check_calibration_folder(const std::filesystem::path &folder, const CalibrationPlan &plan,
+                              const std::string &scene);
+
 /// Locks the folder for this plan and makes it if it is missing.
 /// @param scene  text of the plan's scene, every key resolved
 /// @param overwrite  what another calibration left is removed first
 /// @throws InputError  another program works in it; it holds something else, or, without `overwrite`, a calibration
-///         with another plan (its budget may differ), scene or laboratory file: the first line that differs is named
+///         with another plan, scene or laboratory file
 void open_calibration_folder(const std::filesystem::path &folder, const CalibrationPlan &plan, const std::string &scene,
                              bool overwrite);
 } // namespace isostat

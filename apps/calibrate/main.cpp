@@ -65,6 +65,14 @@ std::vector<std::vector<double>> first_points(const CalibrationPlan &plan, const
   return points;
 }
 
+/// What a plan says of the density of a curve's specimens: " (relative_density = 1)".
+std::string density_text(const PlanCurve &curve)
+{
+  if (curve.relative_density)
+    return fmt::format(" (relative_density = {:g})", *curve.relative_density);
+  return curve.void_ratio ? fmt::format(" (void_ratio = {:g})", *curve.void_ratio) : "";
+}
+
 /// A curve that no trial can run says nothing, and never will.
 void check_first(const CalibrationPlan &plan, const std::vector<Trial> &trials)
 {
@@ -73,10 +81,11 @@ void check_first(const CalibrationPlan &plan, const std::vector<Trial> &trials)
       const auto failed = [&](const Trial &t) { return t.curves[c] && !t.curves[c]->failure.empty(); };
       if (std::all_of(trials.begin(), trials.end(), failed))
         throw InputError(
-            fmt::format("{}: curve \"{}\": none of the first {} trials could be run. The first, {}\n  "
+            fmt::format("{}: curve \"{}\"{}: none of the first {} trials could be run. The first, {}\n  "
                         "Correct the curve's density or pressure, the bounds, or the number of grains; all "
                         "runs are in the folder of trials.csv.",
-                        plan.curves[c].where, plan.curves[c].name, trials.size(), trials[0].curves[c]->failure));
+                        plan.curves[c].where, plan.curves[c].name, density_text(plan.curves[c]), trials.size(),
+                        trials[0].curves[c]->failure));
     }
 }
 
@@ -97,6 +106,15 @@ std::string find_best(const CalibrationPlan &plan, const SceneMaker &scenes, Tri
   return search(plan.search, shares_of(scenes, trials.all()[trials.best()].values), objective);
 }
 
+/// What would stop the call before or with its first trial.
+void check_start(const CalibrationPlan &plan, const SceneMaker &scenes, const fs::path &folder, bool overwrite)
+{
+  for (const PlanCurve &curve : plan.curves)
+    scenes.trial(first_points(plan, scenes)[0], curve, plan.specimens.first_seed);
+  if (!overwrite && fs::exists(folder / "plan.toml"))
+    check_calibration_folder(folder, plan, scenes.scene_text());
+}
+
 void print_dry_run(const CalibrationPlan &plan, const SceneMaker &scenes)
 {
   const auto blind = static_cast<std::size_t>(
@@ -111,6 +129,7 @@ void print_dry_run(const CalibrationPlan &plan, const SceneMaker &scenes)
   for (const Parameter &p : scenes.parameters())
     fmt::print("  {:<{}} from {} to {}, start {}\n", p.label(), width, p.text(p.value(0)), p.text(p.value(1)),
                p.text(p.value(p.start())));
+  fmt::print("{}", remarks(scenes.parameters()));
 }
 
 void leave_report(const CalibrationPlan &plan, const SceneMaker &scenes, const Trials &trials,
@@ -140,7 +159,10 @@ void calibrate(const Options &options)
   };
   Trials trials(plan, scenes, folder, options.jobs, say); // reads the laboratory before anything is written
   if (options.dry_run)
-    return print_dry_run(plan, scenes);
+    {
+      check_start(plan, scenes, folder, options.overwrite);
+      return print_dry_run(plan, scenes);
+    }
   open_calibration_folder(folder, plan, scenes.scene_text(), options.overwrite);
   write_provenance(folder, scenes.scene_text(), options.command_line, {});
   catch_signals();

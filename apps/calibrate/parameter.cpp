@@ -39,7 +39,7 @@ const Key &known_key(const CalibrationPlan &plan, const PlanParameter &parameter
     {
       const std::string near = schema.nearest_path(parameter.key);
       refuse(parameter,
-             "is no key of a scene." + (near.empty() ? std::string(" element_test --print-manual lists them.")
+             "is no key of a scene." + (near.empty() ? std::string(" element_test --print-defaults lists them.")
                                                      : fmt::format(" Did you mean {}?", near)));
     }
   if (key->kind != Kind::quantity && key->kind != Kind::number)
@@ -88,8 +88,12 @@ Parameter::Parameter(const CalibrationPlan &plan, const PlanParameter &parameter
                                   plan_.start, plan_.low, plan_.high));
     }
   else if (!there.empty())
-    if (const double of_scene = checked(there, "start", scene); of_scene >= low_ && of_scene <= high_)
-      first = of_scene;
+    {
+      const double of_scene = checked(there, "start", scene);
+      is_scene_outside_ = of_scene < low_ || of_scene > high_;
+      if (!is_scene_outside_)
+        first = of_scene;
+    }
   start_ = share(first);
 }
 
@@ -145,6 +149,11 @@ std::string Parameter::number(double value) const
   return with_unit.substr(0, with_unit.find(' '));
 }
 
+std::string Parameter::remark() const
+{
+  return is_scene_outside_ ? "the scene's value is outside of the bounds: the start is their middle" : "";
+}
+
 std::string Parameter::override_(double value) const { return fmt::format("{}={}", plan_.key, text(value)); }
 
 std::size_t label_width(const std::vector<Parameter> &parameters)
@@ -153,6 +162,15 @@ std::size_t label_width(const std::vector<Parameter> &parameters)
   for (const Parameter &parameter : parameters)
     width = std::max(width, parameter.label().size());
   return width;
+}
+
+std::string remarks(const std::vector<Parameter> &parameters)
+{
+  std::string text;
+  for (const Parameter &parameter : parameters)
+    if (const std::string remark = parameter.remark(); !remark.empty())
+      text += fmt::format("  {}: {}\n", parameter.label(), remark);
+  return text;
 }
 
 std::vector<Parameter> parameters_of(const CalibrationPlan &plan, const std::string &scene)

@@ -35,15 +35,21 @@ public:
   std::string number(double value) const;    ///< the same without unit, for tables
   std::string override_(double value) const; ///< "contact.friction=18.5 deg", as --set takes it
 
+  std::string remark() const; ///< on its start; empty: none
+
 private:
   double checked(const std::string &text, const char *what, const std::string &scene) const;
   PlanParameter plan_;
   const Key *key_;
   double low_ = 0, high_ = 1, start_ = 0.5;
+  bool is_scene_outside_ = false;
 };
 
 /// Of the longest label, for tables.
 std::size_t label_width(const std::vector<Parameter> &parameters);
+
+/// Their remarks, a line for each; empty: none.
+std::string remarks(const std::vector<Parameter> &parameters);
 
 /// The parameters of a plan.   @throws InputError  as Parameter does
 std::vector<Parameter> parameters_of(const CalibrationPlan &plan, const std::string &scene);

@@ -74,7 +74,8 @@ constexpr Key plan_keys[] = {
    .field = [](Plan &p) -> Field { return &p.budget.minutes; }},
 
   {.path = "optimiser.method", .kind = Kind::choice, .value = "bobyqa", .choices = methods,
-   .text = "bobyqa: quadratic models, few trials; sbplx: simplex in subspaces, for noisy misfits; crs2: random search, for several minima.",
+   .text = "bobyqa: quadratic models, few trials; sbplx: simplex in subspaces, for noisy misfits; crs2: random search, for several "
+           "minima. Left out with one parameter alone: sbplx.",
    .field = [](Plan &p) -> Field { return EnumField(&p.search.method); }},
   {.path = "optimiser.design", .kind = Kind::integer, .value = "8", .range = {0, 1e6},
    .text = "Trials spread evenly over the bounds before the method begins; their runs go side by side.",
@@ -235,7 +236,11 @@ void check(const SceneDocument &document, CalibrationPlan &plan)
   if (std::none_of(plan.curves.begin(), plan.curves.end(), is_fitted))
     document.refuse("curve.0.blind", "leaves no curve to fit: all are blind. Set blind = false for one of them.");
   if (plan.search.method == SearchMethod::bobyqa && plan.parameters.size() < 2)
-    document.refuse("optimiser.method", "\"bobyqa\" needs two parameters or more. Take \"sbplx\" for one.");
+    {
+      if (document.find("optimiser.method"))
+        document.refuse("optimiser.method", "\"bobyqa\" needs two parameters or more. Take \"sbplx\" for one.");
+      plan.search.method = SearchMethod::sbplx;
+    }
 }
 } // namespace
 

@@ -34,7 +34,7 @@ std::string parameter_table(const CalibrationResult &r)
     text +=
         fmt::format("  {:<{}} {:>14} {:>14}{}\n", parameters[k].label(), width, parameters[k].number(start.values[k]),
                     parameters[k].number(best.values[k]), place_text(parameters[k].share(best.values[k])));
-  return text;
+  return text + remarks(parameters);
 }
 
 std::string misfit_text(const std::optional<CurveOutcome> &outcome)
@@ -50,13 +50,31 @@ std::string curve_table(const CalibrationResult &r)
   for (std::size_t c = 0; c < r.plan.curves.size(); ++c)
     {
       const PlanCurve &curve = r.plan.curves[c];
-      text += fmt::format(
-          "  {:<24} {:>7} {:>10} {:>10} {:>10}\n", curve.name,
-          curve.blind ? "blind" : fmt::format("{:g}", curve.weight), misfit_text(start.curves[c]),
-          misfit_text(best.curves[c]),
-          best.curves[c] && best.curves[c]->failure.empty() ? fmt::format("{:.4f}", best.curves[c]->scatter) : "-");
+      text += fmt::format("  {:<24} {:>7} {:>10} {:>10} {:>10}\n", curve.name,
+                          curve.blind ? "blind" : fmt::format("{:g}", curve.weight), misfit_text(start.curves[c]),
+                          misfit_text(best.curves[c]),
+                          best.curves[c] && best.curves[c]->scatter ? fmt::format("{:.4f}", *best.curves[c]->scatter)
+                                                                    : "-");
     }
   return text + fmt::format("  {:<24} {:>7} {:>10.4f} {:>10.4f}\n", "fitted, together", "", start.misfit, best.misfit);
+}
+
+/// Curves that were not fitted and became worse by more than the best's scatter: what the set does not transfer to.
+std::string worse_blind(const CalibrationResult &r)
+{
+  const Trial &start = r.trials.all()[r.start], &best = r.trials.all()[r.best];
+  std::string names;
+  std::size_t blind = 0, worse = 0;
+  for (std::size_t c = 0; c < r.plan.curves.size(); ++c)
+    if (const auto &there = start.curves[c], &here = best.curves[c]; r.plan.curves[c].blind && there && here)
+      {
+        ++blind;
+        if (here->misfit <= there->misfit + here->scatter.value_or(0))
+          continue;
+        ++worse;
+        names += (names.empty() ? "" : ", ") + r.plan.curves[c].name;
+      }
+  return worse == 0 ? "" : fmt::format("  {} of {} blind curves became WORSE: {}\n", worse, blind, names);
 }
 
 std::string failures(const CalibrationResult &r)
@@ -74,7 +92,7 @@ std::string summary(const CalibrationResult &r)
   return fmt::format("\n{}\n  {} trials with {} specimens of {} grains; best: trial {}\n  ended because {}\n",
                      r.plan.title, r.trials.all().size(), r.plan.specimens.seeds, r.plan.specimens.grains, r.best + 1,
                      r.ending) +
-         parameter_table(r) + curve_table(r) + failures(r);
+         parameter_table(r) + curve_table(r) + worse_blind(r) + failures(r);
 }
 
 /// Laboratory, start and best at the compared strains; an empty cell where a run failed.
@@ -128,17 +146,16 @@ Json to_json(const CalibrationResult &r)
     }
   for (std::size_t c = 0; c < r.plan.curves.size(); ++c)
     {
-      const auto number = [&](const Trial &trial, double CurveOutcome::*value) {
-        return trial.curves[c] ? Json((*trial.curves[c]).*value) : Json();
-      };
+      const auto misfit = [&](const Trial &trial) { return trial.curves[c] ? Json(trial.curves[c]->misfit) : Json(); };
+      const bool scatters = best.curves[c] && best.curves[c]->scatter;
       const PlanCurve &curve = r.plan.curves[c];
       curves.push_back({{"name", curve.name},
                         {"test", curve.test == LaboratoryTest::drained ? "drained" : "undrained"},
                         {"blind", curve.blind},
                         {"weight", curve.weight},
-                        {"start", number(start, &CurveOutcome::misfit)},
-                        {"best", number(best, &CurveOutcome::misfit)},
-                        {"scatter", number(best, &CurveOutcome::scatter)},
+                        {"start", misfit(start)},
+                        {"best", misfit(best)},
+                        {"scatter", scatters ? Json(*best.curves[c]->scatter) : Json()},
                         {"failure", best.curves[c] ? best.curves[c]->failure : ""}});
     }
   return {{"title", r.plan.title},

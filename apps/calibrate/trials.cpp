@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/calibrate/trials.hpp"
 
+#include "apps/calibrate/laboratory.hpp"
 #include "apps/common/element_test_runs.hpp"
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
@@ -186,7 +187,7 @@ CurveOutcome Trials::outcome(std::size_t trial, std::size_t curve) const
 {
   for (const Run &run : runs_of(trial, plan_.curves[curve].blind))
     if (const fs::path failed = with_ending(place(run), ".failed"); run.curve == curve && fs::exists(failed))
-      return {plan_.misfit.penalty, 0, fmt::format("seed {}: {}", run.seed, read_text(failed))};
+      return {plan_.misfit.penalty, {}, fmt::format("seed {}: {}", run.seed, read_text(failed))};
   try
     {
       const Comparison result = comparison(trial, curve);
@@ -194,7 +195,7 @@ CurveOutcome Trials::outcome(std::size_t trial, std::size_t curve) const
     }
   catch (const InputError &error)
     {
-      return {plan_.misfit.penalty, 0, error.what()};
+      return {plan_.misfit.penalty, {}, error.what()};
     }
 }
 

@@ -17,8 +17,9 @@ namespace isostat
 /// What came of the runs of one curve in one trial.
 struct CurveOutcome
 {
-  double misfit = 0, scatter = 0; ///< Comparison; the penalty of a curve that failed [-]
-  std::string failure;            ///< why one of its runs failed; empty: none did
+  double misfit = 0;             ///< Comparison; the penalty of a curve that failed [-]
+  std::optional<double> scatter; ///< Comparison [-]
+  std::string failure;           ///< why one of its runs failed; empty: none did
 };
 
 struct Trial

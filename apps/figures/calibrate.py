@@ -12,6 +12,7 @@ import csv
 import json
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain_log_ticks, plt
 from .drawing import Drawing
@@ -56,7 +57,7 @@ class Calibration:
         self.failed = np.array([bool(row["failed curves"]) for row in trials])
         self.parameters = self.summary["parameters"]
         self.values = {p["label"]: np.array([float(row[p["label"]]) for row in trials]) for p in self.parameters}
-        self.best = int(np.argmin(self.misfit))
+        self.best = int(np.flatnonzero(self.trial == self.summary["best"])[0])
 
 
 def draw_band(axes, x, values):
@@ -112,7 +113,10 @@ def convergence(results):
     if results.failed.any():
         axes.plot(results.trial[results.failed], results.misfit[results.failed], "x", color=ORANGE, markersize=5,
                   label="trial with a run that failed")
-    axes.step(results.trial, np.minimum.accumulate(results.misfit), where="post", color=RED, label="best so far")
+    if good.any():
+        axes.step(results.trial[good], np.minimum.accumulate(results.misfit[good]), where="post", color=RED,
+                  label="best so far")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_yscale("log")
     plain_log_ticks(axes.yaxis)
     axes.set_xlabel("Trial")
@@ -132,7 +136,7 @@ def tradeoffs(results):
     """Below the diagonal pairs, on it each parameter against the misfit."""
     labels, n = list(results.values), len(results.parameters)
     figure, panels = plt.subplots(n, n, figsize=(1.6 + 2.2 * n, 1.2 + 2.0 * n), squeeze=False, layout="constrained")
-    lowest = results.misfit.min()
+    lowest = results.misfit[results.best]
     order = np.argsort(-results.misfit)  # the best on top
     colours = None
     for i in range(n):

@@ -65,7 +65,7 @@ bool has_error(const PowerLaw &law) { return law.n_runs > 2; }
 std::string fit_text(const std::optional<PowerLaw> &law)
 {
   if (!law)
-    return "\n  fit                      none: fewer than two ratios have a run that liquefied";
+    return "\n  fit                      none: fewer than two ratios have a run that liquefied, or all within a cycle";
   const bool inside = law->min_cycles <= reference_cycles && law->most_cycles >= reference_cycles;
   return fmt::format(
       "\n  fit                      CSR = {:.4f} N^-{:.3f}, {}, {} runs{}\n  CSR at 15 cycles         {:.4f}{}", law->a,

@@ -121,7 +121,8 @@ std::optional<PowerLaw> fit_power_law(const std::vector<RunResult> &results)
       yy += (y[k] - mean_y) * (y[k] - mean_y);
     }
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  if (x.size() < 2 || *low == *high || xy == 0)
+  const double most_cycles = y.empty() ? 0 : std::exp(*std::max_element(y.begin(), y.end()));
+  if (x.size() < 2 || *low == *high || xy == 0 || most_cycles <= 1)
     return std::nullopt;
   const double slope = xy / xx, scatter = std::max(0.0, yy - slope * xy); // log N = mean_y + slope (log CSR - mean_x)
   PowerLaw law;
@@ -134,7 +135,7 @@ std::optional<PowerLaw> fit_power_law(const std::vector<RunResult> &results)
     return r.status == RunStatus::censored || r.status == RunStatus::strain;
   }));
   law.min_cycles = std::exp(*std::min_element(y.begin(), y.end()));
-  law.most_cycles = std::exp(*std::max_element(y.begin(), y.end()));
+  law.most_cycles = most_cycles;
   return law;
 }
 

@@ -50,7 +50,8 @@ struct PowerLaw
   double at(double cycles) const;
 };
 
-/// Nothing if fewer than two ratios have a liquefied run.
+/// Nothing if fewer than two ratios have a liquefied run, or if all liquefied within a cycle: counted by half cycles,
+/// these tell no slope.
 std::optional<PowerLaw> fit_power_law(const std::vector<RunResult> &results);
 
 std::string to_string(RunStatus status);

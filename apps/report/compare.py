@@ -117,8 +117,11 @@ def page(pair):
         f"{one.path.resolve().name} and {other.path.resolve().name}", f"Two runs of {one.program}", [
             html.section("Runs", html.table(("", "title", "folder", "version", "started"), runs, "runs"), name="runs"),
             html.section("Curves", html.figures(parts), name="figures"),
-            html.section("Numbers", html.paragraph("Of the summaries, in SI units. A grey row is the same in both."),
-                         html.table(("", *NAMES, "B - A", "of A"), list(summary_rows(one.numbers, other.numbers)),
+            html.section("Numbers", html.paragraph("Of the curves, then of the summaries (in SI units). A grey row is "
+                                                   "the same in both."),
+                         html.table(("", *NAMES, "B - A", "of A"),
+                                    [*summary_rows(*map(curves.numbers, read)),
+                                     *summary_rows(one.numbers, other.numbers)],
                                     "numbers of both summaries", numbers=(1, 2, 3, 4)), name="numbers"),
             html.section("Scene", difference_table(key_rows(one.scene, other.scene), "key",
                                                    "Every key of the scenes is the same.", "keys that differ"),

@@ -16,11 +16,13 @@ WIDTHS = (1.6, 0.8)  # the first run below and wider, so that equal curves are s
 @dataclasses.dataclass
 class Curves:
     """drawing: reads the results   kind(results): a word for what can be compared with what
-    figures: {name: (title, caption, draw(pair of results, their names) -> figure or None)}"""
+    figures: {name: (title, caption, draw(pair of results, their names) -> figure or None)}
+    numbers(results): {quantity (unit): number} of the curves, which the summaries do not have"""
 
     drawing: Drawing
     kind: typing.Callable
     figures: dict
+    numbers: typing.Callable = lambda results: {}
 
 
 def draw_pair(axes, pair, names, x, y):
@@ -83,6 +85,19 @@ def stress_curves(pair, names):
         axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
     legend_of(figure, one)
     return figure
+
+
+def numbers_of_test(run):
+    """Peak and ends of the curves. q (tau) is signed; its peak is where its amount is largest."""
+    load = "tau_xy" if run.shear else "q"
+    peak, p = int(np.argmax(np.abs(run[load]))), run["p"] / 1e3
+    numbers = {f"peak {load} (kPa)": run[load][peak] / 1e3, f"strain at peak {load} (%)": 100 * run.strain[peak],
+               "least p' (kPa)": p.min(), "p' at the end (kPa)": p[-1], f"{load} at the end (kPa)": run[load][-1] / 1e3}
+    if is_drained(run):
+        numbers["void ratio at the end"] = run["e"][-1]
+    if run.has("IR"):
+        numbers["least redundancy index"] = np.nanmin(run["IR"])
+    return {name: float(value) for name, value in numbers.items()}
 
 
 # --- columns ---------------------------------------------------------------------------------------------------------
@@ -152,7 +167,7 @@ def block_curves(pair, names):
 OF_PROGRAM = {
     "element_test": Curves(element_test.DRAWING, kind_of_test, {
         "curves": ("Stress and strain", "(a) stress path, (b) stress against strain, (c) p' and (d) void ratio or "
-                   "redundancy index, against strain or number of cycles.", stress_curves)}),
+                   "redundancy index, against strain or number of cycles.", stress_curves)}, numbers_of_test),
     "soil_column": Curves(soil_column.DRAWING, kind_of_analysis, {
         "surface": ("Surface motion", "Acceleration of the surface against time.", surface_motion),
         "water": ("Pore pressure and settlement", "Largest pore pressure ratio anywhere and settlement, against time.",

@@ -16,26 +16,6 @@ namespace isostat
 {
 namespace fs = std::filesystem;
 
-namespace
-{
-/// Fields between commas; empty ones count.
-std::vector<std::string_view> split_commas(std::string_view line)
-{
-  std::vector<std::string_view> fields;
-  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1)
-    {
-      end = line.find(',', begin);
-      std::string_view field = line.substr(begin, end == std::string_view::npos ? end : end - begin);
-      while (!field.empty() && field.front() == ' ')
-        field.remove_prefix(1);
-      while (!field.empty() && field.back() == ' ')
-        field.remove_suffix(1);
-      fields.push_back(field);
-    }
-  return fields;
-}
-} // namespace
-
 void reject(const fs::path &file, std::size_t line, const std::string &what)
 {
   throw InputError(fmt::format("{}:{}: {}", file.string(), line, what));
@@ -89,6 +69,22 @@ std::vector<std::string_view> split_words(std::string_view line)
       begin = line.find_first_not_of(separators, end);
     }
   return words;
+}
+
+std::vector<std::string_view> split_commas(std::string_view line)
+{
+  std::vector<std::string_view> fields;
+  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1)
+    {
+      end = line.find(',', begin);
+      std::string_view field = line.substr(begin, end == std::string_view::npos ? end : end - begin);
+      while (!field.empty() && field.front() == ' ')
+        field.remove_prefix(1);
+      while (!field.empty() && field.back() == ' ')
+        field.remove_suffix(1);
+      fields.push_back(field);
+    }
+  return fields;
 }
 
 bool parse(std::string_view field, double &value)

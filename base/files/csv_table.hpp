@@ -17,6 +17,8 @@ std::string read_text(const std::filesystem::path &path);
 std::vector<std::string_view> split_lines(std::string_view text);
 /// Words between blanks, tabs and commas.
 std::vector<std::string_view> split_words(std::string_view line);
+/// Fields between commas, without blanks around them; empty ones count.
+std::vector<std::string_view> split_commas(std::string_view line);
 /// The number that a field spells out: the whole field, the same in every locale, to the last bit; otherwise false.
 bool parse(std::string_view field, double &value);
 

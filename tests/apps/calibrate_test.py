@@ -234,9 +234,12 @@ class Refusals(Calibrate):
                                  "Did you mean curve.blind?")
         self.assert_plan_refused(plan_text(key="contact.friction", bounds='["30 deg", "95 deg"]'), "wrong.toml:15",
                                  "bounds[1] = 95 deg", "must be in [0 deg, 90 deg)")
+        self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "is no key of a scene",
+                                 "contact.friction")
+        self.assert_plan_refused(plan_text(key="nothing.alike", bounds="[1, 2]"), "element_test --print-defaults")
         self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv", "is not there")
         self.assert_plan_refused(plan_text().replace("scene.toml", "other.toml"), "wrong.toml:2", "other.toml")
-        for text, parts in ((LABORATORY.replace("v[kPa]", "v[bar]"), ("lab.csv:1", 'no column "sigma_v[kPa]"')),
+        for text, parts in ((LABORATORY.replace("v[kPa]", "v[bar]"), ("lab.csv:1", '"sigma_v[bar]": the unit is bar')),
                             (LABORATORY.replace("2,0.3", "0.9,0.3"), ("lab.csv:5", "eps_a[%] = 0.9", "goes back")),
                             (LABORATORY.replace("200,200", "0.2,0.2"), ("lab.csv:2", "sigma_r[kPa] = 0.2", "200 kPa"))):
             self.write("lab.csv", text)
@@ -246,8 +249,8 @@ class Refusals(Calibrate):
     def test_density_that_no_trial_reaches(self):
         plan = self.write("dense.toml", plan_text(curve="relative_density = 1.0"))
         result = self.run_it("-o", "out", plan=plan)
-        self.assert_refused(result, "dense.toml:19", 'curve "fitted"', "none of the first 3 trials", "seed 1: error:",
-                            "density cannot be reached", "Correct the curve's density")
+        self.assert_refused(result, "dense.toml:19", 'curve "fitted" (relative_density = 1)', "none of the first 3",
+                            "seed 1: error:", "density cannot be reached", "Correct the curve's density")
         before = contents(self.folder / "out/runs")
         self.assertEqual(self.run_it("-o", "out", plan=plan).returncode, 2)
         self.assertEqual(contents(self.folder / "out/runs"), before)
@@ -274,6 +277,32 @@ class Refusals(Calibrate):
         self.assertIsNotNone(re.search(r"runs per trial +2 \(1 curves, 2 seeds\)", result.stdout), result.stdout)
         self.assertIn("at most 12, and 4 for the blind curves", result.stdout)
         self.assertFalse((self.folder / "out").exists())
+
+    def test_dry_run_finds_what_would_stop_the_run(self):
+        sieves = 'table = [["0.1 mm", 0], ["0.2 mm", 100]]'
+        self.write("scene.toml", SCENE.replace("grains = 200", f"grains = 200\n{sieves}"))
+        plan = self.write("own.toml", plan_text(curve="relative_density = 0.5"))
+        self.assert_refused(self.run_it("-o", "out", "--dry-run", plan=plan), "relative_density", "e_min")
+        self.write("scene.toml", SCENE)
+        self.plan = self.write("plan.toml", plan_text(1))
+        self.assert_done(self.run_it("-o", "out", "--no-figures"))
+        other = self.write("other.toml", plan_text(1).replace("points = 10", "points = 11"))
+        self.assert_refused(self.run_it("-o", "out", "--dry-run", plan=other), "points = 10", "--overwrite")
+        self.assert_done(self.run_it("-o", "out", "--dry-run", "--overwrite", plan=other))
+
+    def test_remarks(self):
+        """A start that is not the scene's, one seed, and a blind curve that wants the opposite of the fitted one."""
+        self.write("strong.csv", LABORATORY[:LABORATORY.index("0.5")] +
+                   "0.5,-0.3,700,200\n1,-1,900,200\n2,-2,900,200\n")
+        text = plan_text(4, key="contact.friction", bounds='["20 deg", "60 deg"]').replace("seeds = 2", "seeds = 1")
+        plan = self.write("plan.toml", text.replace('"unseen"\nfile = "lab.csv"', '"unseen"\nfile = "strong.csv"'))
+        self.assertIn("contact.friction (deg): the scene's value is outside of the bounds: the start is their middle",
+                      self.run_it("--dry-run").stdout)
+        result = self.run_it("-o", "out", "--no-figures", plan=plan)
+        self.assert_done(result)
+        self.assertRegex(result.stdout, r"fitted +1 +\d\.\d+ +\d\.\d+ +-\n")
+        self.assertEqual([curve["scatter"] for curve in self.result()["curves"]], [None, None])
+        self.assertIn("1 of 1 blind curves became WORSE: unseen", result.stdout)
 
 
 if __name__ == "__main__":

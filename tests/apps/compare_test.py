@@ -4,6 +4,8 @@
 import re
 import shutil
 
+import numpy as np
+
 from report_support import ReportTest
 from support import BIN, AppTest, contents, main
 
@@ -27,6 +29,8 @@ class Compare(ReportTest):
         for part in ("A: one blue, B: other orange.", "<td>contact.friction</td><td>18 deg</td><td>25 deg</td>",
                      '<figure id="curves"', '<tr class="same"><td>grains</td>'):
             self.assertIn(part, text)
+        q = np.genfromtxt(self.runs / "one/history.csv", delimiter=",", names=True)["q_Pa"]
+        self.assertIn(f'<td>peak q (kPa)</td><td class="number">{q[np.argmax(np.abs(q))] / 1e3:.6g}</td>', text)
         scene = re.search(r'id="scene">.*?</section>', text, re.S)[0]
         self.assertEqual(re.findall(r"<tr><td>([^<]*)", scene), ["contact.friction", "output.folder"])
 

@@ -68,6 +68,13 @@ class LiquefactionResistance(AppTest):
         self.assertNotIn("failed", result.stderr)
         self.assertTrue((self.folder / "out/figures/resistance.png").exists())
 
+    def test_all_within_a_cycle_tell_no_slope(self):
+        result = self.run_it("--ratios", "0.6,0.9", "-n", "1", "-o", "out", "--no-figures")
+        self.assert_done(result)
+        self.assertTrue(all(float(row["N_liquefaction"]) <= 1 for row in self.table()), self.table())
+        self.assertIn("none: fewer than two ratios have a run that liquefied, or all within a cycle", result.stdout)
+        self.assertIsNone(json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"])
+
     def check_fit(self, rows):
         """log N against log CSR, by numpy."""
         liquefied = [(float(row["CSR"]), float(row["N_liquefaction"])) for row in rows if row["N_liquefaction"]]

@@ -87,7 +87,9 @@ TEST(CalibrationPlan, RefusesOneParameterForBobyqa)
 {
   const std::string one =
       "scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = [\"1 GPa\", \"2 GPa\"]\n";
-  expect_complaint(one + test::curve_text, {"\"bobyqa\" needs two parameters", "\"sbplx\""});
+  EXPECT_EQ(parse_plan(one + test::curve_text, "p").search.method, SearchMethod::sbplx);
+  expect_complaint(one + test::curve_text + "[optimiser]\nmethod = \"bobyqa\"\n",
+                   {"\"bobyqa\" needs two parameters", "\"sbplx\""});
   EXPECT_EQ(parse_plan(one + test::curve_text + "[optimiser]\nmethod = \"sbplx\"\n", "p").parameters.size(), 1u);
 }
 
