@@ -6,7 +6,7 @@ import numpy as np
 from paper import lab, plan, states
 from paper.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
                            plain_logarithm)
-from paper.resistance import REFERENCE
+from paper.resistance import REFERENCE, fitted_ratios
 
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
 PRIME = r"$p^\prime$"
@@ -239,6 +239,19 @@ def drained(table, _):
     return figure
 
 
+def resistance_points(panel, rows, fit, colour, name):
+    """Full: in the fit; open: of ratios that are not, because a specimen lasted; an arrow where it still does."""
+    cycles, ratio = rows["cycles"], rows["q_amp/(2 p0')"]
+    fitted = np.isin(ratio, list(fitted_ratios(list(zip(ratio, cycles)))))
+    lasted = ~np.isfinite(cycles)
+    panel.plot(cycles[fitted], ratio[fitted], "o", color=colour, markersize=4, label=name)
+    panel.plot(cycles[~fitted], ratio[~fitted], "o", color=colour, markersize=4, markerfacecolor="none")
+    panel.plot(rows["cycles applied"][lasted], ratio[lasted], ">", color=colour, markersize=4, markerfacecolor="none")
+    if fit:
+        ends = np.quantile(cycles[fitted], (0, 1))
+        panel.plot(ends, fit["CSR at 15 cycles"][0] * (ends / REFERENCE)**-fit["b"][0], color=colour, linewidth=0.9)
+
+
 @of_tables("cyclic_tests", "resistance")
 def resistance(table, folder):
     """Cyclic stress ratio against cycles to liquefaction, by preparation and by pressure, and the fits."""
@@ -253,12 +266,7 @@ def resistance(table, folder):
         for label, name, colour in zip(labels, names, colours):
             rows = table.where(specimen=label)
             if rows:
-                panel.plot(rows["cycles"], rows["q_amp/(2 p0')"], "o", color=colour, markersize=4, label=name)
-            fit = fits.where(specimen=label)
-            if fit:
-                cycles = np.nanquantile(rows["cycles"], (0, 1))
-                law = fit["CSR at 15 cycles"][0] * (cycles / REFERENCE)**-fit["b"][0]
-                panel.plot(cycles, law, color=colour, linewidth=0.9)
+                resistance_points(panel, rows, fits.where(specimen=label), colour, name)
         plain_logarithm(panel.xaxis)
         panel.set_xlabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
         if panel.get_legend_handles_labels()[0]:

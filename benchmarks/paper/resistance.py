@@ -8,13 +8,18 @@ MONOTONIC = ("compression", "extension", "drained")
 REFERENCE = 15  # cycles: a magnitude 7.5 earthquake
 
 
+def fitted_ratios(tests):
+    """Those at which every specimen liquefied: the others would count by their weakest specimens alone."""
+    spared = {ratio for ratio, n in tests if not np.isfinite(n)}
+    return {ratio for ratio, _ in tests} - spared
+
+
 def power_law(tests):
     """(b, CSR at 15 cycles) of tests (ratio, cycles): least squares of log N against log CSR, because N scatters at a
-    given CSR. Only of ratios at which every specimen liquefied: the others would count by their weakest specimens
-    alone. Nothing of fewer than two ratios, or of a curve that does not fall."""
-    spared = {ratio for ratio, n in tests if not np.isfinite(n)}
-    tests = [test for test in tests if test[0] not in spared]
-    if len({ratio for ratio, _ in tests}) < 2:
+    given CSR. Nothing of fewer than two ratios that count, or of a curve that does not fall."""
+    counted = fitted_ratios(tests)
+    tests = [test for test in tests if test[0] in counted]
+    if len(counted) < 2:
         return None
     ratio, cycles = (np.log([test[k] for test in tests]) for k in (0, 1))
     slope, intercept = np.polyfit(ratio, cycles, 1)
@@ -66,6 +71,7 @@ def curves(cyclic_tests):
         (b, resistance), (b_error, error) = fit
         rows.append({"specimen": label, "p0' (kPa)": tests[0]["p0' (kPa)"], "e": np.mean([row["e"] for row in tests]),
                      "tests": len(tests), "not liquefied": sum(not np.isfinite(row["cycles"]) for row in tests),
+                     "ratios in the fit": len(fitted_ratios([(row["q_amp/(2 p0')"], row["cycles"]) for row in tests])),
                      "b": b, "b s.e.": b_error, "CSR at 15 cycles": resistance, "CSR at 15 cycles s.e.": error,
                      "K_sigma": ratio[0][0] if ratio else np.nan, "K_sigma s.e.": ratio[1][0] if ratio else np.nan})
     return rows

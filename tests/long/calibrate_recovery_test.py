@@ -91,7 +91,8 @@ def plan_text(scene, start, bounds, sizes, curves):
     parameters = "".join(PARAMETER.format(key=key, low=text(key, bounds[key][0]), high=text(key, bounds[key][1]),
                                           start=text(key, start[key]),
                                           scale="linear" if key == "contact.friction" else "log") for key in TRUTH)
-    return PLAN.format(scene=scene, grains=GRAINS, rate=RATE, **sizes) + parameters + "".join(curve_text(name, *CURVES[name]) for name in curves)
+    curves = "".join(curve_text(name, *CURVES[name]) for name in curves)
+    return PLAN.format(scene=scene, grains=GRAINS, rate=RATE, **sizes) + parameters + curves
 
 
 def around(found):
