@@ -46,6 +46,7 @@ struct Options
 /// Contact modulus over pressure of e_min, at most: grains overlap by some 1e-4 d then, which changes e by 1e-3 at
 /// most. A frictionless packing under stiffer contacts comes to rest dozens of times more slowly (README.md).
 constexpr double soft_enough = 1e4;
+constexpr double wide_enough = 8; ///< of the space away from walls, in d50
 
 /// The densest packing: frictionless, at rest, in the domain of the scene.
 struct Dense
@@ -147,6 +148,18 @@ void write_limits(const fs::path &folder, const std::vector<Value> &values)
   write_json(folder / "limits.json", json);
 }
 
+/// A few grains across have no void ratio of their own.
+std::string narrow_inside(const Deposit &loose)
+{
+  const RigidBox &box = loose.state.box;
+  const double edge = std::min((box.upper - box.lower).minCoeff(), loose.height);
+  const double width = edge / loose.state.grains.d50() - 4;
+  if (width >= wide_enough)
+    return "";
+  return fmt::format("warning: inside is {:.1f} d50 wide, less than {:g}: its void ratio means little. Take more grains\n",
+                     std::max(0.0, width), wide_enough);
+}
+
 /// Whole vessel, inside, and for the paper's sand what paper and laboratory found.
 std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, double loose_seconds)
 {
@@ -161,6 +174,7 @@ std::string table(const Scene &scene, const Dense &dense, const Deposit &loose, 
   row("e_max", loose.void_ratio, loose.void_ratio_inside, 0.841, 1.054);
   text += fmt::format("whole: of the {} and of the deposit; inside: two d50 ({:.3f} mm) away from walls and surface\n",
                       dense.state.cell ? "periodic cell" : "box", 2e3 * loose.state.grains.d50());
+  text += narrow_inside(loose);
   text += fmt::format("e_min: {} grains, frictionless, {:g} kPa, E = {:.3g} Pa, unbalanced force {:.1e}; {:.0f} s\n",
                       dense.state.grains.n_grains(), scene.specimen.pressure / 1e3, dense.state.law->young,
                       micromechanics(dense.state).unbalanced, dense.seconds);

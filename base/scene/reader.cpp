@@ -23,7 +23,7 @@ std::string joined(const std::string &prefix, std::string_view word)
   const SceneSchema &schema = document.schema();
   const std::string known = schema.schema_path(path);
   const std::string near = schema.nearest_path(known);
-  document.refuse(path, near.empty() ? "is no key of this kind of scene. --print-manual lists all keys."
+  document.refuse(path, near.empty() ? "is no key of this kind of file. --print-defaults lists all keys."
                                      : fmt::format("is no key of a scene. Did you mean {}?", near));
 }
 

@@ -16,7 +16,8 @@ class VoidRatioLimits(AppTest):
         scene = self.write("limits.toml", LIMITS)
         result = self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK)
         self.assert_done(result)
-        for word in ("e_min", "e_max", "0.568", "0.841", "0.677", "1.054", "contact modulus"):
+        for word in ("e_min", "e_max", "0.568", "0.841", "0.677", "1.054", "contact modulus",
+                     "its void ratio means little"):
             self.assertIn(word, result.stdout)
         written = json.loads((self.folder / "out/limits.json").read_text(encoding="utf-8"))
         limits = {name: item["value"] for name, item in written.items()}

@@ -40,7 +40,7 @@ TEST(SceneError, UnknownKeyNamesTheNearest)
   expect_complaint(smallest + "[motion]\ndampin = 0.2",
                    {"scene.toml:4: motion.dampin = 0.2;", "Did you mean motion.damping?"});
   expect_complaint(smallest + "[motion]\nzzz = 1",
-                   {"scene.toml:4: motion.zzz = 1; is no key of this kind", "--print-manual"});
+                   {"scene.toml:4: motion.zzz = 1; is no key of this kind", "--print-defaults"});
   expect_complaint("damping = 0.2\n" + smallest, {"scene.toml:1: damping", "Did you mean", "damping?"});
   expect_complaint(smallest + "[motoin]\ndamping = 0.2", {"scene.toml:3: motoin; is no key", "Did you mean motion?"});
   expect_complaint(cyclic_with("amplitude = \"60 kPa\""),
