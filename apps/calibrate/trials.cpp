@@ -33,11 +33,6 @@ std::string id_of(const std::vector<Parameter> &parameters, const std::vector<do
 }
 } // namespace
 
-bool Trial::failed() const
-{
-  return std::any_of(curves.begin(), curves.end(), [](const auto &c) { return c && !c->failure.empty(); });
-}
-
 Trials::Trials(const CalibrationPlan &plan, const SceneMaker &scenes, fs::path folder, int jobs,
                std::function<void(const std::string &)> say)
     : plan_(plan), scenes_(scenes), folder_(std::move(folder)), jobs_(jobs), say_(std::move(say))
@@ -237,9 +232,10 @@ std::string Trials::progress(std::size_t number) const
 {
   const auto done = static_cast<double>(std::count_if(trials_.begin(), trials_.end(), [](auto &t) { return t.done; }));
   const auto most = static_cast<double>(plan_.budget.trials);
-  std::string text = fmt::format("{:3.0f} %  trial {} of at most {}: misfit {:.4f}{}, best {:.4f} in trial {}",
-                                 100 * done / most, number + 1, plan_.budget.trials, trials_[number].misfit,
-                                 trials_[number].failed() ? " (a run FAILED)" : "", trials_[best()].misfit, best() + 1);
+  std::string text =
+      fmt::format("{:3.0f} %  trial {} of at most {}: misfit {:.4f}{}, best {:.4f} in trial {}", 100 * done / most,
+                  number + 1, plan_.budget.trials, trials_[number].misfit,
+                  is_complete(trials_[number]) ? "" : " (a run FAILED)", trials_[best()].misfit, best() + 1);
   if (n_computed_ > 0 && done < most)
     text += ", ETA " + duration_text((most - done) * seconds() / static_cast<double>(n_computed_)) + " at most";
   return text;

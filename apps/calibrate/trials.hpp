@@ -29,8 +29,6 @@ struct Trial
   std::vector<std::optional<CurveOutcome>> curves; ///< of the plan; nothing: not computed (blind)
   double misfit = 0;                               ///< total_misfit of the fitted curves [-]
   bool done = false;
-
-  bool failed() const;
 };
 
 /// Runs trials in child processes, and answers those that have been run from what they left. A run that has finished,

@@ -95,6 +95,14 @@ bool parse(std::string_view field, double &value)
   return error == std::errc() && end == field.data() + field.size();
 }
 
+double finite_number(const fs::path &file, std::size_t line, std::string_view field)
+{
+  double value = 0;
+  if (!parse(field, value) || !std::isfinite(value))
+    reject(file, line, fmt::format("\"{}\"; expected a number", field));
+  return value;
+}
+
 CsvTable::CsvTable(const fs::path &path, const std::vector<std::string> &columns, const std::string &may_be_nan)
     : path_(path), n_columns_(columns.size())
 {

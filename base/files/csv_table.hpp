@@ -21,6 +21,8 @@ std::vector<std::string_view> split_words(std::string_view line);
 std::vector<std::string_view> split_commas(std::string_view line);
 /// The number that a field spells out: the whole field, the same in every locale, to the last bit; otherwise false.
 bool parse(std::string_view field, double &value);
+/// The finite number that a field spells out.   @throws InputError  that begins with file:line
+double finite_number(const std::filesystem::path &file, std::size_t line, std::string_view field);
 
 /// Chosen columns of a comma separated table, as numbers. The first line of the file names the columns.
 /// Every mistake is an InputError with file:line.   tested: tests/dem/io/text_tables_test.cpp

@@ -6,7 +6,6 @@
 #include "dem/io/sphere_table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 #include <unordered_map>
@@ -35,8 +34,7 @@ struct DataFile
   {
     std::vector<double> values(words.size());
     for (std::size_t k = 0; k < words.size(); ++k)
-      if (!parse(words[k], values[k]) || !std::isfinite(values[k]))
-        refuse(fmt::format("\"{}\"; expected a number", words[k]));
+      values[k] = finite_number(path, line, words[k]);
     if (values.size() < least)
       refuse(fmt::format("{} numbers; expected {}", values.size(), least));
     return values;

@@ -6,7 +6,6 @@
 #include "dem/io/sphere_table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -33,13 +32,7 @@ struct DumpReader
   }
   [[noreturn]] void refuse(const std::string &what) const { reject(path, next, what); }
 
-  double number(std::string_view word) const
-  {
-    double value = 0;
-    if (!parse(word, value) || !std::isfinite(value))
-      refuse(fmt::format("\"{}\"; expected a number", word));
-    return value;
-  }
+  double number(std::string_view word) const { return finite_number(path, next, word); }
 };
 
 struct Frame
