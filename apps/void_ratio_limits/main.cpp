@@ -156,7 +156,7 @@ std::string narrow_inside(const Deposit &loose)
   const double width = edge / loose.state.grains.d50() - 4;
   if (width >= wide_enough)
     return "";
-  return fmt::format("warning: inside is {:.1f} d50 wide, less than {:g}: its void ratio means little. Take more grains\n",
+  return fmt::format("warning: inside is {:.1f} d50 wide, less than {:g}: its void ratio means little. Take more\n",
                      std::max(0.0, width), wide_enough);
 }
 

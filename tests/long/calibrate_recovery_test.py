@@ -36,7 +36,7 @@ CURVES = {"dense": (4, "drained", "compression"), "loose": (20, "drained", "comp
           "loose_undrained": (20, "undrained", "extension")}  # preparation friction, deg
 GRAINS, STRAIN, RATE = 1000, 0.08, 4e-3
 LABORATORY_SEEDS = range(101, 201)  # those of the trials begin with 1
-FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 40, "trials": 18, "design": 0}
+FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 30, "trials": 15, "design": 0}
 CURVES_OF_FEW = ("dense", "loose")
 CORES = len(os.sched_getaffinity(0))
 
