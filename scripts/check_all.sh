@@ -29,7 +29,7 @@ gates=("$@")
 ((${#gates[@]})) || gates=(format tidy sanitizers)
 
 format() {
-  git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+  git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
 }
 
 # Sources of the folders: all, or of the grains those of the last ten commits that are still there.

@@ -10,7 +10,7 @@
 set -euo pipefail
 
 packages=(
-  git g++ cmake ninja-build pkg-config
+  git g++ gfortran cmake ninja-build pkg-config
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev librandom123-dev
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev libnlopt-cxx-dev
   libdeal.ii-dev libpetsc-real-dev openmpi-bin

@@ -33,8 +33,13 @@ class Installed(support.ToleranceTest):
         cls.work.mkdir()
         run("cmake", "--install", support.BIN.parent, "--prefix", cls.prefix)
         cls.build = cls.folder / "build"
-        run("cmake", "-S", EXAMPLES, "-B", cls.build, f"-DCMAKE_PREFIX_PATH={cls.prefix}")
+        run("cmake", "-S", EXAMPLES, "-B", cls.build, f"-DCMAKE_PREFIX_PATH={cls.prefix}",
+            "-DCMAKE_C_FLAGS=-pedantic -Wall -Wextra -Werror", "-DCMAKE_Fortran_FLAGS=-std=f2018 -Wall -Wextra -Werror")
         run("cmake", "--build", cls.build)
+        scene = support.tiny_scene(specimen='preparation_friction = "10 deg"\ndomain = "periodic-cell"', stages="\n")
+        (cls.work / "cell.toml").write_text(scene, encoding="utf-8")
+        run(cls.prefix / "bin/element_test", "cell.toml", "--quiet", "--no-figures", cwd=cls.work)
+        (cls.specimen,) = (cls.work / "results/specimens").glob("*.h5")
 
     def element_test(self, *arguments):
         return run(self.prefix / "bin/element_test", *arguments, cwd=self.work)
@@ -63,9 +68,9 @@ class Installed(support.ToleranceTest):
                    f"print(isostat.Scene(specimen={{'preparation_friction': '9 deg'}}, title='installed'))")
         self.assertIn('title = "installed"', run("/usr/bin/python3", "-c", program, cwd=self.work))
 
-    def rows(self, example):
+    def rows(self, example, *arguments):
         """The table that an example prints, without its head."""
-        lines = run(self.build / example, cwd=self.work).splitlines()[1:]
+        lines = run(self.build / example, *arguments, cwd=self.work).splitlines()[1:]
         return np.array([[float(word) for word in line.split()] for line in lines])
 
     def test_rve_path(self):
@@ -76,6 +81,26 @@ class Installed(support.ToleranceTest):
         self.assertGreater(np.ptp(tau_zy), 5)
         self.assert_near([gamma_xy[-1], gamma_zy[-1]], [0, 0], 1e-4, "closes: the digits that are printed")
         self.assert_near(e, e[0], 1e-4, "constant volume, to second order in strains of 0.1 %")
+
+    def test_rve_in_c_and_fortran_is_that_in_cpp_to_the_bit(self):
+        expected = self.rows("rve_in_cpp", self.specimen)
+        sigma, tau, e = expected[:, 1:4], expected[:, 4], expected[:, 5]
+        self.assertEqual(len(expected), 12)
+        self.assertGreater(tau[10], 10e3)
+        self.assert_close(e[:11], e[0], 1e-12, "closed pores: round-off")
+        self.assert_close(sigma[11], sigma[10], 2e-3, "pores are open: stresses stay within the tolerance of the servo")
+        self.assertNotEqual(e[11], e[10])
+        self.assertEqual(self.rows("rve_in_c", self.specimen).tolist(), expected.tolist())
+        if shutil.which("gfortran") is None:
+            self.skipTest("no Fortran compiler")
+        self.assertEqual(self.rows("rve_in_fortran", self.specimen).tolist(), expected.tolist())
+
+    def test_programs_in_c_and_fortran_say_what_is_wrong(self):
+        for program in ("rve_in_c", "rve_in_fortran"):
+            if not (self.build / program).exists() and shutil.which("gfortran") is None:
+                continue
+            with self.assertRaisesRegex(AssertionError, "returned 1\n(?s:.*)isostat_rve_create: .*nowhere.h5"):
+                run(self.build / program, "nowhere.h5", cwd=self.work)
 
     def test_element_test_in_code(self):
         axial, p, q, e = self.rows("element_test_in_code").T

@@ -126,7 +126,7 @@ def check_file(root, path):
                  for at, n in functions if n > MAX_FUNCTION]
     problems += [f"{name}:{at}: more than {MAX_LINE} columns" for at in wide_lines(lines)]
     problems += check_named(root, name, lines) if name.as_posix() not in HELPERS else []
-    if path.suffix == ".hpp" and name.as_posix().startswith(tuple(f"{library}/" for library in LIBRARIES)):
+    if path.suffix in {".hpp", ".h"} and name.as_posix().startswith(tuple(f"{library}/" for library in LIBRARIES)):
         problems += check_tested(root, name, text)
     if name.name.endswith("_test.cpp") and name.parts[:2] in MIRRORS:
         problems += check_mirrors(root, name)
@@ -156,7 +156,7 @@ def main():
     root = arguments.root.resolve()
 
     tops = ("base", "dem", "fem", "coupling", "apps", "tests", "benchmarks", "examples", "scripts")
-    files = [f for top in tops for f in sorted((root / top).rglob("*")) if f.suffix in {".cpp", ".hpp", ".py"}]
+    files = [f for top in tops for f in sorted((root / top).rglob("*")) if f.suffix in {".cpp", ".hpp", ".c", ".h", ".py"}]
     problems, lengths = [], {}
     for file in files:
         found, lengths[file.relative_to(root)] = check_file(root, file)
