@@ -47,6 +47,8 @@ const Key &known_key(const CalibrationPlan &plan, const PlanParameter &parameter
   const bool rate = parameter.key == "motion.inertial_number" && plan.specimens.inertial_number;
   if (const std::string owner = rate ? "[specimens]" : set_elsewhere(parameter.key); !owner.empty())
     refuse(parameter, fmt::format("is set by {} of the plan. Give another key.", owner));
+  if (parameter.key == "grading.d50")
+    refuse(parameter, "stays that of the scene, whatever the number of grains. Give another key.");
   if (std::string_view(key->group) == "preparation")
     for (const PlanCurve &curve : plan.curves)
       if (concerns(parameter, curve) && (curve.relative_density || curve.void_ratio || curve.preparation_friction))

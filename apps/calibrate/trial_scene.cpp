@@ -51,14 +51,16 @@ double SceneMaker::pressure(const PlanCurve &curve) const
   return curve.pressure > 0 ? curve.pressure : scene_.specimen.pressure;
 }
 
-/// The cloud's edge grows with the cube root of the number of grains: their size stays.
+/// The cloud's edge grows with the cube root of the number of grains, so that their size stays; where the scene gives
+/// d50, it does so by itself.
 std::vector<std::string> SceneMaker::overrides(const std::vector<double> &values, const PlanCurve *curve,
                                                std::uint64_t grains) const
 {
   const double ratio = static_cast<double>(grains) / static_cast<double>(scene_.grading.grains);
   const double edge = scene_.grading.cloud_edge * std::cbrt(ratio);
-  std::vector<std::string> set = {fmt::format("grading.grains={}", grains),
-                                  "grading.cloud_edge=" + format_quantity(edge, Dimension::length, "mm")};
+  std::vector<std::string> set = {fmt::format("grading.grains={}", grains)};
+  if (!scene_.grading.d50)
+    set.push_back("grading.cloud_edge=" + format_quantity(edge, Dimension::length, "mm"));
   for (std::size_t k = 0; k < parameters_.size(); ++k)
     if (curve ? parameters_[k].concerns(*curve) : parameters_[k].curve().empty())
       set.push_back(parameters_[k].override_(values[k]));

@@ -12,7 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 
 namespace isostat
 {
@@ -97,6 +97,8 @@ void check(const GradingSpec &spec)
   if (!(spec.cloud_edge > 0) || !std::isfinite(spec.cloud_edge))
     throw InputError(fmt::format("grading.cloud_edge = {:g} m; must be positive because it is the edge of a cube.",
                                  spec.cloud_edge));
+  if (spec.d50 && (!(*spec.d50 > 0) || !std::isfinite(*spec.d50)))
+    throw InputError(fmt::format("grading.d50 = {:g} m; must be positive because it is a diameter.", *spec.d50));
   if (!(spec.solid_fraction > 0 && spec.solid_fraction < 1))
     throw InputError(fmt::format("grading.solid_fraction = {:g}; must be in (0, 1) because it is solid volume over box "
                                  "volume. Random placement jams near 0.5 at the latest; the default is 0.33.",
@@ -107,13 +109,32 @@ void check(const GradingSpec &spec)
                                  spec.density));
 }
 
-/// Centres of spheres in the cube 0 ... edge, in the order of `radii` (decreasing).
-std::vector<Vec3> placed_at_random(const std::vector<double> &radii, const GradingSpec &spec)
+/// How large the cube is, and the grains in it.
+struct CloudSize
 {
-  PlacedSpheres placed(spec.cloud_edge, radii.size());
+  double edge;      ///< m
+  double upscaling; ///< diameter in the cloud / diameter of the grading
+};
+
+CloudSize cloud_size(const GradingSpec &spec, const std::vector<double> &diameters)
+{
+  const auto cube = [](double x) { return x * x * x; };
+  if (!spec.d50)
+    return {spec.cloud_edge, upscaling_factor(diameters, spec.solid_fraction * cube(spec.cloud_edge))};
+  const double upscaling = *spec.d50 / median_by_volume(diameters);
+  double solid = 0;
+  for (const double d : diameters)
+    solid += std::numbers::pi / 6 * cube(upscaling * d);
+  return {std::cbrt(solid / spec.solid_fraction), upscaling};
+}
+
+/// Centres of spheres in the cube 0 ... edge, in the order of `radii` (decreasing).
+std::vector<Vec3> placed_at_random(const std::vector<double> &radii, double edge, const GradingSpec &spec)
+{
+  PlacedSpheres placed(edge, radii.size());
   for (std::size_t grain = 0; grain < radii.size(); ++grain)
     {
-      const double radius = radii[grain], upper = spec.cloud_edge - radius;
+      const double radius = radii[grain], upper = edge - radius;
       Vec3 centre;
       std::uint64_t attempt = 0;
       do
@@ -138,20 +159,20 @@ std::vector<Vec3> placed_at_random(const std::vector<double> &radii, const Gradi
 Cloud make_cloud(const GradingSpec &spec)
 {
   check(spec);
-  const double box_volume = spec.cloud_edge * spec.cloud_edge * spec.cloud_edge;
   const std::vector<double> diameters = sample_diameters(grading_curve(spec), spec.grains);
+  const CloudSize size = cloud_size(spec, diameters);
   Cloud cloud;
-  cloud.box = {Vec3::Zero(), Vec3::Constant(spec.cloud_edge)};
-  cloud.upscaling = upscaling_factor(diameters, spec.solid_fraction * box_volume);
+  cloud.box = {Vec3::Zero(), Vec3::Constant(size.edge)};
+  cloud.upscaling = size.upscaling;
   std::vector<double> radii(diameters.size());
   for (std::size_t i = 0; i < radii.size(); ++i)
     radii[i] = 0.5 * cloud.upscaling * diameters[i];
-  if (!(2 * radii.front() < spec.cloud_edge))
+  if (!(2 * radii.front() < size.edge))
     throw InputError(fmt::format("grading.grains = {} at solid_fraction = {:g}: the largest grain, {:.3g} m, is wider "
-                                 "than cloud_edge = {:g} m. Take more grains or a lower solid_fraction.",
-                                 spec.grains, spec.solid_fraction, 2 * radii.front(), spec.cloud_edge));
+                                 "than the cube of the cloud, {:g} m. Take more grains or a lower solid_fraction.",
+                                 spec.grains, spec.solid_fraction, 2 * radii.front(), size.edge));
 
-  const std::vector<Vec3> centres = placed_at_random(radii, spec);
+  const std::vector<Vec3> centres = placed_at_random(radii, size.edge, spec);
   const std::vector<std::uint32_t> order = morton_order(centres);
   std::vector<Vec3> stored_centres(order.size());
   std::vector<double> stored_radii(order.size());

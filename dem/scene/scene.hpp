@@ -19,10 +19,11 @@ struct GradingSpec
   double finest_percent = 0;                    ///< the curve is cut below this percentage finer and rescaled
   double coarsest_percent = 100;                ///< ... and above this one
   std::uint64_t grains = 10000;
-  double cloud_edge = 10e-3;    ///< edge of the cube that holds the cloud, m
-  double solid_fraction = 0.33; ///< of the cloud; with the edge it fixes the up-scaling of the grading
-  double density = 2650;        ///< kg/m3
-  std::uint64_t seed = 1;       ///< realisation
+  double cloud_edge = 10e-3;      ///< edge of the cube that holds the cloud, m; without meaning where d50 is set
+  std::optional<double> d50 = {}; ///< median diameter by mass of the grains made, m; the edge follows from it
+  double solid_fraction = 0.33;   ///< of the cloud; with the edge it fixes the up-scaling of the grading
+  double density = 2650;          ///< kg/m3
+  std::uint64_t seed = 1;         ///< realisation
 
   bool operator==(const GradingSpec &) const = default;
 };

@@ -70,12 +70,18 @@ constexpr Key first_keys[] = {
    .reason = "because one grain makes no packing and more do not fit in memory", .text = "Number of spheres.",
    .field = [](Scene &s) -> Field { return &s.grading.grains; }},
   {.path = "grading.cloud_edge", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
-   .value = "10 mm", .range = positive, .text = "Edge of the cube that holds the cloud.",
+   .value = "10 mm", .range = positive, .group = "grain_size",
+   .text = "Edge of the cube that holds the cloud; excludes `d50`.",
    .field = [](Scene &s) -> Field { return &s.grading.cloud_edge; }},
+  {.path = "grading.d50", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
+   .presence = Presence::optional, .value = "0.45 mm", .range = positive, .group = "grain_size",
+   .text = "Median diameter by mass of the grains that are made, whatever their number: the curve keeps its shape, and the edge "
+           "of the cube follows. Excludes `cloud_edge`.",
+   .field = [](Scene &s) -> Field { return &s.grading.d50; }},
   {.path = "grading.solid_fraction", .value = "0.33", .range = {0, 0.5, true},
    .reason = "because a denser cloud cannot be filled at random",
    .text = "Solid volume of the cloud over that of its cube; with the edge it sets by how much the grains are "
-           "scaled up.",
+           "scaled up, with `d50` the edge.",
    .field = [](Scene &s) -> Field { return &s.grading.solid_fraction; }},
   {.path = "grading.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
    .value = "2650 kg/m3", .range = positive, .text = "Density of the grains.",
@@ -166,7 +172,7 @@ constexpr Key output_keys[] = {
 };
 // clang-format on
 
-constexpr KeyGroup groups[] = {{"size_curve"}, {"preparation", "relative_density = 0.64"}, {"rate"}};
+constexpr KeyGroup groups[] = {{"size_curve"}, {"grain_size"}, {"preparation", "relative_density = 0.64"}, {"rate"}};
 
 constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::angle,   Dimension::rate,
                                     Dimension::time,   Dimension::density,  Dimension::interval};

@@ -32,18 +32,19 @@ double Packing::min_radius() const { return std::ranges::min(radii()); }
 
 double Packing::max_radius() const { return std::ranges::max(radii()); }
 
-double Packing::d50() const
+double median_by_volume(std::vector<double> sizes)
 {
-  std::vector<double> sorted = radii();
   double total = 0, finer = 0;
-  for (const double r : sorted)
-    total += cube(r);
-  std::sort(sorted.begin(), sorted.end());
-  for (const double r : sorted)
-    if ((finer += cube(r)) >= 0.5 * total)
-      return 2 * r;
-  return 2 * sorted.back();
+  for (const double size : sizes)
+    total += cube(size);
+  std::sort(sizes.begin(), sizes.end());
+  for (const double size : sizes)
+    if ((finer += cube(size)) >= 0.5 * total)
+      return size;
+  return sizes.back();
 }
+
+double Packing::d50() const { return 2 * median_by_volume(radii()); }
 
 Packing make_packing(const std::vector<Vec3> &centres, const std::vector<double> &radii, double density)
 {

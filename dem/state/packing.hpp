@@ -6,6 +6,11 @@
 
 namespace isostat
 {
+/// Median of the radii or diameters of spheres by volume: half of the volume lies in spheres that are not larger. It is
+/// one of the sizes; that of a grading curve is met the better the more spheres follow it.
+/// @pre not empty   tested: tests/dem/prepare/cloud_test.cpp
+double median_by_volume(std::vector<double> sizes);
+
 /// State of all grains, kept as four-wide records so that a grain is one 32-byte load (half a cache line):
 ///
 ///     position  [x  y  z  radius]      m
@@ -40,7 +45,7 @@ struct Packing
   std::vector<double> radii() const;
   double min_radius() const; ///< @pre at least one grain
   double max_radius() const;
-  /// Median diameter by volume, m: half of the solid volume lies in grains that are not larger.
+  /// Median diameter by volume, m.
   double d50() const;
 
 private:

@@ -6,6 +6,7 @@
 #include "tests/apps/calibrate/plan_texts.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -30,6 +31,9 @@ void expect_complaint(const std::string &parameter, const std::vector<std::strin
       "scene = \"s\"\n[optimiser]\nmethod = \"sbplx\"\n[[parameter]]\n" + parameter + test::curve_text + curve;
   test::expect_parts(test::refusal([&] { SceneMaker maker(plan_of(text)); }), parts);
 }
+
+class TrialSceneFiles : public TemporaryFolder
+{};
 
 TEST(CalibrationParameter, GoesBetweenItsBounds)
 {
@@ -59,6 +63,9 @@ TEST(CalibrationParameter, RefusesKeysThatCannotBeVaried)
   expect_complaint("key = \"contact.frction\"\nbounds = [0, 1]\n", {"plan.toml:5", "Did you mean contact.friction?"});
   expect_complaint("key = \"grading.curve\"\nbounds = [0, 1]\n", {"plan.toml:5", "is not a number"});
   expect_complaint("key = \"stage.0.strain\"\nbounds = [0.1, 0.2]\n", {"plan.toml:5", "is set by [[curve]]"});
+  for (const std::string key : {"cloud_edge", "d50"})
+    expect_complaint("key = \"grading." + key + "\"\nbounds = [\"1 mm\", \"2 mm\"]\n",
+                     {"plan.toml:5: parameter.key = grading." + key, "Give another key"});
   expect_complaint("key = \"specimen.pressure\"\nbounds = [\"1 kPa\", \"2 kPa\"]\n", {"is set by [[curve]]"});
   expect_complaint("key = \"specimen.relative_density\"\nbounds = [0.2, 0.6]\n",
                    {"plan.toml:5", "curve \"TMD3\" (plan.toml:8)", "Remove one"}, "void_ratio = 0.7\n");
@@ -94,6 +101,18 @@ TEST(TrialScene, IsThatOfThePlanWithItsValues)
   ASSERT_EQ(scene.stages.size(), 1u);
   EXPECT_NEAR_BECAUSE(as<Drained>(scene.stages[0])->strain_end, -std::log(0.9), 1e-15, "one logarithm");
   EXPECT_EQ(parse_scene(to_toml(scene), "again"), scene);
+}
+
+TEST_F(TrialSceneFiles, KeepsTheMedianDiameterOfItsScene)
+{
+  CalibrationPlan plan = plan_of(test::plan_text());
+  const Scene sand = read_scene(plan.scene_path, {"grading.d50=0.45 mm"});
+  plan.scene_path = put("sand.toml", to_toml(sand));
+  const Scene scene = SceneMaker(plan).trial({20, 0.25}, plan.curves[0], 7);
+  EXPECT_EQ(scene.grading.d50, 0.45e-3);
+  EXPECT_EQ(scene.grading.grains, 1000u);
+  EXPECT_EQ(scene.grading.cloud_edge, GradingSpec{}.cloud_edge);
+  EXPECT_EQ(SceneMaker(plan).full_scene({20, 0.25}).grading.d50, 0.45e-3);
 }
 
 TEST(TrialScene, HasTheParametersOfItsGroup)

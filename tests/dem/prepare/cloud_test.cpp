@@ -169,6 +169,43 @@ TEST(Cloud, GrainsFillTheBoxEvenly)
                        "scatter of a mean of positions drawn at random: sqrt(3/12/n) with the n grains of the cloud");
 }
 
+TEST(Cloud, HasTheMedianDiameterThatIsAskedFor)
+{
+  GradingSpec spec = small_spec();
+  spec.d50 = 0.45e-3;
+  for (const std::uint64_t grains : {50u, 500u, 3000u})
+    {
+      spec.grains = grains;
+      spec.cloud_edge = 1; // not looked at
+      const Cloud cloud = make_cloud(spec);
+      EXPECT_NEAR_BECAUSE(cloud.packing.d50(), 0.45e-3, 1e-18, "round-off of a quotient and a product");
+      EXPECT_NEAR_BECAUSE(cloud.packing.solid_volume() / cloud.box.volume(), spec.solid_fraction, 1e-13,
+                          "round-off of a sum over grains and of a cube root");
+      EXPECT_TRUE(all_inside(cloud.packing, cloud.box));
+    }
+  const double of_the_curve = make_cloud(spec).upscaling * d_at(grading_curve(spec), 50);
+  EXPECT_NEAR_BECAUSE(of_the_curve / 0.45e-3, 1, 1e-3, "3,000 grains do not quite follow the curve");
+}
+
+TEST(Cloud, IsThatOfItsEdgeWhicheverIsGiven)
+{
+  GradingSpec by_edge = small_spec(), by_d50 = by_edge;
+  by_edge.cloud_edge = 3.7e-3;
+  const Cloud one = make_cloud(by_edge);
+  by_d50.d50 = one.packing.d50();
+  const Cloud other = make_cloud(by_d50);
+  EXPECT_NEAR_BECAUSE(other.box.upper[0], 3.7e-3, 1e-17, "round-off of a sum over grains and of a cube root");
+  EXPECT_NEAR_BECAUSE(other.upscaling / one.upscaling, 1, 1e-14, "the same");
+}
+
+TEST(Cloud, MedianByVolumeIsOneOfTheSizes)
+{
+  EXPECT_EQ(median_by_volume({3}), 3);
+  EXPECT_EQ(median_by_volume({2, 1, 2, 1}), 2);
+  EXPECT_EQ(median_by_volume({1, 1, 1, 1}), 1);
+  EXPECT_EQ(median_by_volume({2, 1, 1, 1, 1, 1, 1, 1, 1}), 1); // half of the volume lies in the small ones
+}
+
 TEST(Cloud, SameSeedSameBitsOtherSeedOtherCloud)
 {
   GradingSpec spec = small_spec();
@@ -197,6 +234,8 @@ TEST(Cloud, WrongInputIsRefused)
   };
   EXPECT_TRUE(refused([](GradingSpec &s) { s.grains = 0; }, "grading.grains = 0"));
   EXPECT_TRUE(refused([](GradingSpec &s) { s.cloud_edge = 0; }, "cloud_edge"));
+  EXPECT_TRUE(refused([](GradingSpec &s) { s.d50 = 0; }, "d50"));
+  EXPECT_TRUE(refused([](GradingSpec &s) { s.d50 = std::numeric_limits<double>::infinity(); }, "d50"));
   EXPECT_TRUE(refused([](GradingSpec &s) { s.solid_fraction = 0; }, "solid_fraction"));
   EXPECT_TRUE(refused([](GradingSpec &s) { s.solid_fraction = 1; }, "solid_fraction"));
   EXPECT_TRUE(refused([](GradingSpec &s) { s.density = -1; }, "density"));

@@ -201,6 +201,12 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "[motion]\ninertial_number = \"1e-4 1/s\"", {"scene.toml:4: motion.inertial_number"});
   expect_complaint(smallest + "[grading]\ncurve = \"karlsruhe-fine-sand\"\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]",
                    {"grading.table", "excludes grading.curve"});
+  expect_complaint(
+      smallest + "[grading]\ncloud_edge = \"5 mm\"\nd50 = \"0.45 mm\"\n",
+      {"scene.toml:5: grading.d50 = 0.45 mm; excludes grading.cloud_edge (scene.toml:4). Keep one of them."});
+  expect_complaint(smallest, {"--set grading.", "excludes"}, {"grading.cloud_edge=5 mm", "grading.d50=0.45 mm"});
+  expect_complaint(smallest + "[grading]\nd50 = \"0 mm\"\n", {"scene.toml:4: grading.d50 = 0 mm; must be > 0 mm"});
+  expect_complaint(smallest + "[grading]\nd50 = \"5 kPa\"\n", {"scene.toml:4: grading.d50 = 5 kPa", "a length"});
   const std::string table = "[grading]\ntable = [[\"1 mm\", 0], [\"2 mm\", 100]]\n[specimen]\n";
   expect_complaint(table + "relative_density = 0.5", {"scene.toml:4: specimen.relative_density = 0.5",
                                                       "e_min and e_max of this grading", "void_ratio_limits"});

@@ -191,6 +191,22 @@ TEST(Scene, GradingTable)
   EXPECT_EQ(scene.grading.curve, "");
 }
 
+TEST(Scene, MedianDiameterInPlaceOfTheCloudsEdge)
+{
+  const std::string by_d50 = smallest + "[grading]\nd50 = \"450 um\"\n",
+                    by_edge = smallest + "[grading]\ncloud_edge = \"7 mm\"\n";
+  const Scene scene = parse_scene(by_d50, "s");
+  EXPECT_EQ(scene.grading.d50, 0.45e-3);
+  const std::string text = to_toml(scene);
+  EXPECT_NE(text.find("d50 = \"0.45 mm\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("cloud_edge"), std::string::npos) << text;
+  EXPECT_EQ(parse_scene(text, "s"), scene);
+  // scenes without it, and with them the recipes of specimens in caches, are what they were
+  EXPECT_EQ(to_toml(parse_scene(by_edge, "s")).find("d50"), std::string::npos);
+  EXPECT_EQ(parse_scene(by_edge, "s", {"grading.d50=0.45 mm"}), scene);
+  EXPECT_EQ(parse_scene(by_d50, "s", {"grading.cloud_edge=7 mm"}), parse_scene(by_edge, "s"));
+}
+
 TEST(SceneOverride, ReplacesValues)
 {
   const Scene scene =
@@ -275,7 +291,7 @@ TEST(Scene, RoundTripToTheBit)
   const Overrides variants[] = {{},
                                 {"motion.strain_rate=0.1/s", "specimen.preparation_friction=9 deg"},
                                 {"specimen.void_ratio=0.7", "grading.table=[['0.1 mm', 3], ['0.3 mm', 100]]"},
-                                {"specimen.file=a.h5", "motion.time_step=3 ns"},
+                                {"specimen.file=a.h5", "motion.time_step=3 ns", "grading.d50=0.3 mm"},
                                 {"specimen.domain=periodic-cell", "specimen.consolidation=k0"},
                                 {"specimen.domain=periodic-cell", "specimen.file=a.h5"}};
   for (const Overrides &variant : variants)
@@ -291,6 +307,8 @@ TEST(Scene, RoundTripToTheBit)
             for (Stage &stage : scene.stages)
               if (key.belongs_to(stage.index()))
                 scramble(key, key.field(scene, stage), random);
+        if (scene.grading.d50)
+          scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
         if (scene.specimen.e_min)
           scene.specimen.e_max = *scene.specimen.e_min * 1.37;
         for (auto &[diameter, percent] : scene.grading.table)
