@@ -21,11 +21,12 @@ for tool in sphinx-build doxygen; do
   fi
 done
 
-site=$output/html
+site=$output/html.part # becomes $output/html when it is whole
+rm -rf "$site"
 mkdir -p "$site"
 sphinx-build -W --keep-going -q -c docs/site -d "$output/doctrees" -b html . "$site"
 rm -rf "$site/cpp"
-(cat docs/site/Doxyfile; echo "OUTPUT_DIRECTORY = $output") | doxygen -
+(cat docs/site/Doxyfile; echo "OUTPUT_DIRECTORY = $output"; echo "HTML_OUTPUT = html.part/cpp") | doxygen -
 # Doxygen names a list of nested classes that it leaves out where all of them are private.
 { grep -rlF '#nested-classes"' "$site/cpp" | xargs grep -LF 'name="nested-classes"' || true; } |
   xargs -r sed -i 's|<a href="#nested-classes">[^<]*</a>[^<]*||'
@@ -55,4 +56,6 @@ cp -rL "$mathjax/extensions" "$site/_static/mathjax/"
 echo '<!doctype html><meta http-equiv="refresh" content="0; url=docs/index.html"><a href="docs/index.html">Isostat</a>' \
   >"$site/index.html"
 python3 docs/site/check_links.py "$site"
-echo "docs: $site/index.html"
+rm -rf "$output/html"
+mv "$site" "$output/html"
+echo "docs: $output/html/index.html"

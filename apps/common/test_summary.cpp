@@ -286,7 +286,7 @@ std::string to_text(const TestSummary &s, const Scene &scene)
                         s.cycles_to_liquefaction, 2 * s.cycles_to_liquefaction);
   if (s.liquefied)
     text +=
-        fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after          "
+        fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after       "
                     "{:.3f}\n  I_R as p'/p0 recovers    {}",
                     s.shear ? "|gamma| before it" : "strain before it", 100 * s.strain_before, s.redundancy_at_onset,
                     s.redundancy_min,
@@ -311,7 +311,7 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
             {"relative_density", or_null(s.relative_density)},
             {"e_min", or_null(s.e_min)},
             {"e_max", or_null(s.e_max)},
-            {"preparation_friction_deg", s.preparation_friction},
+            {"preparation_friction_deg", s.preparation_friction < 0 ? Json() : Json(s.preparation_friction)},
             {"p0", s.p0},
             {"steps", std::llround(s.steps)},
             {"steps_since_resumed", std::llround(s.last_steps)},

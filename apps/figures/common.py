@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
+SAME_VOLUME = 1e-6  # change of e below which a test is at constant volume
 TURNS = 1.5  # path over range of the strain from which a test counts as turning back
 MEDIAN_ROWS = 21
 UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "%": 1e-2}
@@ -119,6 +120,11 @@ class Run:
         self.strain = self["gamma_xy"] if self.shear else self["eps_y"]
         self.strain_label = r"Shear strain $\gamma$ (%)" if self.shear else r"Axial strain $\varepsilon_1$ (%)"
         self.progress, self.progress_label = self._progress()
+
+    @property
+    def drained(self):
+        """Whether the volume changes while it is sheared."""
+        return self.has("e") and np.ptp(self["e"]) > SAME_VOLUME
 
     def has(self, name):
         return name in self.columns and np.isfinite(self.columns[name]).any()

@@ -3,7 +3,7 @@
 
     python3 -m figures element_test RESULTS
 
-fig_stress_path.png        (a) q against p', (b) q against axial strain;
+fig_stress_path.png        (a) q against p', (b) q against axial strain; (c) drained: volumetric strain;
                            in simple shear tau against (a) sigma'_v, (b) p', (c) gamma
 fig_redundancy.png         (a) redundancy index I_R, (b) p'/p0'
 fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
@@ -31,7 +31,8 @@ NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
 def stress_path(run):
     if run.shear:
         return shear_path(run)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.3), layout="constrained")
+    n = 3 if run.drained else 2
+    figure, (left, right, *volume) = plt.subplots(1, n, figsize=(3.6 * n, 3.3), layout="constrained")
     p, q = run["p"] / 1e3, run["q"] / 1e3
     for axes, x in ((left, p), (right, 100 * run.strain)):
         draw_path(run, axes, x, q)
@@ -43,6 +44,11 @@ def stress_path(run):
         right.axvline(0, color=BLACK, linewidth=0.6, zorder=1.4)
     panel_letter(left, "a")
     panel_letter(right, "b")
+    for axes in volume:
+        draw_path(run, axes, 100 * run.strain, 100 * (run["eps_x"] + run["eps_y"] + run["eps_z"]))
+        axes.set_xlabel(run.strain_label)
+        axes.set_ylabel(r"Volumetric strain $\varepsilon_v$ (%)")
+        panel_letter(axes, "c")
     legend_below(run, figure, left)
     return figure
 

@@ -7,13 +7,15 @@ fig_force_distribution.png  probability density of fn/<fn> and |fs|/<fn>, first,
 fig_roses.png               contact normals in the x-y plane and about y: number (bars) and mean force (line)
 fig_anisotropies.png        a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain
 
-Onset is the first snapshot with p'/p0' < 0.01; without one, the snapshot of the smallest p' stands in for it.
+Onset is the first snapshot with p'/p0' < 0.01; without one, that of the smallest p' stands in for it,
+if it is neither the first nor the last.
 """
 import csv
 import json
 import re
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plt
 from .drawing import Drawing
@@ -48,9 +50,10 @@ class Analysis:
         last = len(self.rows["p"]) - 1
         self.chosen = {"first": 0}
         if last > 0:
-            if onset is None:
-                self.chosen["smallest p'"] = int(np.argmin(self.rows["p"]))
-            else:
+            smallest = int(np.argmin(self.rows["p"]))
+            if onset is None and 0 < smallest < last:
+                self.chosen["smallest p'"] = smallest
+            elif onset is not None:
                 self.chosen["onset"] = onset
             self.chosen["last"] = last
 
@@ -116,7 +119,7 @@ def anisotropies(analysis):
     rows = analysis.rows
     if len(rows["p"]) < 2:
         return None
-    figure, panels = plt.subplots(2, 2, figsize=(7.4, 5.2), sharex="col", sharey="row", layout="constrained")
+    figure, panels = plt.subplots(2, 2, figsize=(9.0, 5.2), sharex="col", sharey="row", layout="constrained")
     of_forces = [("$a_c$ contacts", rows["a_c"], BLUE), ("$a_n$ normal forces", rows["a_n"], ORANGE),
                  ("$a_t$ tangential forces", rows["a_t"], GREEN)]
     of_fabric = [(label, rows[f"{name}yy"] - 0.5 * (rows[f"{name}xx"] + rows[f"{name}zz"]), colour)
@@ -136,9 +139,10 @@ def anisotropies(analysis):
     panels[1, 0].set_ylabel(r"$F_{yy} - (F_{xx}+F_{zz})/2$")
     panels[1, 0].set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
     panels[1, 1].set_xlabel("Snapshot")
+    panels[1, 1].xaxis.set_major_locator(MaxNLocator(integer=True))
     for row in (0, 1):
         handles, labels = panels[row, 0].get_legend_handles_labels()
-        panels[row, 1].legend(handles, labels, loc="lower left", ncols=2, handlelength=1.2, columnspacing=1.0,
+        panels[row, 1].legend(handles, labels, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.2,
                               fontsize=7.5)
     return figure
 

@@ -46,6 +46,10 @@ void run(ConvertLine asked)
   const PackingFormat format = asked.format.empty() ? format_of_file(asked.out) : format_named(asked.format);
   if (std::error_code ignored; !asked.overwrite && std::filesystem::exists(asked.out, ignored))
     throw InputError(fmt::format("{}: the file exists; give --overwrite to replace it, or another name", asked.out));
+  if (const std::filesystem::path folder = std::filesystem::absolute(asked.out).parent_path();
+      !std::filesystem::is_directory(folder))
+    throw InputError(
+        fmt::format("{}: there is no folder {}. Make it, or give another name.", asked.out, folder.string()));
   const auto quantity = [](const char *option, const std::string &text, Dimension dimension) {
     try
       {

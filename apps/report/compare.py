@@ -39,7 +39,7 @@ def change(first, second):
     difference = second - first
     if abs(difference) <= SAME * max(abs(first), abs(second)):
         return "0", ""
-    return f"{difference:+.4g}", f"{100 * difference / abs(first):+.3g} %" if first else ""
+    return f"{difference:+.4g}", f"{100 * difference / abs(first):+.3g} %" if first * second > 0 else ""
 
 
 def summary_rows(first, second):

@@ -48,11 +48,6 @@ def panels_of(rows, columns, width=7.6, height=3.0):
 # --- element tests ---------------------------------------------------------------------------------------------------
 
 
-def is_drained(run):
-    """Whether the void ratio changes while it is sheared."""
-    return run.has("e") and np.ptp(run["e"]) > 1e-6
-
-
 def kind_of_test(run):
     """Triaxial or simple shear."""
     return "simple shear" if run.shear else "triaxial"
@@ -71,7 +66,7 @@ def stress_curves(pair, names):
     draw_pair(one, pair, names, lambda run: run[path] / 1e3, lambda run: run[load] / 1e3)
     draw_pair(two, pair, names, lambda run: 100 * run.strain, lambda run: run[load] / 1e3)
     draw_pair(three, pair, names, progress, lambda run: run["p"] / 1e3)
-    last, last_label = ("e", "Void ratio $e$") if any(is_drained(run) for run in pair) else (
+    last, last_label = ("e", "Void ratio $e$") if any(run.drained for run in pair) else (
         "IR", "Redundancy index $I_R$")
     draw_pair(four, pair, names, progress, lambda run: run[last] if run.has(last) else np.full(run.n_rows, np.nan))
     one.set_xlim(left=0)
@@ -93,7 +88,7 @@ def numbers_of_test(run):
     peak, p = int(np.argmax(np.abs(run[load]))), run["p"] / 1e3
     numbers = {f"peak {load} (kPa)": run[load][peak] / 1e3, f"strain at peak {load} (%)": 100 * run.strain[peak],
                "least p' (kPa)": p.min(), "p' at the end (kPa)": p[-1], f"{load} at the end (kPa)": run[load][-1] / 1e3}
-    if is_drained(run):
+    if run.drained:
         numbers["void ratio at the end"] = run["e"][-1]
     if run.has("IR"):
         numbers["least redundancy index"] = np.nanmin(run["IR"])

@@ -10,6 +10,9 @@ NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxi
            "calibrate": "calibrate.json", "micromechanics": "micromechanics.json"}
 
 
+IN_PYTHON = {"isostat.run()": "element_test", "isostat.column.run()": "soil_column"}  # whose files they leave
+
+
 class NoResults(Exception):
     """The folder is not what it was taken for; the message says what to do."""
 
@@ -70,6 +73,7 @@ def find_results(path):
         return Results(path, "micromechanics")
     words = read_provenance(text_of(path / "provenance.txt")).get("command", "").split()
     program = words[0].rpartition("/")[2] if words else ""
+    program = IN_PYTHON.get(program, program)
     if program not in NUMBERS:
         reason = f"its provenance.txt names {program}" if program else "it has no provenance.txt with a command"
         raise NoResults(f"{path}: is not a results folder that can be reported ({reason}). Give the folder in which "

@@ -12,8 +12,9 @@ namespace isostat
 {
 namespace
 {
-constexpr double largest_radius = 0.05, smallest_radius = 1e-6; // m; cobbles and clay are no sand
-constexpr double remarkable = 0.05;                             // overlap of a radius that deserves a warning
+constexpr double smallest_radius = 1e-6;           // m; clay is no sand
+constexpr double lightest = 500, heaviest = 25000; // kg/m3; no grain of soil or of its models is beyond
+constexpr double remarkable = 0.05;                // overlap of a radius that deserves a warning
 
 void look_at_pairs(const Snapshot &s, PackingFigures &f)
 {
@@ -88,10 +89,11 @@ std::string figures_text(const PackingFigures &f, const Snapshot &s)
       : f.overlap > 0   ? fmt::format("{:.3g} % of the radius, grains {} and {}", 100 * f.overlap, f.first, f.second)
                         : "none";
   return fmt::format("  grains           {}\n  d50              {:.4g} mm\n  diameters        {:.4g} to {:.4g} mm\n"
-                     "  {:<17}{:.6g} x {:.6g} x {:.6g} mm{}\n  void ratio       {:.4f}\n  largest overlap  {}\n",
-                     f.n_grains, 1e3 * f.d50, 1e3 * f.smallest, 1e3 * f.largest, s.cell ? "periodic cell" : "box",
-                     1e3 * f.edges[0], 1e3 * f.edges[1], 1e3 * f.edges[2], leans ? ", leaning" : "", f.void_ratio,
-                     overlap);
+                     "  grain density    {:.6g} kg/m3\n  {:<17}{:.6g} x {:.6g} x {:.6g} mm{}\n  void ratio       "
+                     "{:.4f}\n  largest overlap  {}\n",
+                     f.n_grains, 1e3 * f.d50, 1e3 * f.smallest, 1e3 * f.largest, s.grains.density,
+                     s.cell ? "periodic cell" : "box", 1e3 * f.edges[0], 1e3 * f.edges[1], 1e3 * f.edges[2],
+                     leans ? ", leaning" : "", f.void_ratio, overlap);
 }
 
 std::vector<std::string> check_packing(const Snapshot &s, const std::string &file, const std::string &remedy)
@@ -107,6 +109,10 @@ std::vector<std::string> check_packing(const Snapshot &s, const std::string &fil
         fmt::format("{}: the largest radius is {:.4g} m; expected at least {} m, because smaller grains are "
                     "clay. Were lengths scaled that are in m already? If they are in another unit, {}.",
                     file, r_max, smallest_radius, remedy));
+  if (s.grains.density < lightest || s.grains.density > heaviest)
+    throw InputError(fmt::format("{}: the grain density is {:g} kg/m3; expected {:g} to {:g} kg/m3, such as 2650 for "
+                                 "quartz. Correct it there, in SI units.",
+                                 file, s.grains.density, lightest, heaviest));
   const PackingFigures f = packing_figures(s);
   if (f.overlap > too_deep)
     throw InputError(

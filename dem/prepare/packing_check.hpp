@@ -25,6 +25,9 @@ struct PackingFigures
 /// Overlap, of the smaller radius, above which a packing is no state that contact laws know.
 inline constexpr double too_deep = 0.3;
 
+/// Of grains, m: cobbles are no sand.
+inline constexpr double largest_radius = 0.05;
+
 /// tested: tests/dem/prepare/packing_check_test.cpp
 PackingFigures packing_figures(const Snapshot &snapshot);
 
@@ -35,8 +38,8 @@ std::string figures_text(const PackingFigures &figures, const Snapshot &snapshot
 /// @param file    for messages
 /// @param remedy  how lengths are scaled, such as "give --length-unit mm"; for messages
 /// @return warnings, whole sentences: overlaps above 5 % of a radius, a box much wider than what it holds
-/// @throws InputError  radii above 5 cm or below 1 um, overlaps above 30 % of a radius, spheres that stand beyond a
-///         wall by more than that
+/// @throws InputError  radii above 5 cm or below 1 um, a grain density beyond 500 to 25,000 kg/m3, overlaps above 30 %
+///         of a radius, spheres that stand beyond a wall by more than that
 /// tested: tests/dem/prepare/packing_check_test.cpp, tests/apps/convert_test.py
 std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const std::string &remedy);
 } // namespace isostat

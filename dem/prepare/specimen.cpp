@@ -99,11 +99,23 @@ Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &
                   e, missed_density(spec, e), spec.density_tolerance));
 }
 
+/// Metres that were meant as millimetres.
+void check_size(const GradingSpec &spec, const Packing &grains)
+{
+  if (grains.max_radius() > largest_radius)
+    throw InputError(fmt::format(
+        "grading.{} makes a largest grain of {:.3g} m across; expected at most {:g} m because it is "
+        "soil that is meant. Is it given in m instead of mm?",
+        spec.d50 ? fmt::format("d50 = {:g} m", *spec.d50) : fmt::format("cloud_edge = {:g} m", spec.cloud_edge),
+        2 * grains.max_radius(), 2 * largest_radius));
+}
+
 Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
 {
   const SpecimenSpec &spec = scene.specimen;
   const Preparation how{spec, observer, threads};
   const Cloud cloud = make_cloud(scene.grading);
+  check_size(scene.grading, cloud.packing);
   observer.event(fmt::format("cloud: {} grains, d50 {:.3f} mm (scaled up {:.2f} times), Cu {:.2f}, sizes 1:{:.2f}",
                              cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
                              uniformity_coefficient(grading_curve(scene.grading)),
@@ -142,6 +154,25 @@ void check_domain(const Scene &scene, const Snapshot &state)
                                  scene.specimen.file, is, scene.specimen.domain));
 }
 
+/// What a scene says of its grains and of its pressure, and what its file has instead, which is taken.
+void note_differences(const Scene &scene, const Snapshot &state, RunObserver &observer)
+{
+  const std::string &file = scene.specimen.file;
+  if (const double is = state.grains.density, said = scene.grading.density; std::abs(is - said) > 1e-3 * said)
+    observer.event(fmt::format("warning: {}: its grains have a density of {:g} kg/m3, and keep it; grading.density = "
+                               "{:g} kg/m3 is without effect",
+                               file, is, said));
+  if (state.contacts.empty() || scene.stages.empty() || as<Compress>(scene.stages[0]) ||
+      scene.specimen.consolidation != "isotropic")
+    return;
+  const double p = invariants(contact_stress(state)).p;
+  if (const double said = scene.specimen.pressure; std::abs(p - said) > 0.05 * said)
+    observer.event(
+        fmt::format("warning: {}: its mean effective stress is {:.4g} kPa, specimen.pressure = {:g} kPa; the "
+                    "test starts from what the file has. Bring it there by a stage `compress`",
+                    file, p / 1e3, said / 1e3));
+}
+
 Specimen import(const Scene &scene, RunObserver &observer)
 {
   const SpecimenPlace place = specimen_place(scene.specimen.file);
@@ -151,6 +182,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
       Specimen specimen = read_stored_packing(path, place.entry);
       check_domain(scene, specimen.state);
       specimen.state.law = scene.contact;
+      note_differences(scene, specimen.state, observer);
       describe(scene, specimen);
       return specimen;
     }
@@ -165,6 +197,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
   Specimen specimen;
   specimen.state = sorted_along_curve(read.state);
   check_domain(scene, specimen.state);
+  note_differences(scene, specimen.state, observer);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
   describe(scene, specimen);

@@ -9,11 +9,25 @@
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
 
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+
 namespace isostat::python
 {
 namespace
 {
-Snapshot read_stored(const std::string &path) { return read_snapshot_file(path); }
+/// Paths as strings or pathlib.Path.
+using fs_path = std::filesystem::path;
+
+Snapshot read_stored(const fs_path &path) { return read_snapshot_file(path); }
+
+/// As the command line does.
+void check_new(const fs_path &path, bool overwrite)
+{
+  if (std::error_code ignored; !overwrite && std::filesystem::exists(path, ignored))
+    throw InputError(
+        fmt::format("{}: the file exists; give overwrite=True to replace it, or another name", path.string()));
+}
 
 void warn(const std::vector<std::string> &notes)
 {
@@ -22,16 +36,16 @@ void warn(const std::vector<std::string> &notes)
       throw py::error_already_set();
 }
 
-Specimen read_packing(const std::string &path, const std::string &length_unit, double density,
-                      const std::string &domain, const Law &law, bool anyway)
+Specimen read_packing(const fs_path &path, const std::string &length_unit, double density, const std::string &domain,
+                      const Law &law, bool anyway)
 {
   const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
-  const CheckedPacking packing = read_any_packing(path, {{law, density, scale}, domain, anyway});
+  const CheckedPacking packing = read_any_packing(path.string(), {{law, density, scale}, domain, anyway});
   warn(packing.notes);
   return packing.specimen;
 }
 
-PackingFormat wanted_format(const std::string &path, const std::string &format)
+PackingFormat wanted_format(const fs_path &path, const std::string &format)
 {
   return format.empty() ? format_of_file(path) : format_named(format);
 }
@@ -49,21 +63,25 @@ void bind_packings(py::module_ &module)
       "where the file has a box that repeats itself.");
   module.def(
       "write_packing",
-      [](const std::string &path, const Specimen &specimen, const std::string &format) {
+      [](const fs_path &path, const Specimen &specimen, const std::string &format, bool overwrite) {
+        check_new(path, overwrite);
         warn(write_packing(path, specimen, wanted_format(path, format)));
       },
-      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "",
+      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "", py::arg("overwrite") = false,
       "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
-      "\"lammps-dump\", \"lammps-data\", \"yade\", \"csv\" or \"vtp\". What the format cannot hold is a warning.");
+      "\"lammps-dump\", \"lammps-data\", \"yade\", \"csv\" or \"vtp\". What the format cannot hold is a warning. A "
+      "file that is\n"
+      "there is replaced only with `overwrite`.");
   module.def(
       "convert",
-      [](const std::string &from, const std::string &to, const std::string &length_unit, double density,
-         const std::string &domain, const std::string &format, bool anyway) {
+      [](const fs_path &from, const fs_path &to, const std::string &length_unit, double density,
+         const std::string &domain, const std::string &format, bool anyway, bool overwrite) {
+        check_new(to, overwrite);
         const PackingFormat wanted = wanted_format(to, format);
         warn(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
       },
       py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
-      py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false,
+      py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false, py::arg("overwrite") = false,
       "What `isostat convert` does: read_packing, then write_packing.");
 }
 } // namespace
@@ -83,27 +101,31 @@ void bind_files(py::module_ &module)
   module.def("read_snapshot", &read_stored, py::arg("path"), "A snapshot_*.h5 of a run, or the packing of a specimen.");
   module.def(
       "read_specimen",
-      [](const std::string &file) {
-        const SpecimenPlace place = specimen_place(file);
+      [](const fs_path &file) {
+        const SpecimenPlace place = specimen_place(file.string());
         return place.entry.empty() ? read_specimen(std::filesystem::path(place.path))
                                    : read_library_entry(place.path, place.entry);
       },
       py::arg("path"), "A specimen file, or one of a library: \"library.h5#s0007\".");
   module.def(
       "write_specimen",
-      [](const std::string &path, const Specimen &specimen) { write_specimen(std::filesystem::path(path), specimen); },
-      py::arg("path"), py::arg("specimen"), "An HDF5 file that `specimen.file` of a scene may name.");
+      [](const fs_path &path, const Specimen &specimen, bool overwrite) {
+        check_new(path, overwrite);
+        write_specimen(path, specimen);
+      },
+      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("overwrite") = false,
+      "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
       "import_tables",
-      [](const std::string &path, const Law &law, double density) { return import_tables(path, law, density); },
+      [](const fs_path &path, const Law &law, double density) { return import_tables(path, law, density); },
       py::arg("path"), py::arg("law") = Law(), py::arg("density") = 2650.0,
       "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide).");
   module.def(
-      "write_vtp", [](const std::string &path, const Snapshot &snapshot) { write_grains_vtp(path, snapshot); },
+      "write_vtp", [](const fs_path &path, const Snapshot &snapshot) { write_grains_vtp(path, snapshot); },
       py::arg("path"), py::arg("snapshot"), "Grains for ParaView.");
   module.def(
       "write_force_chains_vtp",
-      [](const std::string &path, const Snapshot &snapshot) { write_force_chains_vtp(path, snapshot); },
-      py::arg("path"), py::arg("snapshot"), "Force chains for ParaView.");
+      [](const fs_path &path, const Snapshot &snapshot) { write_force_chains_vtp(path, snapshot); }, py::arg("path"),
+      py::arg("snapshot"), "Force chains for ParaView.");
 }
 } // namespace isostat::python

@@ -4,10 +4,23 @@
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
 
+#include <fmt/format.h>
+
 namespace isostat::python
 {
 namespace
 {
+/// @throws InputError  a state of another number of grains
+void restore(Rve &rve, const RveState &state)
+{
+  const std::size_t has = rve.assembly().packing().n_grains();
+  const std::size_t numbers = state.grains.grains.size(), of_a_grain = 15; // AssemblyState
+  if (numbers != of_a_grain * has)
+    throw InputError(fmt::format("state: is of {} grains, the element has {}. Give one that its own save() returned.",
+                                 numbers / of_a_grain, has));
+  rve.restore(state);
+}
+
 /// Keys of [motion] that are given, over the defaults of an element.
 RveSettings settings_of(const std::optional<double> &inertial_number, const std::optional<double> &damping,
                         const std::optional<double> &strain_rate, const std::optional<Mat3> &frame,
@@ -55,7 +68,11 @@ void bind_response(py::module_ &module)
       .def_readonly("mean_stress_change", &RveResponse::mean_stress_change, "Of tr(stress)/3, Pa, tension positive.")
       .def_readonly("steps", &RveResponse::steps, "Time steps it took.")
       .def_readonly("indicator", &RveResponse::indicator, "Quasi-static error indicator.")
-      .def("__bool__", [](const RveResponse &r) { return r.outcome == RveOutcome::accepted; });
+      .def("__bool__", [](const RveResponse &r) { return r.outcome == RveOutcome::accepted; })
+      .def("__repr__", [](const RveResponse &r) {
+        return r.outcome == RveOutcome::accepted ? fmt::format("<isostat.RveResponse accepted, {} steps>", r.steps)
+                                                 : fmt::format("<isostat.RveResponse rejected: {}>", r.reason);
+      });
 }
 } // namespace
 
@@ -95,7 +112,7 @@ void bind_rve(py::module_ &module)
           py::arg("yielding_contacts_resist") = true, "As Snapshot.stiffness().")
       .def("snapshot", [](const Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); })
       .def("save", &Rve::save)
-      .def("restore", &Rve::restore, py::arg("state"), "Of this element, or of one with the same grains.")
+      .def("restore", &restore, py::arg("state"), "Of this element, or of one with the same grains.")
       .def(
           "pack",
           [](const Rve &rve) {

@@ -42,6 +42,16 @@ class Compare(ReportTest):
         self.assertNotIn("differs", text)
         self.assertEqual(contents(self.runs / "one"), before)
 
+    def test_a_run_of_python(self):
+        shutil.copytree(self.runs / "one", self.folder / "notebook")
+        path = self.folder / "notebook/provenance.txt"
+        text, n = re.subn(r"(?m)^(command +).*$", r"\1isostat.run() in Python", path.read_text(encoding="utf-8"))
+        self.assertEqual(n, 1)
+        path.write_text(text, encoding="utf-8")
+        self.assert_done(self.compare(self.runs / "one", "notebook"))
+        self.assert_done(self.run_app("isostat", "report", "notebook"))
+        self.assertTrue((self.folder / "notebook/report.html").exists())
+
     def refuse(self, first, second, *parts):
         self.assert_refused(self.compare(first, second), *parts)
         self.assertFalse((self.folder / "compare.html").exists())

@@ -16,6 +16,8 @@ class RveTest(ToleranceTest):
                               specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
         with tempfile.TemporaryDirectory() as cache:
             cls.packing = isostat.prepare(scene, cache=cache).snapshot
+            small = scene.with_(grading={"grains": 200, "cloud_edge": "2.7 mm"})
+            cls.other_packing = isostat.prepare(small, cache=cache).snapshot
 
     def test_stress_follows_the_stiffness(self):
         rve = isostat.Rve(self.packing, min_steps=2000)
@@ -35,6 +37,8 @@ class RveTest(ToleranceTest):
         first = rve.advance(strain).stress
         rve.restore(state)
         np.testing.assert_array_equal(rve.advance(strain).stress, first)
+        with self.assertRaisesRegex(isostat.InputError, "state: is of 250 grains, the element has 200"):
+            isostat.Rve(self.other_packing).restore(state)
         other = isostat.Rve.unpack(rve.pack())
         np.testing.assert_array_equal(other.advance(strain).stress, rve.advance(strain).stress)
 
@@ -54,6 +58,7 @@ class RveTest(ToleranceTest):
         response = rve.advance(np.diag([0.0, -0.5, 0.0]))
         self.assertFalse(response)
         self.assertIn("increment", response.reason)
+        self.assertIn("rejected: ", repr(response))
         np.testing.assert_array_equal(rve.stress, before)
 
     def test_a_packing_in_a_box_is_refused(self):

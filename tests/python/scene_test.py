@@ -40,6 +40,13 @@ class SceneTest(ToleranceTest):
         self.assertEqual(other.to_dict()["specimen"]["pressure"], "100 kPa")
         self.assertEqual(other.to_dict()["stage"][0]["until"]["cycles"], 7)
 
+    def test_the_size_of_grains_is_given_once(self):
+        scene = isostat.Scene(TEXT, set={"grading.d50": "0.45 mm"})
+        self.assertEqual(scene.to_dict()["grading"]["d50"], "0.45 mm")
+        self.assertNotIn("cloud_edge", scene.to_dict()["grading"])
+        with self.assertRaisesRegex(isostat.InputError, "excludes grading.cloud_edge"):
+            isostat.Scene(grading={"cloud_edge": "5 mm", "d50": "0.45 mm"})
+
     def test_wrong_scenes_are_refused_in_words(self):
         for scene, words in (({"motion": {"dampingg": 0.1}}, "Did you mean"),
                              ({"specimen": {"pressure": "100 m"}}, "pressure"),

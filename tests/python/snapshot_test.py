@@ -56,6 +56,9 @@ class SnapshotTest(ToleranceTest):
         with tempfile.TemporaryDirectory() as folder:
             path = str(pathlib.Path(folder) / "three.h5")
             isostat.write_specimen(path, isostat.Specimen(three_spheres()))
+            with self.assertRaisesRegex(isostat.InputError, "three.h5: the file exists; give overwrite=True"):
+                isostat.write_specimen(path, isostat.Specimen(three_spheres()))
+            isostat.write_specimen(pathlib.Path(path), isostat.Specimen(three_spheres()), overwrite=True)
             again = isostat.read_specimen(path).snapshot
             np.testing.assert_array_equal(again.positions, CENTRES)
             np.testing.assert_array_equal(isostat.read_snapshot(path).radii, again.radii)
@@ -74,7 +77,9 @@ class SnapshotTest(ToleranceTest):
             isostat.write_packing(source, isostat.Specimen(small))
             for ending in ("dump", "data", "txt", "csv", "vtp", "h5"):
                 target = f"{folder}/b.{ending}"
-                isostat.convert(source, target)
+                isostat.convert(pathlib.Path(source), target)
+                with self.assertRaisesRegex(isostat.InputError, "the file exists"):
+                    isostat.convert(source, target)
                 again = isostat.read_packing(target).snapshot
                 np.testing.assert_array_equal(again.positions, small.positions)
                 np.testing.assert_array_equal(again.cell if ending != "dump" else small.cell, small.cell)

@@ -55,6 +55,9 @@ TEST(PackingCheck, WhatIsNoSoilIsRefused)
   EXPECT_THAT(refusal(two(0, 1)), HasSubstr("scale it"));
   EXPECT_THAT(refusal(two(0, 1e-6)), HasSubstr("clay"));
   EXPECT_THAT(refusal(two(-0.05)), HasSubstr("overlap by 50 % of the smaller radius (1 pairs"));
+  Snapshot light = two(0);
+  light.grains.density = 2.65;
+  EXPECT_THAT(refusal(light), HasSubstr("p.txt: the grain density is 2.65 kg/m3; expected 500 to 25000 kg/m3"));
   Snapshot out = two(0.15);
   EXPECT_THAT(message_of<InputError>([&] {
                 out.box.upper[0] = 0.85e-3;
