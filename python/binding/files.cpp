@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packings in and out.   tested: tests/python/snapshot_test.py
+#include "base/error.hpp"
 #include "base/units.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """calibrate finds known parameters again: drained tests at a known angle of friction, rolling limit and modulus, on
-specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, forty minutes on two
+specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, half an hour on two
 cores.
 
 First a search over wide bounds with few specimens, then one around what it found with many. Specimens of 1,000 grains
@@ -33,7 +33,7 @@ AROUND = {"contact.friction": (-4, 4), "contact.rolling.limit": (1 / 1.6, 1.6), 
 CURVES = {"dense": 4, "loose": 20}  # preparation friction, deg
 GRAINS, STRAIN, RATE = 1000, 0.08, 4e-3
 LABORATORY_SEEDS = range(101, 201)  # those of the trials begin with 1
-FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 100, "trials": 12, "design": 0}
+FEW, MANY = {"seeds": 6, "trials": 25, "design": 6}, {"seeds": 100, "trials": 10, "design": 0}
 CORES = len(os.sched_getaffinity(0))
 
 PLAN = """title = "Known parameters, found again"
