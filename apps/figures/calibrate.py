@@ -132,6 +132,11 @@ def scale_of(axis, parameter):
     return low, high
 
 
+def short(label):
+    """"specimen.preparation_friction of dense (deg)" as it fits a panel."""
+    return label.partition(".")[2].replace(".", " ").replace("_", " ").replace(" of ", "\nof ")
+
+
 def tradeoffs(results):
     """Below the diagonal pairs, on it each parameter against the misfit."""
     labels, n = list(results.values), len(results.parameters)
@@ -156,9 +161,9 @@ def tradeoffs(results):
                 plain_log_ticks(axes.yaxis)
             else:
                 axes.set_ylim(*scale_of(axes.set_yscale, results.parameters[i]))
-            axes.set_ylabel("Misfit (-)" if i == j else labels[i] if j == 0 else "", fontsize=8)
-            axes.set_xlabel(labels[j] if i == n - 1 else "", fontsize=8)
-    figure.colorbar(colours, ax=panels, label="Misfit (-)", extend="max", shrink=0.8)
+            axes.set_ylabel("Misfit (-)" if i == j else short(labels[i]) if j == 0 else "", fontsize=8)
+            axes.set_xlabel(short(labels[j]) if i == n - 1 else "", fontsize=8)
+    figure.colorbar(colours, ax=panels[:, -1], label="Misfit (-)", extend="max", shrink=min(0.8, 2 / n), aspect=25)
     return figure
 
 
