@@ -7,7 +7,7 @@ cores.
 First a search over wide bounds with few specimens, then one around what it found with many. Specimens of 1,000 grains
 scatter: with these two curves one per curve tells friction to 1.4 deg, the rolling limit to 27 % and the modulus to 7 %
 (standard deviations, from derivatives of the curves), and n of them to that over sqrt(n), the laboratory's included: a
-hundred and a hundred tell the rolling limit to 4 %. Undrained paths of loose specimens scatter too much to help, even thirty of them.
+hundred and a hundred tell the rolling limit to 4 %. Undrained paths of loose specimens scatter too much to help.
 The rolling limit shows below some 0.3 only, where moments reach it, and the more the stiffer rolling is (alpha_r = 1
 here; with 0.3 a limit of 0.35 and one of 1 have the same curves)."""
 import concurrent.futures
