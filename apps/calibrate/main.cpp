@@ -109,8 +109,9 @@ std::string find_best(const CalibrationPlan &plan, const SceneMaker &scenes, Tri
 /// What would stop the call before or with its first trial.
 void check_start(const CalibrationPlan &plan, const SceneMaker &scenes, const fs::path &folder, bool overwrite)
 {
+  const std::vector<double> start = first_points(plan, scenes)[0];
   for (const PlanCurve &curve : plan.curves)
-    scenes.trial(first_points(plan, scenes)[0], curve, plan.specimens.first_seed);
+    scenes.trial(start, curve, plan.specimens.first_seed);
   if (!overwrite && fs::exists(folder / "plan.toml"))
     check_calibration_folder(folder, plan, scenes.scene_text());
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace isostat
@@ -63,18 +64,18 @@ std::string curve_table(const CalibrationResult &r)
 std::string worse_blind(const CalibrationResult &r)
 {
   const Trial &start = r.trials.all()[r.start], &best = r.trials.all()[r.best];
-  std::string names;
-  std::size_t blind = 0, worse = 0;
+  std::size_t blind = 0;
+  std::vector<std::string> worse;
   for (std::size_t c = 0; c < r.plan.curves.size(); ++c)
     if (const auto &there = start.curves[c], &here = best.curves[c]; r.plan.curves[c].blind && there && here)
       {
         ++blind;
-        if (here->misfit <= there->misfit + here->scatter.value_or(0))
-          continue;
-        ++worse;
-        names += (names.empty() ? "" : ", ") + r.plan.curves[c].name;
+        if (here->misfit > there->misfit + here->scatter.value_or(0))
+          worse.push_back(r.plan.curves[c].name);
       }
-  return worse == 0 ? "" : fmt::format("  {} of {} blind curves became WORSE: {}\n", worse, blind, names);
+  return worse.empty()
+             ? ""
+             : fmt::format("  {} of {} blind curves became WORSE: {}\n", worse.size(), blind, fmt::join(worse, ", "));
 }
 
 std::string failures(const CalibrationResult &r)
