@@ -3,8 +3,6 @@
 #include "dem/rve/isostat_rve.h"
 
 #include "base/error.hpp"
-#include "base/files/hash.hpp"
-#include "dem/contact/law_parameters.hpp"
 #include "dem/io/packing_files.hpp"
 #include "dem/rve/rve.hpp"
 #include "dem/scene/scene.hpp"
@@ -18,13 +16,11 @@
 struct isostat_rve
 {
   isostat::Rve element;
-  std::uint64_t grains; ///< what tells whose state it is: sizes, masses and law
 };
 
 struct isostat_rve_state
 {
   isostat::RveState state;
-  std::uint64_t grains;
 };
 
 namespace isostat
@@ -128,28 +124,6 @@ Snapshot specimen_at(const std::string &place_text)
   return read_stored_packing(place.path, place.entry).state;
 }
 
-/// Of all that a state does not hold.
-std::uint64_t hash_of(const Rve &element)
-{
-  const Packing &grains = element.assembly().packing();
-  Law law = element.assembly().law();
-  Hash hash;
-  hash.words(std::as_bytes(std::span(grains.id)));
-  for (std::size_t i = 0; i < grains.n_grains(); ++i)
-    hash.words(std::vector{grains.radius(i), grains.mass(i), grains.inertia(i)});
-  hash.text(law->name());
-  for_each_parameter(*law.operator->(), [&](const std::string &name, const auto &value) {
-    hash.text(name).words(std::vector{static_cast<double>(value)});
-  });
-  return hash.value();
-}
-
-isostat_rve *made(Rve element)
-{
-  const std::uint64_t grains = hash_of(element);
-  return new isostat_rve{std::move(element), grains};
-}
-
 isostat_status told(const char *function, const RveResponse &response, isostat_rve_response *out)
 {
   if (out)
@@ -206,7 +180,7 @@ isostat_status isostat_rve_create(const char *specimen, const isostat_rve_settin
     *rve = nullptr;
   return guarded(__func__, [&] {
     isostat_rve *&place = given(rve, "rve");
-    place = made(Rve(specimen_at(&given(specimen, "specimen")), cpp_settings(settings)));
+    place = new isostat_rve{Rve(specimen_at(&given(specimen, "specimen")), cpp_settings(settings))};
     return ISOSTAT_OK;
   });
 }
@@ -293,9 +267,9 @@ isostat_status isostat_rve_save(const isostat_rve *rve, isostat_rve_state **stat
     isostat_rve_state *&to = given(state, "state");
     RveState copy = from.element.save();
     if (to)
-      *to = {std::move(copy), from.grains};
+      *to = {std::move(copy)};
     else
-      to = new isostat_rve_state{std::move(copy), from.grains};
+      to = new isostat_rve_state{std::move(copy)};
     return ISOSTAT_OK;
   });
 }
@@ -305,9 +279,6 @@ isostat_status isostat_rve_restore(isostat_rve *rve, const isostat_rve_state *st
   return guarded(__func__, [&] {
     isostat_rve &to = handle(rve, "rve");
     const isostat_rve_state &from = handle(state, "state");
-    if (from.grains != to.grains)
-      throw InputError("the state is that of other grains or of another law. Give one that isostat_rve_save() made "
-                       "from this element.");
     to.element.restore(from.state);
     return ISOSTAT_OK;
   });
@@ -340,7 +311,7 @@ isostat_status isostat_rve_unpack(const void *bytes, size_t size, const isostat_
   return guarded(__func__, [&] {
     const std::span packed(&given(static_cast<const std::byte *>(bytes), "bytes"), size);
     isostat_rve *&place = given(rve, "rve");
-    place = made(Rve::unpack(packed, cpp_settings(settings)));
+    place = new isostat_rve{Rve::unpack(packed, cpp_settings(settings))};
     return ISOSTAT_OK;
   });
 }

@@ -2,7 +2,9 @@
 #include "dem/rve/rve.hpp"
 
 #include "base/error.hpp"
+#include "base/files/hash.hpp"
 #include "base/stopwatch.hpp"
+#include "dem/contact/law_parameters.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
@@ -39,6 +41,20 @@ const Snapshot &periodic(const Snapshot &specimen)
                      "it with specimen.domain = \"periodic-cell\".");
   return specimen;
 }
+
+/// Of all that a state does not hold.
+std::uint64_t hash_of(const Packing &grains, Law law)
+{
+  Hash hash;
+  hash.words(std::as_bytes(std::span(grains.id)));
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    hash.words(std::vector{grains.radius(i), grains.mass(i), grains.inertia(i)});
+  hash.text(law->name());
+  for_each_parameter(*law.operator->(), [&](const std::string &name, const auto &value) {
+    hash.text(name).words(std::vector{static_cast<double>(value)});
+  });
+  return hash.value();
+}
 } // namespace
 
 void RveSettings::check() const
@@ -55,7 +71,8 @@ void RveSettings::check() const
                                  min_steps, max_steps));
 }
 
-Rve::Rve(const Snapshot &specimen, const RveSettings &settings) : settings_(settings), assembly_(periodic(specimen))
+Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
+    : settings_(settings), assembly_(periodic(specimen)), specimen_(hash_of(assembly_.packing(), assembly_.law()))
 {
   settings_.check();
   set_damping(settings_.motion, assembly_.settings);
@@ -90,6 +107,8 @@ double Rve::saturated_density(double water) const
 
 void Rve::review()
 {
+  if (drive_.steps % indicator_interval == 0 && settings_.go_on && !settings_.go_on())
+    throw RunFailure("it was interrupted");
   if (drive_.steps % indicator_interval == 0)
     drive_.pace.indicator = quasi_static_indicator(assembly_, mean_stress(), drive_.p0, drive_.pace.rate);
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
@@ -229,7 +248,7 @@ RveResponse Rve::advance(const MixedIncrement &increment)
   });
 }
 
-RveState Rve::save() const { return {assembly_.save(), drive_}; }
+RveState Rve::save() const { return {assembly_.save(), drive_, specimen_}; }
 
 void Rve::keep_safe()
 {
@@ -239,6 +258,9 @@ void Rve::keep_safe()
 
 void Rve::restore(const RveState &state)
 {
+  if (state.specimen != specimen_)
+    throw InputError(
+        "the state is that of other grains or of another law. Give one that save() made from this element.");
   assembly_.restore(state.grains);
   drive_ = state.drive;
   safe_ = state;

@@ -5,6 +5,7 @@
 #include "dem/drive/motion_spec.hpp"
 #include "dem/measure/stiffness.hpp"
 
+#include <functional>
 #include <span>
 #include <string>
 
@@ -22,6 +23,7 @@ struct RveSettings
   std::uint64_t min_steps = 1;
   double max_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
   std::uint64_t max_steps = 10'000'000; ///< of one advance()
+  std::function<bool()> go_on = {};     ///< asked every 50 steps, if given; false: the increment is rejected
 
   /// tested: tests/dem/rve/rve_test.cpp
   void check() const; ///< @throws InputError  frame is no rotation, a limit is not positive
@@ -78,8 +80,8 @@ struct RveState
 {
   AssemblyState grains;
   RveDrive drive;
+  std::uint64_t specimen = 0; ///< whose state it is: a hash of the law and of the sizes and masses of the grains
 
-  ISOSTAT_FIELDS(grains, drive)
   std::size_t bytes() const { return grains.bytes() + sizeof(RveDrive); }
 };
 
@@ -126,7 +128,7 @@ public:
   const RveCost &cost() const { return cost_; }
 
   RveState save() const;
-  /// @pre a state of this element, or of one with the same grains
+  /// @throws InputError  the state of an element with other grains or another law; nothing is changed
   void restore(const RveState &state);
 
   /// The element as bytes for another process on the same type of machine, and back to the same bits.
@@ -151,6 +153,7 @@ private:
 
   RveSettings settings_;
   Assembly assembly_;
+  std::uint64_t specimen_; ///< as in RveState
   RveDrive drive_;
   RveCost cost_;
   /// State before a failed increment: a copy made every 500 steps, and the strains since, which are run again.

@@ -74,7 +74,7 @@ std::vector<std::byte> Rve::pack() const
   if (version == named_law)
     body(std::vector<char>(name.begin(), name.end()));
   fixed_part(body, law, assembly_.packing());
-  for_each_leaf(state, body);
+  for_each_leaf(state.grains, body), for_each_leaf(state.drive, body);
   body(cost_);
   const std::vector<std::byte> content = bytes.take();
   ByteWriter packed;
@@ -104,11 +104,12 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
       start.law = law_named({name.data(), name.size()});
     }
   fixed_part(body, start.law, start.grains);
-  for_each_leaf(state, body);
+  for_each_leaf(state.grains, body), for_each_leaf(state.drive, body);
   body(cost);
   start.cell = state.grains.cell;
   Rve rve(start, settings);
   state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
+  state.specimen = rve.specimen_;
   rve.restore(state);
   rve.cost_ = cost;
   return rve;

@@ -10,21 +10,10 @@ namespace isostat::python
 {
 namespace
 {
-/// @throws InputError  a state of another number of grains
-void restore(Rve &rve, const RveState &state)
-{
-  const std::size_t has = rve.assembly().packing().n_grains();
-  const std::size_t numbers = state.grains.grains.size(), of_a_grain = 15; // AssemblyState
-  if (numbers != of_a_grain * has)
-    throw InputError(fmt::format("state: is of {} grains, the element has {}. Give one that its own save() returned.",
-                                 numbers / of_a_grain, has));
-  rve.restore(state);
-}
-
 /// Keys of [motion] that are given, over the defaults of an element.
 RveSettings settings_of(const std::optional<double> &inertial_number, const std::optional<double> &damping,
                         const std::optional<double> &strain_rate, const std::optional<Mat3> &frame,
-                        std::uint64_t min_steps, double max_increment)
+                        std::uint64_t min_steps, double max_increment, std::uint64_t max_steps)
 {
   RveSettings settings;
   settings.motion = controlled_motion();
@@ -38,23 +27,39 @@ RveSettings settings_of(const std::optional<double> &inertial_number, const std:
     settings.frame = *frame;
   settings.min_steps = min_steps;
   settings.max_increment = max_increment;
+  settings.max_steps = max_steps;
+  settings.go_on = [] {
+    const py::gil_scoped_acquire gil;
+    return PyErr_CheckSignals() == 0;
+  };
   return settings;
+}
+
+/// An increment without the GIL. Ctrl-C takes it back and raises KeyboardInterrupt.
+template <typename Increment>
+RveResponse taken(const Increment &increment)
+{
+  const RveResponse response = [&] {
+    const py::gil_scoped_release free;
+    return increment();
+  }();
+  if (PyErr_Occurred())
+    throw py::error_already_set();
+  return response;
 }
 
 template <typename... Argument>
 auto without_gil(RveResponse (Rve::*function)(Argument...))
 {
   return [function](Rve &rve, std::decay_t<Argument>... argument) {
-    const py::gil_scoped_release free;
-    return (rve.*function)(argument...);
+    return taken([&] { return (rve.*function)(argument...); });
   };
 }
 
 RveResponse mixed(Rve &rve, const Mat3 &gradient, const Mat3 &stress, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double tolerance)
 {
-  const py::gil_scoped_release free;
-  return rve.advance(MixedIncrement{gradient, stress, controlled, tolerance});
+  return taken([&] { return rve.advance(MixedIncrement{gradient, stress, controlled, tolerance}); });
 }
 
 void bind_response(py::module_ &module)
@@ -86,14 +91,20 @@ void bind_rve(py::module_ &module)
                   "Displacement gradients (3, 3) are relative to the present shape; stress is tension positive, Pa.")
       .def(py::init([](const Snapshot &specimen, const std::optional<double> &inertial_number,
                        const std::optional<double> &damping, const std::optional<double> &strain_rate,
-                       const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment) {
-             return Rve(specimen, settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment));
+                       const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment,
+                       std::uint64_t max_steps) {
+             return Rve(specimen,
+                        settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps));
            }),
            py::arg("specimen"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
            py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
-           py::arg("max_increment") = 0.01,
+           py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000,
            "specimen: a periodic packing at rest. inertial_number, damping (local), strain_rate (1/s): as the keys of\n"
-           "[motion]; None: what columns use. frame: rotation, x_lab = frame x_specimen.")
+           "[motion]; None: what columns use. frame: rotation, x_lab = frame x_specimen. max_steps: an increment that "
+           "takes\n"
+           "more time steps is rejected, so a target stress that cannot be reached ends there. Ctrl-C takes an "
+           "increment "
+           "back.")
       .def("advance", without_gil<const Mat3 &>(&Rve::advance), py::arg("gradient"),
            "Strains it by a displacement gradient (3, 3).")
       .def("undrained", without_gil(&Rve::undrained), py::arg("gradient"), "The same without its volumetric part.")
@@ -112,7 +123,7 @@ void bind_rve(py::module_ &module)
           py::arg("yielding_contacts_resist") = true, "As Snapshot.stiffness().")
       .def("snapshot", [](const Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); })
       .def("save", &Rve::save)
-      .def("restore", &restore, py::arg("state"), "Of this element, or of one with the same grains.")
+      .def("restore", &Rve::restore, py::arg("state"), "Of this element, or of one with the same grains and law.")
       .def(
           "pack",
           [](const Rve &rve) {
@@ -124,12 +135,14 @@ void bind_rve(py::module_ &module)
           "unpack",
           [](const std::string &bytes, const std::optional<double> &inertial_number,
              const std::optional<double> &damping, const std::optional<double> &strain_rate,
-             const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment) {
-            return Rve::unpack(std::as_bytes(std::span(bytes.data(), bytes.size())),
-                               settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment));
+             const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment, std::uint64_t max_steps) {
+            return Rve::unpack(
+                std::as_bytes(std::span(bytes.data(), bytes.size())),
+                settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps));
           },
           py::arg("bytes"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
           py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
-          py::arg("max_increment") = 0.01, "The element that pack() gave, with the same settings.");
+          py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000,
+          "The element that pack() gave, with the same settings.");
 }
 } // namespace isostat::python

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The representative volume element from Python: strain in, stress out, there and back."""
+import signal
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -37,7 +39,7 @@ class RveTest(ToleranceTest):
         first = rve.advance(strain).stress
         rve.restore(state)
         np.testing.assert_array_equal(rve.advance(strain).stress, first)
-        with self.assertRaisesRegex(isostat.InputError, "state: is of 250 grains, the element has 200"):
+        with self.assertRaisesRegex(isostat.InputError, "the state is that of other grains"):
             isostat.Rve(self.other_packing).restore(state)
         other = isostat.Rve.unpack(rve.pack())
         np.testing.assert_array_equal(other.advance(strain).stress, rve.advance(strain).stress)
@@ -51,6 +53,26 @@ class RveTest(ToleranceTest):
         self.assertTrue(response, response.reason)
         self.assert_near(response.stress[0, 0] / target[0, 0], 1, 1.1e-3, "the tolerance of the control, of p'")
         self.assertLess(response.stress[1, 1], target[1, 1])  # more compression along y
+
+    def test_a_target_that_cannot_be_reached_ends(self):
+        rve = isostat.Rve(self.packing, max_steps=3000)
+        before, tensile = rve.stress, np.diag([1e5, 0.0, 0.0])  # grains without cohesion
+        response = rve.mixed(np.zeros((3, 3)), tensile, np.diag([True, False, False]))
+        self.assertFalse(response)
+        self.assertRegex(response.reason, "off its target after 3000 steps")
+        np.testing.assert_array_equal(rve.stress, before)
+        with self.assertRaisesRegex(isostat.InputError, "max_steps"):
+            isostat.Rve(self.packing, max_steps=0)
+
+    def test_interrupt_takes_the_increment_back(self):
+        rve = isostat.Rve(self.packing)
+        before, tensile = rve.stress, np.diag([1e5, 0.0, 0.0])
+        timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            rve.mixed(np.zeros((3, 3)), tensile, np.diag([True, False, False]))
+        np.testing.assert_array_equal(rve.stress, before)
+        self.assertTrue(rve.advance(np.diag([0.0, -1e-5, 0.0])))
 
     def test_too_large_an_increment_is_rejected(self):
         rve = isostat.Rve(self.packing)
