@@ -7,6 +7,7 @@
 
 namespace isostat::python
 {
+void bind_errors(py::module_ &module);
 void bind_scene(py::module_ &module);
 void bind_snapshot(py::module_ &module);
 void bind_measures(py::module_ &module);

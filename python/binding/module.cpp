@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.hpp"
-#include "base/record/installation.hpp"
 #include "python/binding/binding.hpp"
 
 namespace isostat::python
@@ -30,22 +29,7 @@ PYBIND11_MODULE(_core, module)
   namespace py = pybind11;
   using namespace isostat;
   module.doc() = "The compiled part of isostat; use what the package itself offers.";
-  py::register_exception<InputError>(module, "InputError", PyExc_ValueError).doc() =
-      "A mistake in what was given: says where, the value, the allowed range and the remedy.";
-  py::register_exception<RunFailure>(module, "RunFailure", PyExc_RuntimeError).doc() =
-      "A run that cannot go on: says the step, the grain and the last good checkpoint.";
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try
-      {
-        if (thrown)
-          std::rethrow_exception(thrown);
-      }
-    catch (const Interrupted &stop)
-      {
-        if (!PyErr_Occurred())
-          PyErr_SetString(PyExc_KeyboardInterrupt, stop.what());
-      }
-  });
+  python::bind_errors(module);
   python::bind_scene(module);
   python::bind_snapshot(module);
   python::bind_measures(module);

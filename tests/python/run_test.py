@@ -125,7 +125,7 @@ class RunTest(ToleranceTest):
             results.draw("redundancy")
         with self.assertRaisesRegex(isostat.InputError, "no history.csv"):
             isostat.read(self.folder)
-        with self.assertRaisesRegex(isostat.InputError, "results folder exists"):
+        with self.assertRaisesRegex(isostat.InputError, "results folder exists.*overwrite=True"):
             self.run_scene(self.folder / "read")
 
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Errors as exceptions, with the same text but for the names of what the user gave.   tested: tests/python/run_test.py
+#include "base/error.hpp"
+#include "python/binding/binding.hpp"
+
+#include <string_view>
+
+namespace isostat::python
+{
+namespace
+{
+/// Options of the command line that are keywords here.
+constexpr std::pair<std::string_view, std::string_view> keywords[] = {{"--overwrite", "overwrite=True"},
+                                                                      {"--resume", "resume=True"},
+                                                                      {"--anyway", "anyway=True"},
+                                                                      {"--length-unit mm", "length_unit=\"mm\""},
+                                                                      {"--length-unit um", "length_unit=\"um\""},
+                                                                      {"--domain", "domain"},
+                                                                      {"--output", "output"},
+                                                                      {"--set", "set"},
+                                                                      {"--threads", "threads"}};
+
+std::string in_python(std::string text)
+{
+  for (const auto &[option, keyword] : keywords)
+    for (std::size_t at = text.find(option); at != std::string::npos; at = text.find(option, at + keyword.size()))
+      text.replace(at, option.size(), keyword);
+  return text;
+}
+
+py::handle input_error, run_failure; // live as long as the interpreter
+
+void translate(std::exception_ptr thrown)
+{
+  try
+    {
+      if (thrown)
+        std::rethrow_exception(thrown);
+    }
+  catch (const Interrupted &stop)
+    {
+      if (!PyErr_Occurred())
+        PyErr_SetString(PyExc_KeyboardInterrupt, in_python(stop.what()).c_str());
+    }
+  catch (const InputError &error)
+    {
+      PyErr_SetString(input_error.ptr(), in_python(error.what()).c_str());
+    }
+  catch (const RunFailure &error)
+    {
+      PyErr_SetString(run_failure.ptr(), in_python(error.what()).c_str());
+    }
+}
+} // namespace
+
+void bind_errors(py::module_ &module)
+{
+  const auto add = [&](const char *name, PyObject *base, const char *text) {
+    const py::object type = py::exception<std::exception>(module, name, base);
+    type.doc() = text;
+    return type.inc_ref();
+  };
+  input_error = add("InputError", PyExc_ValueError,
+                    "A mistake in what was given: says where, the value, the allowed range and the remedy.");
+  run_failure = add("RunFailure", PyExc_RuntimeError,
+                    "A run that cannot go on: says the step, the grain and the last good checkpoint.");
+  py::register_exception_translator(&translate);
+}
+} // namespace isostat::python
