@@ -173,7 +173,17 @@ class ColumnTest(ToleranceTest):
             def update(self, state, gradient):
                 return super().update(state, gradient)[0]
 
-        for law, error, message in [(Flat(), isostat.InputError, r"must be an array of shape \(10, 6\), but has \(6\)"),
+        class Backwards(Elastic):
+            tangent = -elastic_stiffness()
+
+        class InPlace(Elastic):
+            def update(self, state, gradient):
+                state["stress"] += column.strain(gradient) @ self.tangent
+                return state["stress"], state
+
+        for law, error, message in [(Backwards(), isostat.InputError, r"wave moduli of point 0 are .* must be above 0"),
+                                    (InPlace(), ValueError, "read-only"),
+                                    (Flat(), isostat.InputError, r"must be an array of shape \(10, 6\), but has \(6\)"),
                                     (Breaks(), isostat.RunFailure, r"the stress of point 4 is not finite"),
                                     (Raises(), ZeroDivisionError, "of the user"),
                                     (Alone(), isostat.InputError, r"must return \(stress, state\)")]:

@@ -19,6 +19,16 @@ py::array_t<double> borrowed(const double *first, std::vector<py::ssize_t> shape
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
+
+/// The arrays of a state are looked at from now on, not written.
+py::object frozen(py::object state)
+{
+  if (py::isinstance<py::dict>(state))
+    for (const auto &[key, value] : py::cast<py::dict>(state))
+      if (py::isinstance<py::array>(value))
+        py::detail::array_proxy(value.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return state;
+}
 } // namespace
 
 PythonMaterial::PythonMaterial(py::object law, std::string layer, std::size_t n_points)
@@ -59,7 +69,8 @@ PythonMaterial::Array PythonMaterial::shaped(const py::object &value, const char
 void PythonMaterial::set_initial_stress(std::span<const Stress> effective)
 {
   const py::gil_scoped_acquire gil;
-  committed_ = law_.attr("initial")(borrowed(effective.front().data(), {static_cast<py::ssize_t>(n_points_), 6}));
+  committed_ =
+      frozen(law_.attr("initial")(borrowed(effective.front().data(), {static_cast<py::ssize_t>(n_points_), 6})));
   trial_ = py::none();
 }
 
@@ -72,7 +83,7 @@ void PythonMaterial::trial(std::span<const Gradient> increments, std::span<Stres
     throw InputError(fmt::format("material of layer \"{}\": update() must return (stress, state).", layer_));
   const auto both = answer.cast<py::tuple>();
   const Array stress = shaped(both[0], "the stress", {6});
-  trial_ = both[1];
+  trial_ = frozen(both[1]);
   std::memcpy(stresses.data(), stress.data(), n_points_ * sizeof(Stress));
 }
 
@@ -103,7 +114,14 @@ void PythonMaterial::wave_moduli(std::span<WaveModuli> moduli) const
   const py::gil_scoped_acquire gil;
   const Array found = shaped(law_.attr("wave_moduli")(committed_), "the wave moduli", {2});
   for (std::size_t q = 0; q < n_points_; ++q)
-    moduli[q] = {found.at(q, 0), found.at(q, 1)};
+    {
+      moduli[q] = {found.at(q, 0), found.at(q, 1)};
+      if (!(moduli[q].p > 0 && moduli[q].s >= 0))
+        throw InputError(fmt::format("material of layer \"{}\": wave moduli of point {} are {:.4g} and {:.4g} Pa; must "
+                                     "be above 0 and not below 0 because no wave runs otherwise. Is the stiffness "
+                                     "positive definite?",
+                                     layer_, q, moduli[q].p, moduli[q].s));
+    }
 }
 
 std::vector<std::byte> PythonMaterial::pack() const
@@ -117,7 +135,7 @@ std::vector<std::byte> PythonMaterial::pack() const
 void PythonMaterial::unpack(std::span<const std::byte> bytes)
 {
   const py::gil_scoped_acquire gil;
-  committed_ = law_.attr("unpack")(py::bytes(reinterpret_cast<const char *>(bytes.data()), bytes.size()));
+  committed_ = frozen(law_.attr("unpack")(py::bytes(reinterpret_cast<const char *>(bytes.data()), bytes.size())));
   trial_ = py::none();
 }
 } // namespace isostat::python
