@@ -21,14 +21,21 @@ struct DumpReader
 {
   fs::path path;
   std::vector<std::string_view> lines;
-  std::size_t next = 0; ///< line to be read
+  std::size_t next = 0;  ///< line to be read
+  std::size_t whole = 0; ///< lines of whole frames
 
   bool done() const { return next >= lines.size() || (next + 1 == lines.size() && lines[next].empty()); }
   std::string_view take()
   {
     if (next >= lines.size())
-      reject(path, lines.size(), "the dump ends within a frame; expected more lines. Is it cut off?");
+      refuse("the dump ends within a frame; expected more lines. " + remedy());
     return lines[next++];
+  }
+  std::string remedy() const
+  {
+    return whole == 0
+               ? "Is it cut off?"
+               : fmt::format("It was cut off; `head -n {} {}` has the whole frames before.", whole, path.string());
   }
   [[noreturn]] void refuse(const std::string &what) const { reject(path, next, what); }
 
@@ -120,7 +127,10 @@ ForeignPacking read_lammps_dump(const fs::path &path, const Law &law, double den
   Frame frame;
   std::size_t n_frames = 0;
   for (; n_frames == 0 || !in.done(); ++n_frames)
-    frame = read_frame(in);
+    {
+      frame = read_frame(in);
+      in.whole = in.next;
+    }
   frame.spheres.check(path);
   ForeignPacking found;
   if (n_frames > 1)

@@ -74,6 +74,7 @@ SphereTable read_rows(const fs::path &path, const std::string &text, Bounds &bou
   const SphereColumns plain({"x", "y", "z", "r"});
   SphereColumns columns = plain;
   SphereTable table;
+  std::string missing; // from a header
   bool header_seen = false, named = false;
   const std::vector<std::string_view> lines = split_lines(text);
   for (std::size_t l = 0; l < lines.size(); ++l)
@@ -87,9 +88,15 @@ SphereTable read_rows(const fs::path &path, const std::string &text, Bounds &bou
         {
           header_seen = true;
           const SphereColumns of_header(words);
-          named = of_header.missing().empty();
+          missing = of_header.missing();
+          named = missing.empty();
           columns = named ? of_header : plain;
         }
+      else if (header_seen && !named && words.size() != 4)
+        reject(
+            path, l + 1,
+            fmt::format("the header above has not {}; expected columns x, y, z and r or diameter (m). Is it a packing?",
+                        missing));
       else if (!named && words.size() != 4)
         reject(path, l + 1, fmt::format("\"{}\"; expected four numbers x y z r (m)", lines[l]));
       else

@@ -31,7 +31,7 @@ std::vector<std::string> checked(const Snapshot &state, const std::string &file,
 {
   try
     {
-      return check_packing(state, file, "give --length-unit mm, or --scale 1e-3");
+      return check_packing(state, file, [](const std::string &unit) { return "give --length-unit " + unit; });
     }
   catch (const InputError &error)
     {

@@ -64,6 +64,8 @@ bool is_roomy(const Snapshot &s)
     }
   return ((high - low).array() < 0.5 * s.box.edges().array()).any();
 }
+/// That of lengths read as metres, if grains of soil are meant.
+std::string likely_unit(double r_max) { return 1e-3 * r_max <= largest_radius ? "mm" : "um"; }
 } // namespace
 
 PackingFigures packing_figures(const Snapshot &s)
@@ -96,19 +98,19 @@ std::string figures_text(const PackingFigures &f, const Snapshot &s)
                      leans ? ", leaning" : "", f.void_ratio, overlap);
 }
 
-std::vector<std::string> check_packing(const Snapshot &s, const std::string &file, const std::string &remedy)
+std::vector<std::string> check_packing(const Snapshot &s, const std::string &file, const ScalingRemedy &remedy)
 {
   const double r_max = s.grains.max_radius();
   if (r_max > largest_radius)
     throw InputError(
         fmt::format("{}: the largest radius is {:.4g} m; expected at most {} m, because it is soil that is "
-                    "meant. Is the file in mm? If so, {}.",
-                    file, r_max, largest_radius, remedy));
+                    "meant. Is the file in {}? If so, {}.",
+                    file, r_max, largest_radius, likely_unit(r_max), remedy(likely_unit(r_max))));
   if (r_max < smallest_radius)
     throw InputError(
         fmt::format("{}: the largest radius is {:.4g} m; expected at least {} m, because smaller grains are "
-                    "clay. Were lengths scaled that are in m already? If they are in another unit, {}.",
-                    file, r_max, smallest_radius, remedy));
+                    "clay. Were lengths scaled that are in m already, or in another unit? If in mm, {}.",
+                    file, r_max, smallest_radius, remedy("mm")));
   if (s.grains.density < lightest || s.grains.density > heaviest)
     throw InputError(fmt::format("{}: the grain density is {:g} kg/m3; expected {:g} to {:g} kg/m3, such as 2650 for "
                                  "quartz. Correct it there, in SI units.",

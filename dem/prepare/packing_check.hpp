@@ -2,6 +2,7 @@
 #pragma once
 #include "dem/state/snapshot.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,12 +35,14 @@ PackingFigures packing_figures(const Snapshot &snapshot);
 /// The figures as lines of text with a name each, indented by two.
 std::string figures_text(const PackingFigures &figures, const Snapshot &snapshot);
 
+/// How lengths in the unit "mm" or "um" are scaled, such as "give --length-unit mm"; for messages.
+using ScalingRemedy = std::function<std::string(const std::string &unit)>;
+
 /// Guards whatever another program has written: refuses what no packing of soil is.
 /// @param file    for messages
-/// @param remedy  how lengths are scaled, such as "give --length-unit mm"; for messages
 /// @return warnings, whole sentences: overlaps above 5 % of a radius, a box much wider than what it holds
 /// @throws InputError  radii above 5 cm or below 1 um, a grain density beyond 500 to 25,000 kg/m3, overlaps above 30 %
 ///         of a radius, spheres that stand beyond a wall by more than that
 /// tested: tests/dem/prepare/packing_check_test.cpp, tests/apps/convert_test.py
-std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const std::string &remedy);
+std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const ScalingRemedy &remedy);
 } // namespace isostat

@@ -110,12 +110,30 @@ void check_size(const GradingSpec &spec, const Packing &grains)
         2 * grains.max_radius(), 2 * largest_radius));
 }
 
+/// A cell that will be narrower than two of its grains when it is dense.
+void check_width(const Scene &scene, const Packing &grains)
+{
+  if (scene.specimen.domain != "periodic-cell")
+    return;
+  const double least = 2.05 * 2 * grains.max_radius(); // 2 and some room for the pairs that come near
+  const double e = scene.specimen.preparation_friction ? 0.6 : target_void_ratio(scene.specimen);
+  const double width = std::cbrt(grains.solid_volume() * (1 + e));
+  if (width < least)
+    throw InputError(
+        fmt::format("grading.grains = {}: a periodic cell of so few is some {:.3g} mm wide; must be above {:.3g} mm "
+                    "because a grain of {:.3g} mm would touch another one and its image at once. Take {} or more, or "
+                    "a narrower grading.",
+                    grains.n_grains(), 1e3 * width, 1e3 * least, 2e3 * grains.max_radius(),
+                    std::ceil(0.15 * static_cast<double>(grains.n_grains()) * std::pow(least / width, 3)) * 10));
+}
+
 Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
 {
   const SpecimenSpec &spec = scene.specimen;
   const Preparation how{spec, observer, threads};
   const Cloud cloud = make_cloud(scene.grading);
   check_size(scene.grading, cloud.packing);
+  check_width(scene, cloud.packing);
   observer.event(fmt::format("cloud: {} grains, d50 {:.3f} mm (scaled up {:.2f} times), Cu {:.2f}, sizes 1:{:.2f}",
                              cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
                              uniformity_coefficient(grading_curve(scene.grading)),
@@ -187,9 +205,10 @@ Specimen import(const Scene &scene, RunObserver &observer)
       return specimen;
     }
   ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density});
-  const std::string remedy =
-      fmt::format("convert it once: isostat convert {} {} --length-unit mm, and give that file", path.string(),
-                  std::filesystem::path(path).replace_extension(".h5").filename().string());
+  const auto remedy = [&path](const std::string &unit) {
+    return fmt::format("convert it once: isostat convert {} {} --length-unit {}, and give that file", path.string(),
+                       std::filesystem::path(path).replace_extension(".h5").filename().string(), unit);
+  };
   for (const std::string &warning : check_packing(read.state, path.string(), remedy))
     read.notes.push_back(warning);
   for (const std::string &note : read.notes)

@@ -62,6 +62,17 @@ void check_contact(const SceneDocument &document, const Scene &scene)
                       "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
 }
 
+/// Pressure over contact modulus is about the overlap of a contact over its radius.
+void check_pressure(const SceneDocument &document, const Scene &scene)
+{
+  const double young = scene.contact->young, most = 0.05 * young;
+  if (scene.specimen.pressure > most)
+    document.refuse("specimen.pressure",
+                    fmt::format("must be at most {:g} kPa, a twentieth of contact.young = {:g} GPa, because "
+                                "spheres that overlap by more are no contacts. Lower it, or give stiffer contacts.",
+                                most / 1e3, young / 1e9));
+}
+
 void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
@@ -76,6 +87,7 @@ void check_scene(const SceneDocument &document, Scene &scene)
   check_groups(document, &scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
+  check_pressure(document, scene);
   check_stages(document, scene);
 }
 } // namespace isostat

@@ -144,6 +144,13 @@ class SpecimenMistakes(AppTest):
         self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")
 
 
+    def test_cell_of_too_few_grains(self):
+        scene = self.write("scene.toml", tiny_scene('domain = "periodic-cell"\npreparation_friction = "10 deg"'))
+        result = self.run_test(scene, "-o", "out", "--set", "grading.grains=12")
+        self.assert_refused(result, "grading.grains = 12", "at once. Take", "or more")
+        self.assertFalse((self.folder / "out").exists())
+
+
 class Version(AppTest):
     def test_every_program_tells(self):
         apps = pathlib.Path(__file__).resolve().parents[2] / "apps"

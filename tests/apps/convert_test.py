@@ -38,7 +38,7 @@ class Convert(AppTest):
 
     def test_millimetres_read_as_metres(self):
         self.lattice("mm.txt", unit=1)
-        self.refuse("mm.txt", "largest radius is 0.3 m", "--length-unit mm", "--scale 1e-3")
+        self.refuse("mm.txt", "largest radius is 0.3 m", "in mm? If so, give --length-unit mm")
         self.assert_done(self.convert("mm.txt", "mm.h5", "--length-unit", "mm"))
         self.assert_done(self.convert("mm.txt", "scaled.h5", "--scale", "1e-3"))
         np.testing.assert_array_equal(self.positions("scaled.h5"), self.positions("mm.h5"))
@@ -51,6 +51,9 @@ class Convert(AppTest):
         self.refuse(self.lattice("deep.txt", radius=0.4), "overlap by 50 %", "diameters")
         self.refuse(self.lattice("small_box.txt", box=1.2), "centre", "outside the box")
         self.refuse(self.lattice("narrow.txt", box=1.65), "beyond a wall", "50 %")
+        self.refuse(self.lattice("um.txt", unit=1000), "--length-unit um")
+        self.refuse(self.write("history.csv", "step (-),time (s),p (Pa),q (Pa),e (-)\n1,0.1,2e5,0,0.7\n"),
+                    "history.csv:2", "has not a column x", "Is it a packing?")
         self.refuse("nowhere.txt", "nowhere.txt")
         self.refuse(self.write("empty.dump", ""), "empty.dump", "no spheres")
         self.assert_done(self.convert("deep.txt", "deep.h5", "--anyway"))

@@ -120,6 +120,10 @@ TEST_F(Lammps, TheLastFrameOfADump)
   EXPECT_EQ(found.state.grains.radius(0), 0.25);
   EXPECT_EQ(found.state.grains.id[0], 3u);
   EXPECT_TRUE(found.state.cell);
+  const std::string cut = (frame + frame).substr(0, 2 * frame.size() - 20);
+  EXPECT_THAT(
+      message_of<InputError>([&] { read_lammps_dump(put("cut.dump", cut.substr(0, cut.rfind("ITEM"))), Law(), 2650); }),
+      HasSubstr("It was cut off; `head -n 10"));
 }
 
 TEST_F(Lammps, BadDumpsNameFileAndLine)

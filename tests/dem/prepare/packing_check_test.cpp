@@ -23,9 +23,11 @@ Snapshot two(double gap, double unit = 1e-3)
   return s;
 }
 
+const ScalingRemedy scale = [](const std::string &unit) { return "scale it from " + unit; };
+
 std::string refusal(const Snapshot &s)
 {
-  return message_of<InputError>([&] { check_packing(s, "p.txt", "scale it"); });
+  return message_of<InputError>([&] { check_packing(s, "p.txt", scale); });
 }
 
 TEST(PackingCheck, Figures)
@@ -50,9 +52,10 @@ TEST(PackingCheck, OverlapThroughAFaceOfTheCell)
 
 TEST(PackingCheck, WhatIsNoSoilIsRefused)
 {
-  EXPECT_TRUE(check_packing(two(0), "p.txt", "").empty());
+  EXPECT_TRUE(check_packing(two(0), "p.txt", scale).empty());
   EXPECT_THAT(refusal(two(0, 1)), HasSubstr("p.txt: the largest radius is 0.2 m; expected at most 0.05 m"));
-  EXPECT_THAT(refusal(two(0, 1)), HasSubstr("scale it"));
+  EXPECT_THAT(refusal(two(0, 1)), HasSubstr("in mm? If so, scale it from mm"));
+  EXPECT_THAT(refusal(two(0, 1000)), HasSubstr("in um? If so, scale it from um"));
   EXPECT_THAT(refusal(two(0, 1e-6)), HasSubstr("clay"));
   EXPECT_THAT(refusal(two(-0.05)), HasSubstr("overlap by 50 % of the smaller radius (1 pairs"));
   Snapshot light = two(0);
@@ -61,20 +64,20 @@ TEST(PackingCheck, WhatIsNoSoilIsRefused)
   Snapshot out = two(0.15);
   EXPECT_THAT(message_of<InputError>([&] {
                 out.box.upper[0] = 0.85e-3;
-                check_packing(out, "p.txt", "");
+                check_packing(out, "p.txt", scale);
               }),
               HasSubstr("grain 1 stands beyond a wall of the box by 50 %"));
 }
 
 TEST(PackingCheck, WhatIsOddIsAWarning)
 {
-  const auto warnings = check_packing(two(-0.01), "p.txt", "");
+  const auto warnings = check_packing(two(-0.01), "p.txt", scale);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0], HasSubstr("10 %"));
   Snapshot wide = two(0);
   wide.box.upper[1] = 1.5e-3;
-  ASSERT_EQ(check_packing(wide, "p.txt", "").size(), 1u);
-  EXPECT_THAT(check_packing(wide, "p.txt", "")[0], HasSubstr("twice as wide"));
+  ASSERT_EQ(check_packing(wide, "p.txt", scale).size(), 1u);
+  EXPECT_THAT(check_packing(wide, "p.txt", scale)[0], HasSubstr("twice as wide"));
 }
 } // namespace
 } // namespace isostat

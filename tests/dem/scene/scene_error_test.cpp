@@ -50,6 +50,13 @@ TEST(SceneError, UnknownKeyNamesTheNearest)
   expect_complaint("\"motion.damping\" = 0.2\n" + smallest, {"scene.toml:1: \"motion.damping\"", "Remove the quotes"});
 }
 
+TEST(SceneError, PressureThatNoContactCarries)
+{
+  expect_complaint(smallest + "pressure = \"200 MPa\"\n[contact]\nyoung = \"1 GPa\"",
+                   {"scene.toml:3: specimen.pressure", "must be at most 50000 kPa", "contact.young = 1 GPa"});
+  expect_complaint(smallest + "[contact]\nyoung = \"1 MPa\"", {"specimen.pressure", "must be at most 50 kPa"});
+}
+
 TEST(SceneError, UnitsAndForms)
 {
   expect_complaint(

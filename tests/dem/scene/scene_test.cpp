@@ -307,6 +307,7 @@ TEST(Scene, RoundTripToTheBit)
             for (Stage &stage : scene.stages)
               if (key.belongs_to(stage.index()))
                 scramble(key, key.field(scene, stage), random);
+        scene.specimen.pressure = scene.contact->young / 37; // at most a twentieth
         if (scene.grading.d50)
           scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
         if (scene.specimen.e_min)
