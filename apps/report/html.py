@@ -62,9 +62,8 @@ def figure(name, title, caption, drawn):
     element, width = svg.element(drawn, name)
     opening = f'<svg class="zoom" role="img" tabindex="0" aria-label="{escape(title + ": " + caption)}"'
     element = element.replace("<svg", opening, 1)
-    size = f"min-width:{width:.0f}px;max-width:{LARGEST * width:.0f}px"
     return (f'<figure id="{escape(name)}"{attribute("class", "wide" if width > WIDE else "")}>\n'
-            f'<h3>{escape(title)}</h3>\n<div class="scroll"><div style="{size}">{element}</div></div>\n'
+            f'<h3>{escape(title)}</h3>\n<div style="max-width:{LARGEST * width:.0f}px">{element}</div>\n'
             f'<figcaption>{escape(caption)}</figcaption>\n</figure>')
 
 

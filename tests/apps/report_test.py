@@ -14,8 +14,8 @@ SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
 BROWSER = shutil.which("chromium")
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
 
-# What the page says of itself when its script has run: width of the content, view of the first figure before and after
-# the wheel, after the double click.
+# What the page says of itself when its script has run: width of the content, number of figures that leave the window or
+# would have to be scrolled, view of the first figure before and after the wheel, after the double click.
 PROBE = """<script>
 const first = document.querySelector("svg.zoom"), box = first.getBoundingClientRect();
 const views = [first.getAttribute("viewBox")];
@@ -26,7 +26,11 @@ first.focus();
 first.dispatchEvent(new WheelEvent("wheel", { deltaY: -300, ...at })); note();
 first.dispatchEvent(new KeyboardEvent("keydown", { key: "+", bubbles: true })); note();
 first.dispatchEvent(new MouseEvent("dblclick", at)); note();
-document.body.dataset.probe = [document.documentElement.scrollWidth, innerWidth, ...views].join("|");
+const cut = [...document.querySelectorAll("svg.zoom")].filter(svg => {
+  const { left, right } = svg.getBoundingClientRect(), around = svg.parentElement;
+  return left < 0 || right > innerWidth || around.scrollWidth > around.clientWidth;
+});
+document.body.dataset.probe = [document.documentElement.scrollWidth, innerWidth, cut.length, ...views].join("|");
 </script>"""
 
 
@@ -96,15 +100,18 @@ class Reports(ReportTest):
 
     @unittest.skipUnless(BROWSER, "chromium is not installed")
     def test_in_a_browser(self):
-        """Nothing is wider than the page; the selected figure answers to wheel and keys, and comes back."""
+        """Nothing is wider than the page, and no figure is cut; the selected one answers to wheel and keys, and comes
+        back."""
         page = self.write("page.html", self.report("cyclic").replace("</body>", PROBE + "</body>"))
         for width in (1280, 390):
             command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},900",
                        f"--user-data-dir={self.folder / 'user'}"]
             dom = subprocess.run([*command, "--dump-dom", page.as_uri()], capture_output=True, text=True, check=True,
                                  timeout=120 * PATIENCE).stdout
-            content, window, before, alone, wheel, key, after = re.search(r'data-probe="([^"]*)"', dom)[1].split("|")
+            content, window, cut, before, *others = re.search(r'data-probe="([^"]*)"', dom)[1].split("|")
+            alone, wheel, key, after = others
             self.assertLessEqual(int(content), int(window))
+            self.assertEqual(cut, "0", f"figures that are cut in a window {width} wide")
             self.assertEqual([before, before], [alone, after])
             widths = [float(view.split()[2]) for view in (before, wheel, key)]
             self.assertEqual(widths, sorted(widths, reverse=True))
