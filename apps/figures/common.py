@@ -144,7 +144,7 @@ class Run:
     def _progress(self):
         """What the measures are drawn against, and its label: a path that turns back would cross itself."""
         if self.cyclic:
-            return self._cycles(), "Number of cycles (first reversal at 0.25)"
+            return self._cycles(), "Number of cycles (half the reversals)"
         steps = np.abs(np.diff(self.strain, prepend=self.strain[0]))
         if np.nansum(steps) < TURNS * np.ptp(self.strain):
             return 100 * self.strain, self.strain_label
@@ -152,7 +152,7 @@ class Run:
         return 100 * np.nancumsum(steps), rf"Strain travelled $\int|\mathrm{{d}}{symbol}|$ (%)"
 
     def _cycles(self):
-        """Cycles as a running number: first reversal 0.25, then half a cycle from each reversal to the next."""
+        """Cycles as a running number: half a cycle to the first reversal and from each to the next, as in summaries."""
         strain = self.strain
         reversals = np.nan_to_num(self["reversals"]).astype(int)
         reversals -= reversals[0]
@@ -161,21 +161,19 @@ class Run:
         spans = {}
         for start, end in zip(starts, [*starts[1:], self.n_rows]):
             count = reversals[start]
-            length = 0.25 if count == 0 else 0.5
-            begin = 0.0 if count == 0 else 0.25 + 0.5 * (count - 1)
             moved = np.maximum.accumulate(np.abs(strain[start:end] - strain[start]))
             span = abs(strain[end] - strain[start]) if end < self.n_rows else 0.0
             if end == self.n_rows:  # unfinished: as long as the longest of the last two, or as its load says
-                whole = moved[-1] / self._loaded(start, length)
+                whole = moved[-1] / self._loaded(start)
                 span = max(spans.get(count - 1, 0.0), spans.get(count - 2, 0.0), whole)
             spans[count] = span
-            cycles[start:end] = begin + length * np.clip(moved / span if span > 0 else 0 * moved, 0, 1)
+            cycles[start:end] = 0.5 * (count + np.clip(moved / span if span > 0 else 0 * moved, 0, 1))
         return cycles
 
-    def _loaded(self, start, length):
-        """The part of its load that the last half cycle, or quarter, has behind it: of the largest one before."""
+    def _loaded(self, start):
+        """The part of its load that the last half cycle has behind it: of twice the largest one before."""
         load = self["tau_xy"] if self.shear else self["q"]
-        whole = 4 * length * np.nanmax(np.abs(load[:start + 1] - load[0]))
+        whole = 2 * np.nanmax(np.abs(load[:start + 1] - load[0]))
         return np.clip(np.nanmax(np.abs(load[start:] - load[start])) / whole, 0.05, 1) if whole > 0 else 1.0
 
 

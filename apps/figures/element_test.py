@@ -12,10 +12,10 @@ fig_principal_stress.png   simple shear only: direction of the major principal s
                            (b) tau / sigma'_v
 
 Stresses and strains are positive in compression. Cyclic tests are drawn against the number of cycles: reversals count
-half a cycle each, and inside a half cycle the strain, which runs one way there, says how far it has come. Monotonic
-tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles after the
-onset of liquefaction than before, they get half of the x axis, and its label says so. A column that is missing costs
-its curve or panel, with a note.
+half a cycle each, the first one too, and between two the strain, which runs one way there, says how far it has come.
+Monotonic tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles
+after the onset of liquefaction than before, they get half of the x axis, and its label says so. A column that is
+missing costs its curve or panel, with a note.
 """
 import numpy as np
 

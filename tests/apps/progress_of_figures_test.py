@@ -31,17 +31,17 @@ class Progress(AppTest):
         return Run(self.folder)
 
     def test_cycles(self):
-        """Two reversals, then half of the way back: a quarter, a half, and half of a half."""
+        """Half a cycle at the first reversal, one at the second, as the summary counts; then half of the way back."""
         run = self.run_of([0, 0.5, 1, 0, -1, -0.5, 0], [0, 15, 30, 0, -30, -15, 0], [0, 0, 1, 1, 2, 2, 2])
-        self.assert_close(run.progress, [0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0], 1e-12, DIGITS)
-        self.assertEqual(run.progress_label, "Number of cycles (first reversal at 0.25)")
+        self.assert_close(run.progress, [0, 0.25, 0.5, 0.75, 1.0, 1.125, 1.25], 1e-12, DIGITS)
+        self.assertEqual(run.progress_label, "Number of cycles (half the reversals)")
 
     def test_an_unfinished_half_cycle_is_not_drawn_as_a_whole_one(self):
         """It has gone three times as far as the one before, but its load is half of the way up only."""
         run = self.run_of([0, 1, -1, 5], [0, 30, -30, 0], [0, 1, 2, 2])
-        self.assert_close(run.progress[-2:], [0.75, 1.0], 1e-12, DIGITS)
+        self.assert_close(run.progress[-2:], [1.0, 1.25], 1e-12, DIGITS)
         whole = self.run_of([0, 1, -1, 5], [0, 30, -30, 30], [0, 1, 2, 2])
-        self.assert_close(whole.progress[-1], 1.25, 1e-12, DIGITS)
+        self.assert_close(whole.progress[-1], 1.5, 1e-12, DIGITS)
 
     def test_a_path_that_turns_back(self):
         """Compression, then extension: against the strain its measures would cross themselves."""
