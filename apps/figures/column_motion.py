@@ -7,6 +7,7 @@ from .common import BLACK, BLUE, GREY, ORANGE, note, panel_letter, plt
 
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
+ROOM = 1.75  # limits of a panel over its peak: room for the peak's label between curve and axis
 
 
 def input_name(column):
@@ -24,11 +25,10 @@ def peak_mark(axes, t, a, colour, of_all_steps=None):
     """The largest value, marked and written, away from the curve."""
     at = int(np.argmax(np.abs(a)))
     axes.plot(t[at], a[at], "o", color=colour, markersize=3.5, zorder=5)
-    side, up = (1 if t[at] < t[0] + 0.8 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)
+    side, up = (1 if t[at] < t[0] + 0.5 * (t[-1] - t[0]) else -1), (1 if a[at] > 0 else -1)
     axes.annotate(peak_text(abs(a[at]), of_all_steps), (t[at], a[at]), xytext=(5 * side, 2.5 * up), zorder=6,
                   textcoords="offset points", ha="left" if side > 0 else "right", va="bottom" if up > 0 else "top",
                   fontsize=9, color=colour, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
-
 
 
 def motions(column):
@@ -41,7 +41,7 @@ def motions(column):
     for row, axis in enumerate(column.moving):
         pair = panels[2 * row:2 * row + 2, 0]
         curves = ((f"input_a{axis}", f"{input_name(column)} (input)", BLACK), (f"surface_a{axis}", "surface", BLUE))
-        limit = 1.45 * max(column.peak(name) for name, _, _ in curves)
+        limit = ROOM * max(column.peak(name) for name, _, _ in curves)
         for axes, (name, label, colour), letter in zip(pair, curves, "abcdef"[2 * row:]):
             if not column.has(name):
                 note(f"no column `{name}`; its curve is left out")

@@ -12,10 +12,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib.colors import PowerNorm  # noqa: E402
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.column_motion import peak_text  # noqa: E402  (the path comes first)
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "apps"), str(ROOT / "scripts")]
+import column_fixture as fixture  # noqa: E402  (the path comes first)
+from figures.column_motion import motions, peak_text  # noqa: E402
+from figures.column_results import Column  # noqa: E402
 from figures.column_soil import time_bar  # noqa: E402
-from figures.common import Run  # noqa: E402
+from figures.common import STYLE, Run  # noqa: E402
 from figures.element_test import draw_pressure  # noqa: E402
 from support import AppTest, main  # noqa: E402
 
@@ -80,6 +83,23 @@ class Peaks(AppTest):
         self.assertEqual(peak_text(3.64, 3.861), "3.64 m/s$^2$ (3.86 in all steps)")
         self.assertEqual(peak_text(3.861, 3.8612), "3.86 m/s$^2$")
         self.assertEqual(peak_text(3.64, None), "3.64 m/s$^2$")
+
+    def test_labels_lie_within_their_panels(self):
+        """Peaks up and down, early and late, and values of all steps beside them: nothing lies over an axis."""
+        column = Column(fixture.elastic(self.folder / "run"))
+        column.peaks = {name: 1.01 * column.peak(name) for name in ("input_ax", "surface_ax")}
+        plt.rcParams.update(STYLE)
+        for sign in (1, -1):
+            for shift in range(0, len(column.time), len(column.time) // 12):
+                for name in column.peaks:
+                    column.columns[name] = sign * np.roll(column[name], shift)
+                figure = motions(column)
+                figure.draw_without_rendering()
+                for axes in figure.axes:
+                    label, panel = axes.texts[0].get_window_extent(), axes.get_window_extent()
+                    inside = (label.min > panel.min).all() and (label.max < panel.max).all()
+                    self.assertTrue(inside, f"{axes.texts[0].get_text()}: {label} in {panel}")
+                plt.close(figure)
 
 
 if __name__ == "__main__":
