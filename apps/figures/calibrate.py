@@ -9,13 +9,13 @@ convergence.png   misfit of each trial, and the best so far
 tradeoffs.png     misfit over each parameter, and as colour over each pair of them
 """
 import csv
-import json
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain_log_ticks, plt
 from .drawing import Drawing
+from .files import read_parsed
 
 COLUMNS = 4  # curves side by side
 SHOWN = 3.0  # misfits beyond so many times the best have one colour
@@ -42,7 +42,7 @@ class Calibration:
     """What calibrate left in a folder."""
 
     def __init__(self, folder):
-        self.summary = json.loads((folder / "calibrate.json").read_text(encoding="utf-8"))
+        self.summary = read_parsed(folder / "calibrate.json")
         self.title = self.summary["title"]
         with open(folder / "curves.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

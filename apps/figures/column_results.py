@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads the results folder of a soil column: histories, profiles, the resolved scene."""
-import json
 import re
 import tomllib
 
@@ -8,6 +7,7 @@ import h5py
 import numpy as np
 
 from .common import BadInput, note, read_history
+from .files import Damaged, read_parsed
 
 SI = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "1/s": 1, "kg/m3": 1,
       "g/cm3": 1e3, "m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "m/s2": 1, "cm/s2": 1e-2, "g": 9.80665, "Hz": 1, "kHz": 1e3,
@@ -75,11 +75,11 @@ class Column:
         self.time = self.columns["time"]
         if len(self.time) < 2 or not (np.diff(self.time) > 0).all():
             raise BadInput("history.csv: needs two rows at least, and times that rise")
-        self.scene = self._read(folder / "scene.toml", tomllib.loads) or {}
+        self.scene = self._read(folder / "scene.toml", tomllib.loads)
         self.profiles = self._read_profiles(folder / "profiles.h5")
         self.grains = Grains(folder)
         self._read_scene()
-        summary = self._read(folder / "summary.json", json.loads) or {}
+        summary = self._read(folder / "summary.json")
         self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name
         self.moving = [axis for axis in "xyz" if self.peak(f"input_a{axis}") > 0]
         self.horizontal = [axis for axis in "xy" if axis in self.moving]
@@ -92,12 +92,14 @@ class Column:
         self.points = [(depths[k] if k < len(depths) else None, prefix) for k, prefix in enumerate(prefixes)]
 
     @staticmethod
-    def _read(path, parse):
+    def _read(path, *parse):
         try:
-            return parse(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
+            return read_parsed(path, *parse)
+        except OSError as error:
             note(f"{path.name} cannot be read ({error}); what needs it is left out")
-            return None
+        except Damaged as error:
+            note(f"{error} Until then what needs it is left out")
+        return {}
 
     @staticmethod
     def _read_profiles(path):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the figures share: style, the history of a run, axes against progress, marks and legends."""
 import csv
-import json
 import re
 import sys
 import warnings
@@ -9,6 +8,8 @@ import warnings
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from .files import Damaged, read_parsed
 
 LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
@@ -85,10 +86,12 @@ def read_history(path):
 
 def read_summary(path):
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        return read_parsed(path)
+    except OSError as error:
         note(f"{path.name} cannot be read ({error}); p0 and the onset of liquefaction are taken from the history")
-        return {}
+    except Damaged as error:
+        note(f"{error} Until then p0 and the onset of liquefaction are taken from the history")
+    return {}
 
 
 class Run:

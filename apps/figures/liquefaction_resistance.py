@@ -7,13 +7,13 @@ resistance.png   cyclic stress ratio against cycles to initial liquefaction: eve
                  did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
 """
 import csv
-import json
 
 import numpy as np
 from matplotlib.transforms import ScaledTranslation
 
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, plt
 from .drawing import Drawing
+from .files import read_parsed
 
 MIN_CYCLES = 0.25  # liquefaction before the first reversal
 REFERENCE = 15  # cycles that stand for an earthquake of magnitude 7.5
@@ -98,7 +98,7 @@ class Campaign:
 
     def __init__(self, folder):
         self.runs = read_runs(folder / "resistance.csv")
-        self.summary = json.loads((folder / "resistance.json").read_text(encoding="utf-8"))
+        self.summary = read_parsed(folder / "resistance.json")
         self.title = self.summary["title"]
         if all(status in ("missing", "failed") for _, _, _, status in self.runs):
             raise BadInput("no run has ended; nothing to draw")

@@ -11,7 +11,6 @@ Onset is the first snapshot with p'/p0' < 0.01; without one, that of the smalles
 if it is neither the first nor the last.
 """
 import csv
-import json
 import re
 
 import numpy as np
@@ -19,6 +18,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plt
 from .drawing import Drawing
+from .files import read_parsed
 
 COLOURS = {"first": BLUE, "onset": RED, "smallest p'": RED, "last": ORANGE}
 
@@ -46,7 +46,7 @@ class Analysis:
         self.rows = read_table(folder / "micromechanics.csv")
         self.forces = read_table(folder / "force_distribution.csv")
         self.roses = read_table(folder / "roses.csv")
-        onset = json.loads((folder / "micromechanics.json").read_text(encoding="utf-8"))["onset"]
+        onset = read_parsed(folder / "micromechanics.json")["onset"]
         last = len(self.rows["p"]) - 1
         self.chosen = {"first": 0}
         if last > 0:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a results folder holds beside its tables: program, scene, summary, provenance."""
-import json
 import re
 import tomllib
+
+from figures.files import Damaged, read_parsed
 
 # The file with the numbers of a program's summary; it is written last, so a run that has it is finished.
 NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxial": "summary.json",
@@ -37,16 +38,18 @@ class Results:
         self.path, self.program = path, program
         self.provenance = read_provenance(text_of(path / "provenance.txt"))
         self.scene_text = text_of(path / "scene.toml")
-        self.scene = self._parsed("scene.toml", tomllib.loads) or {}
+        self.scene = self._table("scene.toml", tomllib.loads) or {}
         self.summary = text_of(path / "summary.txt")
-        self.numbers = self._parsed(NUMBERS[program], json.loads)
+        self.numbers = self._table(NUMBERS[program])
 
-    def _parsed(self, name, parse):
-        text = text_of(self.path / name)
+    def _table(self, name, *parse):
+        """The table in a file of the folder, or None if it is not there.   Raises NoResults"""
         try:
-            return parse(text) if text else None
-        except ValueError as error:
-            raise NoResults(f"{self.path / name}: cannot be read ({error}).") from error
+            return read_parsed(self.path / name, *parse)
+        except OSError:
+            return None
+        except Damaged as error:
+            raise NoResults(error) from error
 
     @property
     def title(self):

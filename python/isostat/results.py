@@ -3,7 +3,6 @@
 import collections.abc
 import csv
 import importlib
-import json
 import pathlib
 import re
 
@@ -87,7 +86,9 @@ class Results:
 
     history     History                            scene       Scene, with every key resolved
     summary     numbers of summary.json            snapshots   paths of the stored packings; packing(k) reads one
-    provenance  text: version, compiler, seed ...
+    provenance  text: version, compiler, seed ...  finished    whether the run came to its end
+
+    A run that is under way or was interrupted has a history as far as it came; its summary is None, finished False.
     """
 
     program = "element_test"
@@ -106,9 +107,17 @@ class Results:
 
     @property
     def summary(self):
-        """Of a run that has finished; else None."""
-        path = self.folder / "summary.json"
-        return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+        """Of a run that has finished; else None.   Raises InputError (a damaged file)"""
+        files = importlib.import_module("isostat.figures.files")
+        try:
+            return files.read_parsed(self.folder / "summary.json") if self.finished else None
+        except files.Damaged as error:
+            raise _core.InputError(str(error)) from error
+
+    @property
+    def finished(self):
+        """Whether the run came to its end: it writes summary.json last."""
+        return (self.folder / "summary.json").is_file()
 
     @property
     def provenance(self):
@@ -128,5 +137,5 @@ class Results:
 
 
 def read(folder):
-    """The results of a run, finished or not."""
+    """The Results of a run, finished or not: `finished` tells, and the summary of an unfinished one is None."""
     return Results(folder)

@@ -50,7 +50,7 @@ def run(scene, output=None, *, specimen=None, cache=None, overwrite=False, resum
     if not folder:
         return Run(scene, done)
     results = Results(folder)
-    results.snapshot, results.finished = done.snapshot, done.finished
+    results.snapshot = done.snapshot
     return results
 
 

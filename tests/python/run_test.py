@@ -82,6 +82,9 @@ class RunTest(ToleranceTest):
         half = whole.history["step"][-1] / 2
         stopped = self.run_scene(self.folder / "halves", on_step=lambda moment: moment.step < half, every=1)
         self.assertFalse(stopped.finished)
+        read = isostat.read(self.folder / "halves")
+        self.assertEqual((read.finished, read.summary), (False, None))
+        self.assertEqual(read.history["step"][-1], stopped.history["step"][-1])
         resumed = self.run_scene(self.folder / "halves", resume=True)
         self.assertTrue(resumed.finished)
         np.testing.assert_array_equal(resumed.snapshot.positions, whole.snapshot.positions)
@@ -121,6 +124,9 @@ class RunTest(ToleranceTest):
         axes = results.draw("fig_redundancy")
         self.assertEqual([panel.get_ylabel() for panel in axes[:2]],
                          ["Redundancy index $I_R$", r"$p^\prime/p_0^\prime$"])
+        (self.folder / "read/summary.json").write_text('{\n  "title": "small",\n  "gra', encoding="utf-8")
+        with self.assertRaisesRegex(isostat.InputError, r"read/summary.json:3: is damaged \(Unterminated .*Restore it"):
+            results.summary
         with self.assertRaisesRegex(isostat.InputError, "no figure of element_test; there are fig_stress_path"):
             results.draw("redundancy")
         with self.assertRaisesRegex(isostat.InputError, "no history.csv"):

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables that a run has left as text, JSON or TOML. Needs nothing but Python: figures, reports and the module isostat
+read them here.   tested: tests/apps/damaged_files_test.py"""
+import json
+import re
+
+REMEDY = ("Restore it from a copy, or delete it and finish the run anew: its command is in provenance.txt, and "
+          "--resume goes on from a checkpoint.")
+
+
+class Damaged(ValueError):
+    """A file that is not what a run left; the message has the place, what is wrong and what to do."""
+
+    def __init__(self, path, line, reason):
+        super().__init__(f"{path}:{line}: is damaged ({reason}). {REMEDY}")
+
+
+def place_of(error, content):
+    """The line that an error of a parser names after its reason, else the last one; and the reason."""
+    named = re.fullmatch(r"(.*?)[:(]? ?(?:\(?at )?line (\d+).*", str(error))
+    if named:
+        return int(named[2]), named[1].strip()
+    return content.rstrip().count(b"\n") + 1, str(error).replace(" (at end of document)", "")
+
+
+def read_parsed(path, parse=json.loads):
+    """The table in a file, as a dictionary.   Raises OSError if it cannot be opened, Damaged if it holds no table"""
+    content = path.read_bytes()
+    try:
+        table = parse(content.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise Damaged(path, content.count(b"\n", 0, error.start) + 1, "it holds bytes that are no text") from error
+    except ValueError as error:
+        line, reason = place_of(error, content)
+        raise Damaged(path, line, reason if content.strip() else "it is empty") from error
+    if not isinstance(table, dict):
+        raise Damaged(path, 1, "it holds no table of names and values")
+    return table
