@@ -6,6 +6,7 @@ from figures.common import BadInput, STYLE, plt
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
+from .quantities import converted, is_number, named
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
@@ -28,10 +29,6 @@ def shown(value):
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def is_number(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
 def change(first, second):
     """B - A and the same as a share of A, as text."""
     if not (is_number(first) and is_number(second)):
@@ -42,11 +39,14 @@ def change(first, second):
     return f"{difference:+.4g}", f"{100 * difference / abs(first):+.3g} %" if first * second > 0 else ""
 
 
-def summary_rows(first, second):
-    """A row for each number of both summaries, those that are the same marked so. Lists of tables, such as layers,
-    repeat the scene and are left out."""
-    one, other = ({key: value for key, value in flat(numbers).items() if not re.search(r"\.\d+\.", key)}
-                  for numbers in (first, second))
+def shown_summary(results):
+    """{name (unit): value} of a summary. Lists of tables, such as layers, repeat the scene and are left out."""
+    return {named(results.program, key): converted(results.program, key, value)
+            for key, value in flat(results.numbers).items() if not re.search(r"\.\d+\.", key)}
+
+
+def number_rows(one, other):
+    """A row for each number of two tables {name: value}, those that are the same marked so."""
     for key in dict.fromkeys([*one, *other]):
         values = one.get(key), other.get(key)
         if key == "title" or not any(is_number(value) for value in values):
@@ -117,11 +117,11 @@ def page(pair):
         f"{one.path.resolve().name} and {other.path.resolve().name}", f"Two runs of {one.program}", [
             html.section("Runs", html.table(("", "title", "folder", "version", "started"), runs, "runs"), name="runs"),
             html.section("Curves", html.figures(parts), name="figures"),
-            html.section("Numbers", html.paragraph("Of the curves, then of the summaries (in SI units). A grey row is "
-                                                   "the same in both."),
+            html.section("Numbers", html.paragraph("Of the curves, then of the summaries. A grey row is the same in "
+                                                   "both."),
                          html.table(("", *NAMES, "B - A", "of A"),
-                                    [*summary_rows(*map(curves.numbers, read)),
-                                     *summary_rows(one.numbers, other.numbers)],
+                                    [*number_rows(*map(curves.numbers, read)),
+                                     *number_rows(*map(shown_summary, pair))],
                                     "numbers of both summaries", numbers=(1, 2, 3, 4)), name="numbers"),
             html.section("Scene", difference_table(key_rows(one.scene, other.scene), "key",
                                                    "Every key of the scenes is the same.", "keys that differ"),

@@ -7,6 +7,7 @@ from figures.common import BadInput, note
 
 from . import citation, html, verdicts
 from .folder import NoResults, Results
+from .quantities import converted, named
 
 REPORT = "report.html"
 KEPT = ("liquefaction_resistance", "calibrate")  # the same command goes on with what is missing
@@ -36,13 +37,14 @@ def name_and_value(line, column):
 
 
 def summary_parts(results):
-    """Lines `  name   value` as a table; a text that has others, such as tables, as it is. Without a text the numbers,
-    which are in SI units."""
+    """Lines `  name   value` as a table; a text that has others, such as tables, as it is. Without a text the
+    numbers."""
     lines = results.summary.strip("\n").splitlines()
     if not lines:
+        numbers = {named(results.program, key): converted(results.program, key, value)
+                   for key, value in (results.numbers or {}).items() if not isinstance(value, (dict, list))}
         return [html.properties((key, f"{value:.6g}" if isinstance(value, float) else value)
-                                for key, value in (results.numbers or {}).items()
-                                if not isinstance(value, (dict, list)))]
+                                for key, value in numbers.items())]
     starts = [match.end() for match in (re.match(r"  \S.*?\s{2,}(?=\S)", line) for line in lines[1:]) if match]
     column = max(set(starts), key=starts.count, default=0)
     pairs = [name_and_value(line, column) for line in lines[1:]]

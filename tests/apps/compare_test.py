@@ -1,15 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The comparison of two runs, and the program isostat that leads to it."""
+import json
+import pathlib
 import re
 import shutil
+import sys
 
 import numpy as np
 
-from report_support import ReportTest
-from support import BIN, AppTest, contents, main
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
+from report.compare import flat  # noqa: E402  (the path comes first)
+from report.quantities import SHOWN, converted, is_number, named  # noqa: E402
+from report_support import SCENES, ReportTest  # noqa: E402
+from support import BIN, CYCLIC, AppTest, contents, main  # noqa: E402
 
 DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.001\nstrain_rate = "5 1/s"\n'
+SHEAR = '[[stage]]\nkind = "undrained-cyclic-simple-shear"\nstress_ratio = 0.2\nmax_steps = 500\n'
 
 
 class Compare(ReportTest):
@@ -33,6 +40,36 @@ class Compare(ReportTest):
         self.assertIn(f'<td>peak q (kPa)</td><td class="number">{q[np.argmax(np.abs(q))] / 1e3:.6g}</td>', text)
         scene = re.search(r'id="scene">.*?</section>', text, re.S)[0]
         self.assertEqual(re.findall(r"<tr><td>([^<]*)", scene), ["contact.friction", "output.folder"])
+
+    def test_units(self):
+        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name stand in brackets."""
+        self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
+        text = (self.folder / "compare.html").read_text(encoding="utf-8")
+        p0 = json.loads((self.runs / "one/summary.json").read_text(encoding="utf-8"))["p0"]
+        self.assertIn(f'<td>p0 (kPa)</td><td class="number">{p0 / 1e3:.6g}</td>', text)
+        self.assertIn("<td>worst_overshoot (kPa)</td>", text)
+        self.assertEqual(named("biaxial", "peak_stress_Pa"), "peak_stress (kPa)")
+        self.assertEqual(converted("biaxial", "peak_stress_Pa", 2.5e5), 250)
+        self.assertEqual(converted("soil_column", "settlement", None), None)
+
+    def assert_listed(self, program, name):
+        numbers = json.loads((self.runs / name / "summary.json").read_text(encoding="utf-8"))
+        keys = {key for key, value in flat(numbers).items() if is_number(value) and not re.search(r"\.\d+\.", key)}
+        self.assertEqual(keys - SHOWN[program].keys(), set(), "numbers without a unit in report/quantities.py")
+
+    def test_every_number_has_its_unit(self):
+        self.make_test("cell", "--no-figures", specimen='domain = "periodic-cell"\npreparation_friction = "10 deg"',
+                       stages=SHEAR)
+        self.make_test("cyclic", "--no-figures", stages=CYCLIC.format(steps=500), output="energy = true")
+        programs = [("element_test", name) for name in ("one", "cell", "cyclic")]
+        if (BIN / "soil_column").exists():
+            self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=4")
+            self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=1 s")
+            self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=2", "--set",
+                      "test.axial_strain=0.001", "--set", "output.map_every=1")
+            programs += [("soil_column", "column"), ("soil_column", "shaken"), ("biaxial", "block")]
+        for program, name in programs:
+            self.assert_listed(program, name)
 
     def test_with_itself(self):
         before = contents(self.runs / "one")

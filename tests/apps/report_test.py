@@ -7,10 +7,9 @@ import shutil
 import subprocess
 import unittest
 
-from report_support import ReportTest
+from report_support import SCENES, ReportTest
 from support import BIN, CYCLIC, PATIENCE, main, tiny_scene
 
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
 BROWSER = shutil.which("chromium")
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
 

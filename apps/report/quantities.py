@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""In which units the numbers of a summary are shown; their files have SI.   tested: tests/apps/compare_test.py"""
+from figures.column_results import SI
+from figures.common import UNITS
+
+FACTORS = {**SI, **UNITS}  # SI units in one of these
+
+# {program: {number: unit}}, as the summary's text has them; what has no unit has "-".
+SHOWN = {
+    "element_test": {
+        "grains": "-", "void_ratio": "-", "relative_density": "-", "e_min": "-", "e_max": "-",
+        "preparation_friction_deg": "deg", "p0": "kPa", "steps": "-", "steps_since_resumed": "-", "seconds": "-",
+        "shear_stage_first_row": "-", "reversals": "-", "worst_overshoot": "kPa", "energy_residual": "-",
+        "gamma_max": "%", "tau_max": "kPa", "sigma_v0": "kPa", "stress_ratio_max": "-", "CSR": "-",
+        "liquefaction.row": "-", "liquefaction.cycle": "-", "liquefaction.strain_before": "%",
+        "liquefaction.IR_at_onset": "-", "liquefaction.IR_min": "-", "liquefaction.IR_recovered": "-"},
+    "soil_column": {
+        "dimension": "-", "height": "m", "mass_damping": "1/s", "spectrum_damping": "%", "elements": "-", "points": "-",
+        "steps": "-", "time_step": "ms", "end": "s", "peak_input": "m/s2", "peak_surface": "m/s2",
+        "amplification": "-", "peak_gamma": "%", "peak_gamma_depth": "m", "max_ru": "-", "max_ru_depth": "m",
+        "max_ru_time": "s", "settlement": "mm", "immediate_settlement": "mm", "final_settlement": "mm",
+        "degree_of_consolidation": "%", "energy_residual": "J/m2", "relative_energy_residual": "-", "packings": "-",
+        "min_redundancy": "-", "min_redundancy_depth": "m", "min_redundancy_time": "s"},
+    "biaxial": {
+        "steps": "-", "points": "-", "width_m": "m", "height_m": "m", "cells_across": "-", "cells_up": "-",
+        "confinement_Pa": "kPa", "axial_strain": "%", "peak_stress_Pa": "kPa", "peak_strain": "%",
+        "last_stress_Pa": "kPa", "volumetric_strain": "%", "localisation": "-", "iterations": "-", "trials": "-",
+        "substeps": "-", "rejected": "-", "tangents": "-", "rve_steps": "-"},
+}
+IN_SI = ("_deg", "_m", "_Pa")  # ends of names that tell the unit in the file
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def named(program, name):
+    """A number's name as it is shown, with its unit: `p0 (kPa)`."""
+    unit = SHOWN.get(program, {}).get(name, "-")
+    for end in IN_SI:
+        name = name.removesuffix(end)
+    return name if unit == "-" else f"{name} ({unit})"
+
+
+def converted(program, name, value):
+    """A value of a summary in the unit that it is shown in; what is no number as it is."""
+    factor = FACTORS.get(SHOWN.get(program, {}).get(name, "-"), 1)
+    return value / factor if is_number(value) and factor != 1 else value
