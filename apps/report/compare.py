@@ -101,21 +101,21 @@ def page(pair):
     curves, read = read_curves(pair)
     plt.rcParams.update(STYLE)
     names = [f"{name}: {results.path.resolve().name}" for name, results in zip(NAMES, pair)]
-    legend = ", ".join(f"{name} {word}" for name, word in zip(names, ("blue", "orange"))) + "."
+    legend = ", ".join(f"{name} {word}" for name, word in zip(names, compare_curves.WORDS)) + "."
     parts = []
     for name, (title, caption, draw) in curves.figures.items():
         figure = draw(read, names)
         if figure is not None:
             figure.draw_without_rendering()
-            parts.append(html.figure(name, title, f"{caption} {legend}", figure))
+            parts.append(html.figure(name, title, f"{caption(read)} {legend}", figure))
             plt.close(figure)
     one, other = pair
-    runs = [(name, results.title, results.path, results.provenance.get("version", "-"),
-             results.provenance.get("started", "-")) for name, results in zip(NAMES, pair)]
+    runs = [("title", one.title, other.title), ("folder", one.path, other.path)]
+    runs += [(key, *(results.provenance.get(key, "-") for results in pair)) for key in ("version", "started")]
     provenance = [row for row in key_rows(one.provenance, other.provenance) if row[0] not in ("version", "started")]
     return html.page(
         f"{one.path.resolve().name} and {other.path.resolve().name}", f"Two runs of {one.program}", [
-            html.section("Runs", html.table(("", "title", "folder", "version", "started"), runs, "runs"), name="runs"),
+            html.section("Runs", html.table(("", *NAMES), runs, "runs"), name="runs"),
             html.section("Curves", html.figures(parts), name="figures"),
             html.section("Numbers", html.paragraph("Of the curves, then of the summaries. A grey row is the same in "
                                                    "both."),

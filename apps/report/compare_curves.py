@@ -6,17 +6,19 @@ import typing
 import numpy as np
 
 from figures import biaxial, element_test, soil_column
-from figures.common import BLACK, BLUE, ORANGE, RED, panel_letter, plt
+from figures.common import BLACK, GREY, mark_level, panel_letter, plt
 from figures.drawing import Drawing
 
-COLOURS = (BLUE, ORANGE)
-WIDTHS = (1.6, 0.8)  # the first run below and wider, so that equal curves are seen to be two
+# The second run lies on the first one, which shows on both sides of it: curves that are equal are seen to be two.
+LINES = ({"color": "#56b4e9", "linewidth": 2.4, "zorder": 2}, {"color": BLACK, "linewidth": 0.9, "zorder": 2.1})
+WORDS = ("wide light blue", "thin black")
+LEGEND = 0.28  # height of the legend above the panels, inches
 
 
 @dataclasses.dataclass
 class Curves:
     """drawing: reads the results   kind(results): a word for what can be compared with what
-    figures: {name: (title, caption, draw(pair of results, their names) -> figure or None)}
+    figures: {name: (title, caption(pair of results), draw(pair of results, their names) -> figure or None)}
     numbers(results): {quantity (unit): number} of the curves, which the summaries do not have"""
 
     drawing: Drawing
@@ -27,14 +29,14 @@ class Curves:
 
 def draw_pair(axes, pair, names, x, y):
     """y(run) against x(run) of both runs."""
-    for run, name, colour, width in zip(pair, names, COLOURS, WIDTHS):
-        axes.plot(x(run), y(run), color=colour, linewidth=width, label=name)
+    for run, name, line in zip(pair, names, LINES):
+        axes.plot(x(run), y(run), label=name, **line)
 
 
 def legend_of(figure, axes):
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles[:2], labels[:2], loc="upper right", ncols=2)
-    figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - LEGEND / figure.get_figheight()))
 
 
 def panels_of(rows, columns, width=7.6, height=3.0):
@@ -77,9 +79,20 @@ def stress_curves(pair, names):
         axes.set_xlabel(x)
         axes.set_ylabel(y)
     for axes in (one, two):
-        axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
+        axes.axhline(0, color=GREY, linewidth=0.6, zorder=1.4)
+    if last == "IR":
+        mark_level(four, 1.0, "isostatic\n$I_R = 1$")
     legend_of(figure, one)
     return figure
+
+
+def caption_of_test(pair):
+    """What stress_curves() draws of these two."""
+    load, effective = ("tau", "sigma'_v") if pair[0].shear else ("q", "p'")
+    strain = "gamma" if pair[0].shear else "axial strain"
+    progress = "the number of cycles" if all(run.cyclic for run in pair) else strain
+    last = "void ratio" if any(run.drained for run in pair) else "redundancy index"
+    return f"(a) {load} against {effective}, (b) {load} against {strain}, (c) p' and (d) {last} against {progress}."
 
 
 def numbers_of_test(run):
@@ -118,23 +131,33 @@ def surface_motion(pair, names):
     return figure
 
 
+def there(pair):
+    """Of largest r_u and settlement those that one of the runs has: column, factor, label, word."""
+    specs = [("max_ru", 1, "Largest $r_u$", "Largest pore pressure ratio anywhere"),
+             ("settlement", 1e3, "Settlement (mm)", "Settlement")]
+    return [spec for spec in specs[int(pair[0].consolidation):] if any(run.peak(spec[0]) > 1e-6 for run in pair)]
+
+
+def caption_of_water(pair):
+    """What water_and_settlement() draws of these two."""
+    words = ", ".join(spec[3] if k == 0 else spec[3].lower() for k, spec in enumerate(there(pair)))
+    return f"{words} against time."
+
+
 def water_and_settlement(pair, names):
     """Largest r_u anywhere, and settlement, against time."""
-    specs = [("settlement", 1e3, "Settlement (mm)")]
-    if not pair[0].consolidation:
-        specs.insert(0, ("max_ru", 1, "Largest $r_u$"))
-    specs = [spec for spec in specs if any(column.peak(spec[0]) > 1e-6 for column in pair)]
+    specs = there(pair)
     if not specs:
         return None
     figure, panels = panels_of(len(specs), 1, height=2.2)
-    for axes, (name, factor, label) in zip(panels[:, 0], specs):
+    for axes, (name, factor, label, _) in zip(panels[:, 0], specs):
         draw_pair(axes, pair, names, lambda run: run.time, lambda run, name=name, factor=factor:
                   factor * run[name] if run.has(name) else np.full(len(run.time), np.nan))
         axes.set_ylabel(label)
         if name == "settlement":
             axes.invert_yaxis()
         else:
-            axes.axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+            mark_level(axes, 1.0, "$r_u = 1$")
         if pair[0].consolidation:
             axes.set_xscale("log")
     panels[-1, 0].set_xlabel("Time (s)")
@@ -161,13 +184,11 @@ def block_curves(pair, names):
 
 OF_PROGRAM = {
     "element_test": Curves(element_test.DRAWING, kind_of_test, {
-        "curves": ("Stress and strain", "(a) stress path, (b) stress against strain, (c) p' and (d) void ratio or "
-                   "redundancy index, against strain or number of cycles.", stress_curves)}, numbers_of_test),
+        "curves": ("Stress and strain", caption_of_test, stress_curves)}, numbers_of_test),
     "soil_column": Curves(soil_column.DRAWING, kind_of_analysis, {
-        "surface": ("Surface motion", "Acceleration of the surface against time.", surface_motion),
-        "water": ("Pore pressure and settlement", "Largest pore pressure ratio anywhere and settlement, against time.",
-                  water_and_settlement)}),
+        "surface": ("Surface motion", lambda pair: "Acceleration of the surface against time.", surface_motion),
+        "water": ("Pore pressure and settlement", caption_of_water, water_and_settlement)}),
     "biaxial": Curves(biaxial.DRAWING, lambda block: "a block", {
-        "curves": ("Stress and strain", "(a) axial stress, (b) volumetric strain, (c) largest shear strain of a point, "
-                   "against axial strain.", block_curves)}),
+        "curves": ("Stress and strain", lambda pair: "(a) axial stress, (b) volumetric strain, (c) largest shear "
+                   "strain of a point, against axial strain.", block_curves)}),
 }

@@ -8,9 +8,12 @@ import shutil
 import sys
 
 import numpy as np
+from matplotlib.colors import to_rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from report.compare import flat  # noqa: E402  (the path comes first)
+from figures.common import Run, plt  # noqa: E402  (the path comes first)
+from report.compare import flat  # noqa: E402
+from report.compare_curves import LINES, caption_of_test, stress_curves  # noqa: E402
 from report.quantities import SHOWN, converted, is_number, named  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
 from support import BIN, CYCLIC, AppTest, contents, main  # noqa: E402
@@ -33,7 +36,8 @@ class Compare(ReportTest):
         self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
         text = (self.folder / "compare.html").read_text(encoding="utf-8")
         self.assert_one_file(text)
-        for part in ("A: one blue, B: other orange.", "<td>contact.friction</td><td>18 deg</td><td>25 deg</td>",
+        for part in ("A: one wide light blue, B: other thin black.",
+                     "<td>contact.friction</td><td>18 deg</td><td>25 deg</td>",
                      '<figure id="curves"', '<tr class="same"><td>grains</td>'):
             self.assertIn(part, text)
         q = np.genfromtxt(self.runs / "one/history.csv", delimiter=",", names=True)["q_Pa"]
@@ -88,6 +92,26 @@ class Compare(ReportTest):
         self.assert_done(self.compare(self.runs / "one", "notebook"))
         self.assert_done(self.run_app("isostat", "report", "notebook"))
         self.assertTrue((self.folder / "notebook/report.html").exists())
+
+    def test_equal_curves_are_seen_to_be_two(self):
+        """Both colours are there, unmixed, and the legend has the lines of the curves."""
+        run = Run(self.runs / "one")
+        figure = stress_curves([run, run], ["A", "B"])
+        figure.set_dpi(100)
+        figure.canvas.draw()
+        image = np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+        box = figure.axes[0].get_window_extent()
+        panel = image[image.shape[0] - int(box.y1):image.shape[0] - int(box.y0) - 3, int(box.x0) + 3:int(box.x1)]
+        for line, shown in zip(LINES, figure.legends[0].get_lines()):
+            off = np.abs(panel - 255 * np.array(to_rgb(line["color"]))).max(axis=-1)
+            self.assertGreater((off < 30).sum(), 50, line)
+            self.assertEqual((shown.get_color(), shown.get_linewidth()), (line["color"], line["linewidth"]))
+        plt.close(figure)
+
+    def test_captions_say_what_is_drawn(self):
+        run = Run(self.runs / "one")
+        self.assertEqual(caption_of_test([run, run]), "(a) q against p', (b) q against axial strain, (c) p' and (d) "
+                         "void ratio against axial strain.")
 
     def refuse(self, first, second, *parts):
         self.assert_refused(self.compare(first, second), *parts)
