@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a module says of a program's figures, and how they are drawn into a folder."""
 import dataclasses
+import re
 import typing
 
 from .common import STYLE, BadInput, plt
+
+# What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
+KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil")
+PARTS = re.compile(rf"(?:^|; )(?:({'|'.join(KINDS)}): )?")
+
+
+def fitting(caption, kinds):
+    """The parts of a caption that fit: `triaxial: q against p'; simple shear: tau against p'` has two."""
+    _, *found = PARTS.split(caption)
+    return "; ".join(text for kind, text in zip(found[::2], found[1::2]) if kind is None or kind in kinds)
 
 
 @dataclasses.dataclass
@@ -13,11 +24,13 @@ class Drawing:
     read      folder -> results, with a `title` or None; raises BadInput, OSError, KeyError, ValueError on wrong files
     figures   {name: draw}, draw(results) -> figure, or None if there is nothing to draw
     undrawn   called with name and results for each of these
+    kinds     results -> the KINDS they are of, whose parts of a caption fit them
     """
 
     read: typing.Callable
     figures: dict
     undrawn: typing.Callable = lambda name, results: None
+    kinds: typing.Callable = lambda results: set()
 
     def results(self, folder, beside=()):
         """What is read from a results folder, with that of others beside it.   Raises BadInput"""

@@ -3,13 +3,13 @@
 
     python3 -m figures element_test RESULTS
 
-fig_stress_path.png        (a) q against p', (b) q against axial strain; (c) drained: volumetric strain;
-                           in simple shear tau against (a) sigma'_v, (b) p', (c) gamma
+fig_stress_path.png        triaxial: (a) q against p', (b) q against axial strain; drained triaxial: (c) volumetric
+                           strain against axial strain; simple shear: tau against (a) sigma'_v, (b) p', (c) gamma
 fig_redundancy.png         (a) redundancy index I_R, (b) p'/p0'
 fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
 fig_fabric.png             (a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]
-fig_principal_stress.png   simple shear only: direction of the major principal stress against (a) cycles or gamma,
-                           (b) tau / sigma'_v
+fig_principal_stress.png   simple shear: direction of the major principal stress against (a) cycles or gamma, (b)
+                           tau / sigma'_v
 
 Stresses and strains are positive in compression. Cyclic tests are drawn against the number of cycles: reversals count
 half a cycle each, the first one too, and between two the strain, which runs one way there, says how far it has come.
@@ -141,4 +141,11 @@ def undrawn(name, run):
         note(f"{name}: none of its columns is there; not drawn")
 
 
-DRAWING = Drawing(Run, FIGURES, undrawn)
+def kinds(run):
+    """The words before captions that fit the test."""
+    if run.shear:
+        return {"simple shear"}
+    return {"triaxial", "drained triaxial"} if run.drained else {"triaxial"}
+
+
+DRAWING = Drawing(Run, FIGURES, undrawn, kinds)

@@ -5,8 +5,8 @@
 
 fig_motions.png       acceleration of input and surface, for each direction that moves
 fig_spectra.png       response spectra of input and surface, and their ratio
-fig_transfer.png      Fourier amplitudes, surface over input; beside the exact curve of a uniform elastic layer, from
-                      which the largest difference is printed; else smoothed (Konno and Ohmachi 1998, b = 80)
+fig_transfer.png      Fourier amplitudes, surface over input; one elastic layer: beside its exact curve, from which the
+                      largest difference is printed; other soil: smoothed, too (Konno and Ohmachi 1998, b = 80)
 fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far, over the depth at several times
 fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     r_u at the output depths and its largest value anywhere; settlement
@@ -43,4 +43,11 @@ FIGURES = {
     "fig_grains_history": grains_history,
 }
 
-DRAWING = Drawing(Column, FIGURES)
+
+def kinds(column):
+    """The words before captions that fit the column."""
+    return {"consolidation" if column.consolidation else "shaken",
+            "one elastic layer" if column.uniform_elastic() else "other soil"}
+
+
+DRAWING = Drawing(Column, FIGURES, kinds=kinds)

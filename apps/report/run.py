@@ -4,6 +4,7 @@ import importlib
 import re
 
 from figures.common import BadInput, note
+from figures.drawing import fitting
 
 from . import citation, html, verdicts
 from .folder import NoResults, Results
@@ -15,10 +16,12 @@ RESUMED = ("element_test", "soil_column")  # --resume goes on from a checkpoint
 FIGURE_LINE = re.compile(r"^(\w+)\.png\s+(\S.*(?:\n[ ]{8,}\S.*)*)", re.M)
 
 
-def captions(module):
-    """{figure: what it shows}, from the list of figures at the top of the module that draws them."""
-    texts = {name: " ".join(text.split()) for name, text in FIGURE_LINE.findall(module.__doc__ or "")}
-    return {name: (text if text[1:2] == "_" else text[0].upper() + text[1:]) + "." for name, text in texts.items()}
+def captions(module, kinds):
+    """{figure: what it shows}, from the list of figures at the top of the module that draws them: the parts that fit
+    results of these kinds."""
+    texts = {name: fitting(" ".join(text.split()), kinds) for name, text in FIGURE_LINE.findall(module.__doc__ or "")}
+    return {name: (text if text[1:2] == "_" else text[0].upper() + text[1:]) + "."
+            for name, text in texts.items() if text}
 
 
 def title_of(name):
@@ -77,12 +80,14 @@ class Page:
     """Collects the figures of a run while they are drawn, and writes them with the rest."""
 
     def __init__(self, results, module):
-        self.results, self.captions = results, captions(module)
+        self.results, self.module = results, module
         self.figures = []
 
-    def add(self, name, figure):
+    def add(self, name, figure, drawn):
+        """@param drawn  what the figure is drawn from"""
         title = title_of(name)
-        self.figures.append(html.figure(name, title, self.captions.get(name, title), figure))
+        caption = captions(self.module, self.module.DRAWING.kinds(drawn)).get(name, title)
+        self.figures.append(html.figure(name, title, caption, figure))
 
     def text(self, drawn, reason):
         """The page.   @param drawn  what the figures are drawn from, or None   @param reason  why there are none"""
@@ -118,7 +123,7 @@ def leave(folder, program):
         nonlocal failure
         try:
             if failure is None:
-                page.add(name, figure)
+                page.add(name, figure, drawn)
         except Exception as error:  # pylint: disable=broad-except  (a report never costs a figure)
             failure = error
 

@@ -5,10 +5,14 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 
-from report_support import SCENES, ReportTest
-from support import BIN, CYCLIC, PATIENCE, main, tiny_scene
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
+from figures import element_test, soil_column  # noqa: E402  (the path comes first)
+from report.run import captions  # noqa: E402
+from report_support import SCENES, ReportTest  # noqa: E402
+from support import BIN, CYCLIC, PATIENCE, main, tiny_scene  # noqa: E402
 
 BROWSER = shutil.which("chromium")
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
@@ -33,6 +37,20 @@ document.body.dataset.probe = [document.documentElement.scrollWidth, innerWidth,
 </script>"""
 
 
+class Captions(unittest.TestCase):
+    def test_they_fit_the_kind_of_test(self):
+        path = "fig_stress_path"
+        self.assertEqual(captions(element_test, {"triaxial"})[path], "(a) q against p', (b) q against axial strain.")
+        self.assertEqual(captions(element_test, {"triaxial", "drained triaxial"})[path], "(a) q against p', (b) q "
+                         "against axial strain; (c) volumetric strain against axial strain.")
+        self.assertEqual(captions(element_test, {"simple shear"})[path],
+                         "Tau against (a) sigma'_v, (b) p', (c) gamma.")
+        self.assertNotIn("fig_principal_stress", captions(element_test, {"triaxial"}))
+        self.assertNotIn("smoothed", captions(soil_column, {"one elastic layer"})["fig_transfer"])
+        for kind in ("consolidation", "other soil"):
+            self.assertNotRegex(" ".join(captions(soil_column, {kind}).values()), "(?i)consolidation:|layer:|soil:")
+
+
 class Reports(ReportTest):
     @classmethod
     def setUpClass(cls):
@@ -43,6 +61,8 @@ class Reports(ReportTest):
     def test_cyclic(self):
         words = self.assert_whole("cyclic")
         self.assertIn("ended by its limit of 2000 time steps", words)
+        self.assertIn("(a) q against p', (b) q against axial strain. ", words)
+        self.assertNotIn("simple shear", words)
         self.assertIn("Rate: fixed at 2 1/s, not controlled.", words)
         self.assertIn("-o cyclic -q --resume", words)
         self.assertIn("results/again", words)
