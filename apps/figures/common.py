@@ -244,7 +244,7 @@ def progress_axes(run, panels):
         if high - kink >= 0.5 and high - kink < 0.8 * (kink - low):
             for axes in panels:
                 stretch_after(axes, low, kink, high)
-            label += " (scale stretched after the onset)"
+            label = label.removesuffix(")") + "; scale stretched after the onset)"
     if high > low:
         for axes in panels:
             axes.set_xlim(low, high)
