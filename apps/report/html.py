@@ -4,7 +4,7 @@ import html
 import os
 import pathlib
 
-from . import svg
+from . import narrow, svg
 
 HERE = pathlib.Path(__file__).resolve().parent
 LARGEST = 1.7  # pixels of the page for a point of a figure: 9 pt are then as large as a heading
@@ -58,10 +58,15 @@ def table(head, rows, label, numbers=()):
 
 
 def figure(name, title, caption, drawn):
-    """A drawn figure of matplotlib that can be zoomed, with its caption."""
+    """A drawn figure of matplotlib that can be zoomed, with its caption. Panels side by side stand below each other
+    in a narrow window: the page has both."""
+    label = f'role="img" tabindex="0" aria-label="{escape(title + ": " + caption)}"'
     element, width = svg.element(drawn, name)
-    opening = f'<svg class="zoom" role="img" tabindex="0" aria-label="{escape(title + ": " + caption)}"'
-    element = element.replace("<svg", opening, 1)
+    element = element.replace("<svg", f'<svg class="zoom" {label}', 1)
+    if narrow.side_by_side(drawn):
+        narrow.stack(drawn)
+        stacked, _ = svg.element(drawn, f"{name}-narrow")
+        element += stacked.replace("<svg", f'<svg class="zoom narrow" {label}', 1)
     return (f'<figure id="{escape(name)}"{attribute("class", "wide" if width > WIDE else "")}>\n'
             f'<h3>{escape(title)}</h3>\n<div style="max-width:{LARGEST * width:.0f}px">{element}</div>\n'
             f'<figcaption>{escape(caption)}</figcaption>\n</figure>')

@@ -74,5 +74,6 @@ def element(figure, prefix):
     svg = shortened(svg.replace("xlink:href", "href"))
     svg = IDENTIFIER.sub(lambda match: match[0] + prefix + "-", svg)
     width, height = map(float, re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups())
-    opening = f'<svg viewBox="0 {top:.1f} {width:g} {height - top:.1f}" preserveAspectRatio="xMidYMid meet"'
+    view = f"0 {round(top, 1):g} {width:g} {round(height - top, 1):g}"
+    opening = f'<svg viewBox="{view}" preserveAspectRatio="xMidYMid meet"'
     return re.sub(r"<svg[^>]*", opening, svg, count=1), width

@@ -10,6 +10,8 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures import element_test, soil_column  # noqa: E402  (the path comes first)
+from figures.common import plt  # noqa: E402
+from report import narrow  # noqa: E402
 from report.run import captions  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
 from support import BIN, CYCLIC, PATIENCE, main, tiny_scene  # noqa: E402
@@ -20,7 +22,8 @@ MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
 # What the page says of itself when its script has run: width of the content, number of figures that leave the window or
 # would have to be scrolled, view of the first figure before and after the wheel, after the double click.
 PROBE = """<script>
-const first = document.querySelector("svg.zoom"), box = first.getBoundingClientRect();
+const seen = [...document.querySelectorAll("svg.zoom")].filter(svg => svg.getBoundingClientRect().width > 0);
+const first = seen[0], box = first.getBoundingClientRect();
 const views = [first.getAttribute("viewBox")];
 const at = { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2, bubbles: true, cancelable: true };
 const note = () => views.push(first.getAttribute("viewBox"));
@@ -29,7 +32,7 @@ first.focus();
 first.dispatchEvent(new WheelEvent("wheel", { deltaY: -300, ...at })); note();
 first.dispatchEvent(new KeyboardEvent("keydown", { key: "+", bubbles: true })); note();
 first.dispatchEvent(new MouseEvent("dblclick", at)); note();
-const cut = [...document.querySelectorAll("svg.zoom")].filter(svg => {
+const cut = seen.filter(svg => {
   const { left, right } = svg.getBoundingClientRect(), around = svg.parentElement;
   return left < 0 || right > innerWidth || around.scrollWidth > around.clientWidth;
 });
@@ -49,6 +52,42 @@ class Captions(unittest.TestCase):
         self.assertNotIn("smoothed", captions(soil_column, {"one elastic layer"})["fig_transfer"])
         for kind in ("consolidation", "other soil"):
             self.assertNotRegex(" ".join(captions(soil_column, {kind}).values()), "(?i)consolidation:|layer:|soil:")
+
+
+class Narrow(unittest.TestCase):
+    def test_panels_come_below_each_other(self):
+        """Each with labels and numbers of its own, and the legend within the figure."""
+        figure, panels = plt.subplots(1, 3, figsize=(9.6, 3.3), sharey=True, layout="constrained")
+        for axes, label in zip(panels, ("one", "two", "three")):
+            axes.plot([0, 1], [0, 1], label=f"a legend that is long {label}")
+            axes.set_xlabel(label)
+        panels[0].set_ylabel("shared")
+        figure.legend(*(sum(texts, []) for texts in zip(*(axes.get_legend_handles_labels() for axes in panels))),
+                      loc="lower center", ncols=3)
+        figure.draw_without_rendering()
+        self.assertTrue(narrow.side_by_side(figure))
+        narrow.stack(figure)
+        self.addCleanup(plt.close, figure)
+        boxes = [axes.get_tightbbox(figure.canvas.get_renderer()) for axes in panels]
+        for above, below in zip(boxes, boxes[1:]):
+            self.assertGreaterEqual(above.y0, below.y1)
+        self.assertEqual([axes.get_ylabel() for axes in panels], 3 * ["shared"])
+        legend = figure.legends[0].get_window_extent()
+        self.assertEqual(len(figure.legends[0].get_texts()), 3)
+        self.assertTrue(legend.x0 >= 0 and legend.x1 <= figure.bbox.width and legend.y1 <= boxes[-1].y0, legend)
+        self.assertFalse(narrow.side_by_side(figure))
+
+    def test_a_colour_bar_stays_beside_its_panels(self):
+        figure, panels = plt.subplots(1, 2, layout="constrained")
+        self.addCleanup(plt.close, figure)
+        bar = figure.colorbar(panels[0].scatter([0], [0], c=[1]), ax=panels).ax
+        figure.draw_without_rendering()
+        self.assertTrue(narrow.side_by_side(figure))
+        narrow.stack(figure)
+        one, two, beside = (axes.get_window_extent() for axes in (*panels, bar))
+        self.assertGreater(one.y0, two.y1)
+        self.assertGreater(beside.x0, max(one.x1, two.x1))
+        self.assertTrue(beside.y0 <= two.y0 + 1 and beside.y1 >= one.y1 - 1, beside)
 
 
 class Reports(ReportTest):
