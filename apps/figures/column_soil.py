@@ -233,22 +233,31 @@ def loops(column):
     return figure
 
 
+def is_wet(column):
+    """Whether there is a pore pressure ratio to be drawn."""
+    return column.peak("max_ru") > MIN_RU or any(column.peak(f"{p}_ru") > MIN_RU for _, p in column.points)
+
+
+def sinks(column):
+    """Whether there is a settlement to be drawn."""
+    return column.peak("settlement") > 1e-6
+
+
 def histories(column):
     """r_u at the output depths and its largest value anywhere; settlement."""
     if column.consolidation:
         return None
-    wet = column.peak("max_ru") > MIN_RU or any(column.peak(f"{p}_ru") > MIN_RU for _, p in column.points)
-    sinks = column.peak("settlement") > 1e-6
-    if not wet and not sinks:
+    wet, sinking = is_wet(column), sinks(column)
+    if not wet and not sinking:
         return None
-    figure, panels = plt.subplots(wet + sinks, 1, figsize=(7.2, 2.5 * (wet + sinks) + 0.5), sharex=True,
+    figure, panels = plt.subplots(wet + sinking, 1, figsize=(7.2, 2.5 * (wet + sinking) + 0.5), sharex=True,
                                   squeeze=False, layout="constrained")
     panels = list(panels[:, 0])
     for axes, letter in zip(panels, "ab" if len(panels) > 1 else ""):
         panel_letter(axes, letter)
     if wet:
         draw_ru(column, panels[0])
-    if sinks:
+    if sinking:
         panels[-1].plot(column.time, 1e3 * column["settlement"], color=BLACK)
         panels[-1].invert_yaxis()
         panels[-1].set_ylabel("Settlement (mm)")

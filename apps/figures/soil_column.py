@@ -7,9 +7,10 @@ fig_motions.png       acceleration of input and surface, for each direction that
 fig_spectra.png       response spectra of input and surface, and their ratio
 fig_transfer.png      Fourier amplitudes, surface over input; one elastic layer: beside its exact curve, from which the
                       largest difference is printed; other soil: smoothed, too (Konno and Ohmachi 1998, b = 80)
-fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far, over the depth at several times
+fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the
+                      depth at several times
 fig_ru_map.png        r_u over depth and time, below the input
-fig_histories.png     r_u at the output depths and its largest value anywhere; settlement
+fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
 fig_settlement.png    consolidation: settlement against time, beside Terzaghi's if it applies
@@ -25,7 +26,7 @@ from .column_results import Column
 from .column_consolidation import isochrones, settlement
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
-from .column_soil import histories, loops, profiles, ru_map
+from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks
 from .drawing import Drawing
 
 FIGURES = {
@@ -46,8 +47,9 @@ FIGURES = {
 
 def kinds(column):
     """The words before captions that fit the column."""
-    return {"consolidation" if column.consolidation else "shaken",
-            "one elastic layer" if column.uniform_elastic() else "other soil"}
+    soil = {"one elastic layer" if column.uniform_elastic() else "other soil"}
+    return soil | {word for word, fits in (("consolidation", column.consolidation), ("wet column", is_wet(column)),
+                                           ("sinking column", sinks(column))) if fits}
 
 
 DRAWING = Drawing(Column, FIGURES, kinds=kinds)

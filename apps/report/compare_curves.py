@@ -71,13 +71,14 @@ def stress_curves(pair, names):
     last, last_label = ("e", "Void ratio $e$") if any(run.drained for run in pair) else (
         "IR", "Redundancy index $I_R$")
     draw_pair(four, pair, names, progress, lambda run: run[last] if run.has(last) else np.full(run.n_rows, np.nan))
-    one.set_xlim(left=0)
-    three.set_ylim(bottom=0)
+    one.set_xlim(0, 1.05 * max(np.nanmax(run[path]) for run in pair) / 1e3)
+    three.set_ylim(0, 1.1 * max(np.nanmax(run["p"]) for run in pair) / 1e3)
     for axes, x, y in ((one, path_label, load_label), (two, pair[0].strain_label, load_label),
                        (three, progress_label, r"Mean effective stress $p^\prime$ (kPa)"),
                        (four, progress_label, last_label)):
         axes.set_xlabel(x)
         axes.set_ylabel(y)
+        axes.locator_params(axis="x", nbins=5)
     for axes in (one, two):
         axes.axhline(0, color=GREY, linewidth=0.6, zorder=1.4)
     if last == "IR":
@@ -96,11 +97,16 @@ def caption_of_test(pair):
 
 
 def numbers_of_test(run):
-    """Peak and ends of the curves. q (tau) is signed; its peak is where its amount is largest."""
-    load = "tau_xy" if run.shear else "q"
-    peak, p = int(np.argmax(np.abs(run[load]))), run["p"] / 1e3
-    numbers = {f"peak {load} (kPa)": run[load][peak] / 1e3, f"strain at peak {load} (%)": 100 * run.strain[peak],
-               "least p' (kPa)": p.min(), "p' at the end (kPa)": p[-1], f"{load} at the end (kPa)": run[load][-1] / 1e3}
+    """Peak and ends of the curves. q (tau) is signed; its peak is where its amount is largest. Which end of a cycle
+    that is hangs on an overshoot: of cyclic tests both are given."""
+    name = "tau_xy" if run.shear else "q"
+    load, strain, p = run[name] / 1e3, 100 * run.strain, run["p"] / 1e3
+    peak = int(np.nanargmax(np.abs(load)))
+    numbers = {f"peak {name} (kPa)": load[peak], f"strain at peak {name} (%)": strain[peak]}
+    if run.cyclic:
+        numbers = {f"largest {name} (kPa)": np.nanmax(load), f"smallest {name} (kPa)": np.nanmin(load),
+                   "largest strain (%)": np.nanmax(strain), "smallest strain (%)": np.nanmin(strain)}
+    numbers |= {"least p' (kPa)": p.min(), "p' at the end (kPa)": p[-1], f"{name} at the end (kPa)": load[-1]}
     if run.drained:
         numbers["void ratio at the end"] = run["e"][-1]
     if run.has("IR"):

@@ -13,7 +13,7 @@ from matplotlib.colors import to_rgb
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures.common import Run, plt  # noqa: E402  (the path comes first)
 from report.compare import flat  # noqa: E402
-from report.compare_curves import LINES, caption_of_test, stress_curves  # noqa: E402
+from report.compare_curves import LINES, caption_of_test, numbers_of_test, stress_curves  # noqa: E402
 from report.quantities import SHOWN, converted, is_number, named  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
 from support import BIN, CYCLIC, AppTest, contents, main  # noqa: E402
@@ -28,6 +28,7 @@ class Compare(ReportTest):
         super().setUpClass()
         cls.make_test("one", "--no-figures", stages=DRAINED)
         cls.make_test("other", "--no-figures", "--set", "contact.friction=25 deg", stages=DRAINED)
+        cls.make_test("cyclic", "--no-figures", stages=CYCLIC.format(steps=3000), output="energy = true")
 
     def compare(self, *arguments):
         return self.run_app("isostat", "compare", *arguments)
@@ -64,7 +65,6 @@ class Compare(ReportTest):
     def test_every_number_has_its_unit(self):
         self.make_test("cell", "--no-figures", specimen='domain = "periodic-cell"\npreparation_friction = "10 deg"',
                        stages=SHEAR)
-        self.make_test("cyclic", "--no-figures", stages=CYCLIC.format(steps=500), output="energy = true")
         programs = [("element_test", name) for name in ("one", "cell", "cyclic")]
         if (BIN / "soil_column").exists():
             self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=4")
@@ -112,6 +112,19 @@ class Compare(ReportTest):
         run = Run(self.runs / "one")
         self.assertEqual(caption_of_test([run, run]), "(a) q against p', (b) q against axial strain, (c) p' and (d) "
                          "void ratio against axial strain.")
+
+    def test_ends_of_cycles(self):
+        """Both, because a peak would be the one or the other by an overshoot; the curves lie within their panels."""
+        run = Run(self.runs / "cyclic")
+        numbers = numbers_of_test(run)
+        self.assertNotIn("peak q (kPa)", numbers)
+        self.assertEqual((numbers["smallest q (kPa)"], numbers["largest q (kPa)"]),
+                         (run["q"].min() / 1e3, run["q"].max() / 1e3))
+        figure = stress_curves([run, run], ["A", "B"])
+        figure.draw_without_rendering()
+        self.assertGreater(figure.axes[0].get_xlim()[1], 1.02 * run["p"].max() / 1e3)
+        self.assertGreater(figure.axes[2].get_ylim()[1], 1.02 * run["p"].max() / 1e3)
+        plt.close(figure)
 
     def refuse(self, first, second, *parts):
         self.assert_refused(self.compare(first, second), *parts)

@@ -50,8 +50,11 @@ class Captions(unittest.TestCase):
                          "Tau against (a) sigma'_v, (b) p', (c) gamma.")
         self.assertNotIn("fig_principal_stress", captions(element_test, {"triaxial"}))
         self.assertNotIn("smoothed", captions(soil_column, {"one elastic layer"})["fig_transfer"])
+        self.assertEqual(captions(soil_column, {"wet column"})["fig_histories"],
+                         "r_u at the output depths and its largest value anywhere.")
         for kind in ("consolidation", "other soil"):
-            self.assertNotRegex(" ".join(captions(soil_column, {kind}).values()), "(?i)consolidation:|layer:|soil:")
+            words = " ".join(captions(soil_column, {kind}).values())
+            self.assertNotRegex(words, "(?i)consolidation:|layer:|soil:|column:")
 
 
 class Narrow(unittest.TestCase):
