@@ -30,7 +30,7 @@ def shown(value):
 
 
 def change(first, second):
-    """B - A and the same as a share of A, as text."""
+    """B - A and the same as a share of |A|, as text."""
     if not (is_number(first) and is_number(second)):
         return ("", "") if first == second else ("differs", "")
     difference = second - first
@@ -119,7 +119,7 @@ def page(pair):
             html.section("Curves", html.figures(parts), name="figures"),
             html.section("Numbers", html.paragraph("Of the curves, then of the summaries. A grey row is the same in "
                                                    "both."),
-                         html.table(("", *NAMES, "B - A", "of A"),
+                         html.table(("", *NAMES, "B - A", "of |A|"),
                                     [*number_rows(*map(curves.numbers, read)),
                                      *number_rows(*map(shown_summary, pair))],
                                     "numbers of both summaries", numbers=(1, 2, 3, 4)), name="numbers"),

@@ -10,7 +10,7 @@ from figures.common import BLACK, GREY, mark_level, panel_letter, plt
 from figures.drawing import Drawing
 
 # The second run lies on the first one, which shows on both sides of it: curves that are equal are seen to be two.
-LINES = ({"color": "#56b4e9", "linewidth": 2.4, "zorder": 2}, {"color": BLACK, "linewidth": 0.9, "zorder": 2.1})
+LINES = ({"color": "#56b4e9", "linewidth": 3.0, "zorder": 2}, {"color": BLACK, "linewidth": 0.8, "zorder": 2.1})
 WORDS = ("wide light blue", "thin black")
 LEGEND = 0.28  # height of the legend above the panels, inches
 

@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures.common import Run, plt  # noqa: E402  (the path comes first)
-from report.compare import flat  # noqa: E402
+from report.compare import change, flat  # noqa: E402
 from report.compare_curves import LINES, caption_of_test, numbers_of_test, stress_curves  # noqa: E402
 from report.quantities import SHOWN, converted, is_number, named  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
@@ -118,6 +118,7 @@ class Compare(ReportTest):
         run = Run(self.runs / "cyclic")
         numbers = numbers_of_test(run)
         self.assertNotIn("peak q (kPa)", numbers)
+        self.assertEqual(change(-60.0, -80.0), ("-20", "-33.3 %"))  # of |A|
         self.assertEqual((numbers["smallest q (kPa)"], numbers["largest q (kPa)"]),
                          (run["q"].min() / 1e3, run["q"].max() / 1e3))
         figure = stress_curves([run, run], ["A", "B"])
