@@ -282,8 +282,8 @@ std::string to_text(const TestSummary &s, const Scene &scene)
                   rate_text(scene), s.max_indicator);
   text += fmt::format("\n  I_R at the start         {:.3f}", s.redundancy_initial);
   if (s.cyclic && s.liquefied)
-    text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals; figures put the first at 0.25)",
-                        s.cycles_to_liquefaction, 2 * s.cycles_to_liquefaction);
+    text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", s.cycles_to_liquefaction,
+                        2 * s.cycles_to_liquefaction);
   if (s.liquefied)
     text +=
         fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {:.3f}\n  smallest I_R after       "
