@@ -33,7 +33,7 @@ struct Options
   double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2, contact_damping = 0,
          free_grain_damping = 0;
   std::size_t copies = 1;
-  bool carry_grains = false;
+  bool carry_grains = false, fixed_threads = false;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
@@ -85,6 +85,7 @@ void measure(const Options &options)
   Assembly assembly(initial);
   assembly.settings.time_step = options.time_step;
   assembly.settings.threads = options.threads;
+  assembly.settings.fixed_threads = options.fixed_threads;
   assembly.settings.damping = options.damping;
   assembly.settings.contact_damping = options.contact_damping;
   assembly.settings.free_grain_damping = options.free_grain_damping;
@@ -154,6 +155,7 @@ int main(int argc, char **argv)
   line.add_option("--steps", options.steps, "timed steps per repeat");
   line.add_option("--warm-up", options.warm_up, "steps before");
   line.add_option("--threads", options.threads, "threads that share a step");
+  line.add_flag("--fixed-threads", options.fixed_threads, "so many, even where one is faster");
   line.add_option("--repeats", options.repeats, "timed blocks");
   line.add_option("--times", options.times, "write the figures of each timed block to this file, as JSON");
   return run_command(line, argc, argv, [&] { measure(options); });

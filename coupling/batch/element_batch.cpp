@@ -3,11 +3,13 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "base/threads/team.hpp"
 #include "coupling/element/axes.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <omp.h>
 #include <utility>
@@ -28,13 +30,13 @@ ElementBatch::ElementBatch(const Realisations &points, const ElementSettings &se
 std::optional<Exchange::Failure> ElementBatch::run_mine(const std::function<void(std::size_t)> &work) const
 {
   std::optional<Exchange::Failure> first;
+  std::mutex one_at_a_time;
   const auto failed = [&](std::size_t id, const char *what, bool bad_input) {
-#pragma omp critical(isostat_element_batch_failure)
+    const std::lock_guard lock(one_at_a_time);
     if (!first || id < first->element)
       first = Exchange::Failure{id, points_.label(id) + ": " + what, bad_input};
   };
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (threads_ > 1)
-  for (std::size_t k = 0; k < order_.size(); ++k)
+  for_each_piece(threads_, order_.size(), [&](std::size_t k) {
     try
       {
         work(order_[k]);
@@ -47,6 +49,7 @@ std::optional<Exchange::Failure> ElementBatch::run_mine(const std::function<void
       {
         failed(order_[k], error.what(), false);
       }
+  });
   return first;
 }
 

@@ -1,15 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For files of dem/assembly alone, which are compiled with OpenMP.
+// For files of dem/assembly alone.
 // tested: tests/verification/threads_test.cpp
 #pragma once
 #include "base/stopwatch.hpp"
+#include "base/threads/team.hpp"
 #include "dem/assembly/contact_forces.hpp"
 
-#include <omp.h>
+#include <optional>
 #include <utility>
 
 namespace isostat
 {
+/// Adds its lifetime to the time of the step, where the number of threads is a choice.
+class ContactForces::Timer
+{
+public:
+  Timer(ContactForces &forces, const StepSettings &settings) : seconds_(forces.step_seconds_)
+  {
+    if (!settings.fixed_threads && forces.available_threads(settings) > 1)
+      watch_.emplace();
+  }
+  Timer(const Timer &) = delete;
+  Timer &operator=(const Timer &) = delete;
+  ~Timer()
+  {
+    if (watch_)
+      seconds_ += watch_->seconds();
+  }
+
+private:
+  double &seconds_;
+  std::optional<Stopwatch> watch_;
+};
+
 /// Calls work(chunk) for all chunks: in order on one thread, in shares side by side on several.
 template <typename Work>
 void ContactForces::for_chunks(int n_threads, const Work &work)
@@ -24,20 +47,19 @@ void ContactForces::for_chunks(int n_threads, const Work &work)
   shares_.update(n_threads, partition.n_chunks, [&](std::size_t chunk) { // a block of pairs costs as much as 16 grains
     return 16.0 * list_.first_block(chunk) + partition.begin(chunk);
   });
-#pragma omp parallel num_threads(n_threads)
-  {
-    const int thread = omp_get_thread_num();
+  Team::of(n_threads).run(n_threads, [&](int thread) {
     const Stopwatch watch;
     for (std::size_t chunk = shares_.begin(thread); chunk < shares_.begin(thread + 1); ++chunk)
       work(chunk);
     shares_.add_time(thread, watch.seconds());
-  }
+  });
 }
 
 template <typename Before>
 void ContactForces::begin_step(const Input &in, const Before &before)
 {
   resize(in);
+  const Timer timer(*this, in.settings);
   const int n = n_threads(in.settings);
   for_chunks(n, [&](std::size_t chunk) {
     before(chunk);
@@ -50,6 +72,7 @@ void ContactForces::begin_step(const Input &in, const Before &before)
 template <typename Move>
 void ContactForces::finish_step(const Input &in, const Move &move)
 {
+  std::optional<Timer> timer(std::in_place, *this, in.settings);
   const int n = n_threads(in.settings);
   if (pending_ == Pending::pairs && n > 1) // threads were added since the step began
     evaluate(in);
@@ -63,5 +86,8 @@ void ContactForces::finish_step(const Input &in, const Move &move)
       add_ghosts(chunk);
     move(chunk);
   });
+  timer.reset();
+  if (const double seconds = std::exchange(step_seconds_, 0.0); seconds > 0)
+    choice_.add(seconds);
 }
 } // namespace isostat

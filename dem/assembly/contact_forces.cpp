@@ -2,10 +2,17 @@
 #include "dem/assembly/contact_forces-inl.hpp"
 
 #include <algorithm>
+#include <omp.h>
 
 namespace isostat
 {
 int ContactForces::n_threads(const StepSettings &settings) const
+{
+  const int available = available_threads(settings);
+  return settings.fixed_threads || choice_.several() ? available : 1;
+}
+
+int ContactForces::available_threads(const StepSettings &settings) const
 {
   const int n_chunks = static_cast<int>(list_.partition().n_chunks);
   if (settings.threads > 0)
@@ -32,11 +39,13 @@ void ContactForces::evaluate_pairs(std::size_t chunk, const Input &in)
 
 void ContactForces::evaluate(const Input &in)
 {
+  if (pending_ == Pending::nothing)
+    return;
+  const Timer timer(*this, in.settings);
   const int n = n_threads(in.settings);
   if (pending_ == Pending::pairs)
     for_chunks(n, [&](std::size_t chunk) { evaluate_pairs(chunk, in); });
-  if (pending_ != Pending::nothing)
-    for_chunks(n, [&](std::size_t chunk) { add_ghosts(chunk); });
+  for_chunks(n, [&](std::size_t chunk) { add_ghosts(chunk); });
   pending_ = Pending::nothing;
 }
 

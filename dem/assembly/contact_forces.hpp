@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "dem/assembly/thread_choice.hpp"
 #include "dem/assembly/thread_shares.hpp"
 #include "dem/contact/loop.hpp"
 #include "dem/domain/domain.hpp"
@@ -18,8 +19,10 @@ struct StepSettings
   Vec3 gravity = Vec3::Zero();   ///< m/s2
   bool measure_energy = false;   ///< from the next force evaluation on, keep the sums of Assembly::energy()
   /// Threads that share a step, or 0 for as many as the process may use and the packing can feed. Changes no bit of any
-  /// result. Give 1 where assemblies run side by side.
+  /// result. One thread is taken where several turn out to be no faster: see ThreadChoice. Give 1 where assemblies run
+  /// side by side.
   int threads = 1;
+  bool fixed_threads = false; ///< so many, even where they do not pay: for measurements and tests
 };
 
 /// Contact forces of a step with the history of the contacts, and when they are evaluated. On one thread a step begins
@@ -56,7 +59,7 @@ public:
   const AlignedVector<double> &action() const { return action_; }
   const Virial &virial() const { return virial_; }                       ///< sums of F b of a cell, J
   const DissipationPerPair &dissipation() const { return dissipation_; } ///< J; only where energy is measured
-  /// Threads that share a step.
+  /// Threads that share the present step.
   int n_threads(const StepSettings &settings) const;
 
   /// Begins a step with the list as it is now.
@@ -80,8 +83,11 @@ private:
     ghosts, ///< what chunks have done to grains of later chunks is not added yet
     pairs   ///< nothing is evaluated yet
   };
+  /// Threads that may share a step.
+  int available_threads(const StepSettings &settings) const;
   template <typename Work>
   void for_chunks(int n_threads, const Work &work);
+  class Timer;
   void resize(const Input &in);
   void evaluate_pairs(std::size_t chunk, const Input &in);
   void add_ghosts(std::size_t chunk) { isostat::add_ghosts(list_, chunk, action_.data()); }
@@ -92,5 +98,7 @@ private:
   DissipationPerPair dissipation_;
   Pending pending_ = Pending::nothing;
   ThreadShares shares_;
+  ThreadChoice choice_;
+  double step_seconds_ = 0; ///< on several threads and where they are a choice
 };
 } // namespace isostat

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/neighbours/cell_grid.hpp"
 
+#include "base/threads/team.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -89,22 +91,20 @@ std::vector<ContactList::Pair> find_pairs(const Packing &packing, double skin, i
   const Cells cells = sort_into_cells(packing, 2 * packing.max_radius() + skin);
   const auto n = static_cast<std::uint32_t>(packing.n_grains());
   std::vector<std::vector<ContactList::Pair>> parts(threads);
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t)
-    {
-      const auto begin = static_cast<std::uint32_t>(std::uint64_t{n} * t / threads),
-                 end = static_cast<std::uint32_t>(std::uint64_t{n} * (t + 1) / threads);
-      parts[t].reserve(4 * (end - begin));
-      std::vector<std::uint32_t> partners;
-      for (std::uint32_t i = begin; i < end; ++i)
-        {
-          partners.clear();
-          collect_partners(packing, cells, i, skin, partners);
-          std::sort(partners.begin(), partners.end());
-          for (std::uint32_t j : partners)
-            parts[t].emplace_back(i, j);
-        }
-    }
+  for_each_in_ranges(threads, parts.size(), [&](std::size_t t) {
+    const auto begin = static_cast<std::uint32_t>(std::uint64_t{n} * t / threads),
+               end = static_cast<std::uint32_t>(std::uint64_t{n} * (t + 1) / threads);
+    parts[t].reserve(4 * (end - begin));
+    std::vector<std::uint32_t> partners;
+    for (std::uint32_t i = begin; i < end; ++i)
+      {
+        partners.clear();
+        collect_partners(packing, cells, i, skin, partners);
+        std::sort(partners.begin(), partners.end());
+        for (std::uint32_t j : partners)
+          parts[t].emplace_back(i, j);
+      }
+  });
   for (int t = 1; t < threads; ++t)
     parts[0].insert(parts[0].end(), parts[t].begin(), parts[t].end());
   return std::move(parts[0]);

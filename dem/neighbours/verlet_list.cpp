@@ -5,9 +5,11 @@
 #include "dem/neighbours/periodic_grid.hpp"
 
 #include "base/error.hpp"
+#include "base/threads/team.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
 #include <tuple>
@@ -21,6 +23,13 @@ namespace
 constexpr double initial_skin = 0.005, min_skin = 0.001, max_skin = 0.3;
 constexpr double wide_over_tight = 16;
 constexpr std::uint64_t frequent = 60, rare = 240; // steps between selections
+
+/// value = max(value, other)
+void raise(std::atomic<double> &value, double other)
+{
+  for (double seen = value; seen < other && !value.compare_exchange_weak(seen, other);)
+    ;
+}
 } // namespace
 
 void VerletList::invalidate()
@@ -54,14 +63,18 @@ double VerletList::Reference::slack(const Packing &now, const Domain &domain, do
     return -1;
   const Vec3 centre_now = domain.centre();
   const Mat3 stretch = domain.edges() * edges.inverse();
-  double moved2 = 0, fluctuation2 = 0;
-#pragma omp parallel for schedule(static) reduction(max : moved2, fluctuation2) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < now.n_grains(); ++i)
-    {
-      const Vec3 x = now.centre(i), x0(&position[4 * i]);
-      moved2 = std::max(moved2, (x - x0).squaredNorm());
-      fluctuation2 = std::max(fluctuation2, (x - centre_now - stretch * (x0 - centre)).squaredNorm());
-    }
+  std::atomic<double> moved2 = 0, fluctuation2 = 0;
+  for_each_in_ranges(threads, threads, [&](std::size_t part) {
+    double moved = 0, fluctuation = 0;
+    for (std::size_t i = now.n_grains() * part / threads; i < now.n_grains() * (part + 1) / threads; ++i)
+      {
+        const Vec3 x = now.centre(i), x0(&position[4 * i]);
+        moved = std::max(moved, (x - x0).squaredNorm());
+        fluctuation = std::max(fluctuation, (x - centre_now - stretch * (x0 - centre)).squaredNorm());
+      }
+    raise(moved2, moved);
+    raise(fluctuation2, fluctuation);
+  });
   // with the domain: |b| >= (R1+R2+skin)(1-shrink) - 2 fluctuation
   const Mat3 squared = stretch.transpose() * stretch;
   const double minimum = std::sqrt(

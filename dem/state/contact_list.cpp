@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/state/contact_list.hpp"
 
+#include "base/threads/team.hpp"
+
 #include <algorithm>
 
 namespace isostat
@@ -167,10 +169,7 @@ void ContactList::replace_pairs(const std::vector<Pair> &sorted_pairs, std::uint
   next.place_images(images);
   next.history_.resize(next.n_lanes() * n_components());
   next.occupied_.resize(next.n_blocks());
-  const int n_chunks = static_cast<int>(next.partition_.n_chunks);
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (int chunk = 0; chunk < n_chunks; ++chunk)
-    next.take_history(*this, chunk);
+  for_each_in_ranges(threads, next.partition_.n_chunks, [&](std::size_t chunk) { next.take_history(*this, chunk); });
   std::swap(*this, next);
 }
 

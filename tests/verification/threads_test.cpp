@@ -21,6 +21,7 @@ Outcome sheared(const Snapshot &initial, int threads, int steps, bool look)
 {
   Assembly a(initial);
   a.settings.threads = threads;
+  a.settings.fixed_threads = true;
   a.settings.time_step = 5e-8;
   const RigidBox reference = a.box();
   Outcome out;
