@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/assembly/thread_choice.hpp"
 
+#include "tests/support/near.hpp"
+
 #include <gtest/gtest.h>
 
 namespace isostat
@@ -37,8 +39,8 @@ TEST(ThreadChoice, FollowsTheMachine)
 {
   ThreadChoice choice;
   percent_on_several(choice, 3e-4, 2e-4);
-  EXPECT_LT(percent_on_several(choice, 3e-4, 3e-3), 10); // others have come: trials, and up to a second before
-  EXPECT_GT(percent_on_several(choice, 3e-4, 2e-4), 90); // and gone
+  EXPECT_BELOW_BECAUSE(percent_on_several(choice, 3e-4, 3e-3), 10, "trials, and up to a second until it is noticed");
+  EXPECT_GT(percent_on_several(choice, 3e-4, 2e-4), 90);
 }
 
 TEST(ThreadChoice, CostsAtMostAFewPercent)
