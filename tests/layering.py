@@ -41,6 +41,7 @@ INNER = {
         "units": {"error"},
         "files": {"error", "types", "fields"},
         "record": {"error", "files", "stopwatch"},
+        "threads": set(),
         "scene": {"error", "units"},
     },
     "dem": {
