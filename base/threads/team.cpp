@@ -2,6 +2,7 @@
 #include "base/threads/team.hpp"
 
 #include <hwy/cache_control.h>
+#include <optional>
 #include <unistd.h>
 #include <utility>
 
@@ -26,14 +27,9 @@ void wait_for_change(const std::atomic<std::uint64_t> &value, std::uint64_t old)
 
 Team &Team::of(int n)
 {
-  thread_local std::unique_ptr<Team> team;
-  thread_local pid_t process = 0;
-  if (const pid_t now = getpid(); !team || process != now)
-    {
-      (void)team.release(); // a forked process has none of its parent's threads, and nothing to join
-      team = std::make_unique<Team>();
-      process = now;
-    }
+  thread_local std::optional<Team> team;
+  if (!team || team->process_ != getpid())
+    team.emplace();
   team->grow(n);
   return *team;
 }
@@ -102,7 +98,9 @@ Team::~Team()
 {
   call_ = nullptr;
   for (const auto &seat : seats_)
-    if (seat->thread.joinable())
+    if (seat->thread.joinable() && process_ != getpid())
+      seat->thread.detach(); // a forked process has none of its parent's threads
+    else if (seat->thread.joinable())
       {
         seat->told.fetch_add(1, std::memory_order_release);
         seat->told.notify_one();

@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 namespace isostat
@@ -51,7 +52,8 @@ private:
   void attempt(Seat &seat, int thread);
 
   std::vector<std::unique_ptr<Seat>> seats_; ///< seat 0 is the caller's, without a thread
-  Call call_ = nullptr;                      ///< null: go home
+  int process_ = getpid();
+  Call call_ = nullptr; ///< null: go home
   const void *work_ = nullptr;
 };
 
