@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct Options
 {
   std::string plan, output, command_line;
-  int jobs = 1;
+  CampaignShare share;
   bool overwrite = false, quiet = false, no_figures = false, dry_run = false, print_defaults = false;
 };
 
@@ -150,15 +150,18 @@ void calibrate(const Options &options)
 {
   if (options.plan.empty())
     throw InputError("no plan given. Try calibrate quick_karlsruhe.toml, or --help.");
+  const fs::path folder = output_folder(options.output, results_folder(options.plan));
+  if (!options.dry_run && options.share.help(folder))
+    return;
   const CalibrationPlan plan = read_plan(options.plan);
   const SceneMaker scenes(plan);
-  const fs::path folder = output_folder(options.output, results_folder(options.plan));
   element_test_program();
   const auto say = [&](const std::string &line) {
     if (!options.quiet)
       fmt::print(stderr, "{}\n", line);
   };
-  Trials trials(plan, scenes, folder, options.jobs, say); // reads the laboratory before anything is written
+  TaskQueue queue(folder / "queue");
+  Trials trials(plan, scenes, folder, {queue, options.share.jobs}, say); // reads the laboratory before all writing
   if (options.dry_run)
     {
       check_start(plan, scenes, folder, options.overwrite);
@@ -166,6 +169,7 @@ void calibrate(const Options &options)
     }
   open_calibration_folder(folder, plan, scenes.scene_text(), options.overwrite);
   write_provenance(folder, scenes.scene_text(), options.command_line, {});
+  queue.lead();
   catch_signals();
   try
     {
@@ -190,8 +194,7 @@ int main(int argc, char **argv)
   Options options;
   line.add_option("plan", options.plan, "plan file (TOML); see apps/calibrate/README.md")
       ->transform([](const std::string &file) { return shipped_file("scenes/calibrate", file); });
-  line.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
-      ->check(CLI::Range(1, 1024));
+  options.share.add_options(line);
   line.add_option("-o,--output", options.output, "results folder (default: results/<plan name>)");
   line.add_flag("--overwrite", options.overwrite, "start anew: remove another calibration from this folder");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");

@@ -33,9 +33,9 @@ std::string id_of(const std::vector<Parameter> &parameters, const std::vector<do
 }
 } // namespace
 
-Trials::Trials(const CalibrationPlan &plan, const SceneMaker &scenes, fs::path folder, int jobs,
+Trials::Trials(const CalibrationPlan &plan, const SceneMaker &scenes, fs::path folder, RunPool pool,
                std::function<void(const std::string &)> say)
-    : plan_(plan), scenes_(scenes), folder_(std::move(folder)), jobs_(jobs), say_(std::move(say))
+    : plan_(plan), scenes_(scenes), folder_(std::move(folder)), pool_(pool), say_(std::move(say))
 {
   for (const PlanCurve &curve : plan_.curves)
     laboratory_.push_back(read_laboratory(curve, scenes_.pressure(curve)));
@@ -171,7 +171,7 @@ void Trials::execute(const std::vector<std::size_t> &trials, bool blind)
           say(fmt::format("       {} runs at work, the first in {}: {}", running.size(),
                           place(todo[running[0]]).string(), last_line(children[running[0]].log)));
       }};
-  if (!run_children(children, jobs_, events))
+  if (!run_children(pool_, children, events))
     throw Interrupted("interrupted; what has been run is kept, the same command goes on");
   if (!ended.empty())
     throw RunFailure(ended + "\n  It was stopped from outside or crashed. What has been run is kept, the same command "

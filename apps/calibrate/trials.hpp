@@ -3,6 +3,7 @@
 #pragma once
 #include "apps/calibrate/curve.hpp"
 #include "apps/calibrate/trial_scene.hpp"
+#include "apps/common/child_runs.hpp"
 #include "base/stopwatch.hpp"
 
 #include <filesystem>
@@ -38,9 +39,9 @@ class Trials
 public:
   using Point = std::vector<double>;
 
-  /// @param jobs  runs side by side
+  /// @param pool  led by this process before the first run
   /// @param say  takes a line of progress
-  Trials(const CalibrationPlan &plan, const SceneMaker &scenes, std::filesystem::path folder, int jobs,
+  Trials(const CalibrationPlan &plan, const SceneMaker &scenes, std::filesystem::path folder, RunPool pool,
          std::function<void(const std::string &)> say);
 
   const std::vector<Trial> &all() const { return trials_; }
@@ -81,7 +82,7 @@ private:
   CalibrationPlan plan_;
   const SceneMaker &scenes_;
   std::filesystem::path folder_;
-  int jobs_;
+  RunPool pool_;
   std::function<void(const std::string &)> say_;
   std::vector<Curve> laboratory_;
   std::vector<Trial> trials_;

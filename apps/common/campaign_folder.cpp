@@ -4,12 +4,11 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/common/scene_program.hpp"
 #include "base/error.hpp"
+#include "base/files/file_lock.hpp"
 
 #include <algorithm>
 #include <cerrno>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 namespace isostat
 {
@@ -32,8 +31,9 @@ bool keeps_anything(const fs::path &folder, const std::string &mark)
 
 void lock(const fs::path &folder)
 {
-  const int file = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
+  static FileLock held; // until this process ends
+  held = FileLock::attempt(folder / "lock");
+  if (!held)
     throw InputError(fmt::format("{}: another {} is at work in it. Wait for it, or give another --output.",
                                  folder.string(), program_invocation_short_name));
 }

@@ -3,116 +3,178 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
-#include "base/stopwatch.hpp"
 
 #include <chrono>
-#include <csignal>
-#include <cstring>
-#include <fcntl.h>
+#include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace isostat
 {
+namespace fs = std::filesystem;
+
 namespace
 {
-struct Running
+constexpr double patience = 30;        ///< s that a helper waits for somebody to help
+constexpr double revival_interval = 2; ///< s between looks for runs whose process has died
+
+/// The runs of a queue that this process does.
+class Bench
 {
-  std::size_t index;
-  pid_t id;
-  Stopwatch watch;
+public:
+  /// @param gives_back  a run that was stopped is left to another process; else it counts as ended
+  Bench(const RunPool &pool, bool gives_back)
+      : queue_(pool.queue), jobs_(static_cast<std::size_t>(pool.jobs)), gives_back_(gives_back)
+  {}
+  bool idle() const { return running_.empty(); }
+  std::size_t n_done() const { return n_done_; }
+
+  void start()
+  {
+    while (running_.size() < jobs_)
+      {
+        std::optional<TaskQueue::Claim> claim = queue_.claim();
+        if (!claim)
+          return;
+        ChildProcess child(claim->run, claim->lock.descriptor());
+        running_.push_back({std::move(*claim), child});
+      }
+  }
+
+  /// Asks all to end; once.
+  void stop()
+  {
+    for (const Running &each : running_)
+      if (!stopped_)
+        each.child.stop();
+    stopped_ = true;
+  }
+
+  void finish_ended()
+  {
+    std::erase_if(running_, [&](Running &each) {
+      const std::optional<int> code = each.child.ended();
+      if (code && !(stopped_ && gives_back_))
+        {
+          queue_.finish(each.claim, {*code, each.child.seconds()});
+          ++n_done_;
+        }
+      return code.has_value();
+    });
+  }
+
+private:
+  struct Running
+  {
+    TaskQueue::Claim claim;
+    ChildProcess child;
+  };
+  TaskQueue &queue_;
+  std::size_t jobs_, n_done_ = 0;
+  std::vector<Running> running_;
+  bool gives_back_, stopped_ = false;
 };
 
-/// What the new process does: never returns.
-[[noreturn]] void become(char *const *arguments, const char *log, pid_t parent)
-{
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) // it died meanwhile
-    _exit(1);
-  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  const int input = open("/dev/null", O_RDONLY);
-  if (output < 0 || input < 0)
-    _exit(126);
-  dup2(input, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
-  dup2(output, STDERR_FILENO);
-  execv(arguments[0], arguments);
-  _exit(127);
-}
+void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(100)); }
 
-pid_t start(const ChildRun &run)
+/// The session of a leader, which may be about to begin. A session that was over when this process looked first is that
+/// of an earlier call; empty if it came and went meanwhile.
+std::string await_session(const TaskQueue &queue, const fs::path &folder)
 {
-  std::vector<std::string> words = run.command;
-  std::vector<char *> arguments;
-  for (std::string &word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const std::string log = run.log.string();
-  const pid_t parent = getpid(), id = fork();
-  if (id < 0)
-    throw RunFailure(fmt::format("a process for {} cannot be started: {}", words[0], std::strerror(errno)));
-  if (id == 0)
-    become(arguments.data(), log.c_str(), parent);
-  return id;
-}
-
-/// @return true once the child has ended; `code` is then how
-bool has_ended(pid_t id, int &code)
-{
-  int status = 0;
-  const pid_t found = waitpid(id, &status, WNOHANG);
-  if (found == 0 || (found < 0 && errno == EINTR))
-    return false;
-  code = found < 0 ? 1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return true;
+  const std::string earlier = queue.last_session();
+  for (const Stopwatch watch; watch.seconds() < patience && !stop_requested(); rest())
+    {
+      const std::string session = queue.open_session();
+      if (!session.empty() || queue.last_session() != earlier)
+        return session;
+    }
+  if (stop_requested())
+    throw Interrupted("interrupted");
+  throw InputError(fmt::format("{}: nobody leads runs there. Start the same command without --helper on a machine that "
+                               "sees this folder.",
+                               folder.string()));
 }
 } // namespace
 
-bool run_children(const std::vector<ChildRun> &runs, int jobs, const ChildEvents &events)
+bool run_children(const RunPool &pool, const std::vector<ChildRun> &runs, const ChildEvents &events)
 {
-  std::vector<Running> running;
-  std::size_t next = 0;
-  bool told = false;
-  while (!running.empty() || (next < runs.size() && !stop_requested()))
+  TaskQueue &queue = pool.queue;
+  std::map<std::size_t, std::size_t> index; // by number in the queue
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    index[queue.post(runs[k])] = k;
+  Bench bench(pool, false);
+  Stopwatch since_revival;
+  for (std::size_t left = runs.size(); left > 0 && !(stop_requested() && bench.idle()); rest())
     {
-      for (; next < runs.size() && running.size() < static_cast<std::size_t>(jobs) && !stop_requested(); ++next)
-        running.push_back({next, start(runs[next]), Stopwatch()});
-      if (stop_requested() && !told)
+      if (stop_requested())
         {
-          for (const Running &child : running)
-            kill(child.id, SIGTERM);
-          told = true;
+          queue.withdraw();
+          bench.stop();
         }
-      std::vector<Running> left;
+      else
+        bench.start();
+      bench.finish_ended();
+      for (const auto &[number, done] : queue.take_done())
+        {
+          events.finished(index.at(number), done.code, done.seconds);
+          --left;
+        }
+      if (since_revival.seconds() > revival_interval)
+        {
+          queue.give_back_abandoned();
+          since_revival.restart();
+        }
       std::vector<std::size_t> at_work;
-      for (const Running &child : running)
-        if (int code = 0; has_ended(child.id, code))
-          events.finished(child.index, code, child.watch.seconds());
-        else
-          {
-            left.push_back(child);
-            at_work.push_back(child.index);
-          }
-      running = left;
+      for (const std::size_t number : queue.claimed())
+        at_work.push_back(index.at(number));
       events.tick(at_work);
-      if (running.size() == static_cast<std::size_t>(jobs) || next == runs.size() || stop_requested())
-        std::this_thread::sleep_for(std::chrono::milliseconds(running.empty() ? 0 : 100));
     }
   return !stop_requested();
 }
 
-std::string last_line(const std::filesystem::path &log)
+std::size_t help_with_runs(const fs::path &queue_folder, int jobs)
 {
-  std::ifstream file(log);
-  std::string line, last;
-  while (std::getline(file, line))
-    if (line.find_first_not_of(" \t\r") != std::string::npos)
-      last = line;
-  return last;
+  TaskQueue queue(queue_folder);
+  const std::string session = await_session(queue, queue_folder);
+  Bench bench({queue, jobs}, true);
+  for (bool open = !session.empty(); open || !bench.idle(); rest())
+    {
+      open = open && !stop_requested() && queue.open_session() == session;
+      if (open)
+        bench.start();
+      else
+        bench.stop();
+      bench.finish_ended();
+    }
+  if (stop_requested())
+    throw Interrupted("interrupted; what has been run is kept");
+  return bench.n_done();
+}
+
+int launch_rank()
+{
+  for (const char *name : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"})
+    if (const char *text = std::getenv(name))
+      return std::atoi(text);
+  return 0;
+}
+
+void CampaignShare::add_options(CLI::App &line)
+{
+  line.add_option("-j,--jobs", jobs, "runs side by side in this process, each on one thread (default 1)")
+      ->check(CLI::Range(1, 1024));
+  line.add_flag("--helper", helper,
+                "do runs of the same command that another process has begun, on this machine or on one that sees the "
+                "same folder; ranks of mpirun and srun above 0 do so by themselves");
+}
+
+bool CampaignShare::help(const fs::path &folder) const
+{
+  if (!helper && launch_rank() == 0)
+    return false;
+  catch_signals();
+  const std::size_t n = help_with_runs(folder / "queue", jobs);
+  fmt::print("{}: {} runs done by this helper\n", folder.string(), n);
+  return true;
 }
 } // namespace isostat

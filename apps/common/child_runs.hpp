@@ -1,35 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/liquefaction_resistance_test.py, tests/apps/calibrate_test.py
+// tested: tests/apps/liquefaction_resistance_test.py, tests/apps/calibrate_test.py, tests/apps/campaign_ranks_test.py
 #pragma once
-#include <filesystem>
+#include "apps/common/task_queue.hpp"
+
+#include <CLI/CLI.hpp>
 #include <functional>
-#include <string>
-#include <vector>
 
 namespace isostat
 {
-/// A program to run in a process of its own: it may crash without taking anything else along.
-struct ChildRun
-{
-  std::vector<std::string> command; ///< program and arguments
-  std::filesystem::path log;        ///< what it prints; replaced
-};
-
-/// What the caller hears of the children.
+/// What the caller hears of the runs.
 struct ChildEvents
 {
-  /// A child has ended.   @param code  its exit code, or 128 + the signal that ended it
+  /// A run has ended.   @param code  its exit code, or 128 + the signal that ended it
   std::function<void(std::size_t index, int code, double seconds)> finished;
-  /// Several times a second.   @param running  those at work now
+  /// Several times a second.   @param running  those at work now, here or in another process
   std::function<void(const std::vector<std::size_t> &running)> tick;
 };
 
-/// Runs the commands in their order, at most `jobs` at a time. When a stop is requested (apps/common/interrupt.hpp) the
-/// children at work are told to end by SIGTERM and waited for, and no other is started. They are in process groups of
-/// their own, so that Ctrl-C reaches them once and by this way only; if this process dies, they are told as well.
-/// @return false if it was stopped
-bool run_children(const std::vector<ChildRun> &runs, int jobs, const ChildEvents &events);
+/// Where runs are shared out, and how many of them go side by side in this process.
+struct RunPool
+{
+  TaskQueue &queue;
+  int jobs;
+};
 
-/// Last line of a log that says anything; empty if there is none.
-std::string last_line(const std::filesystem::path &log);
+/// Does the runs, at most pool.jobs at a time in this process, the others in whichever process helps (help_with_runs).
+/// A run whose process is killed is done again. When a stop is requested (apps/common/interrupt.hpp) the children of
+/// this process are told to end by SIGTERM and waited for, and no other run is started.
+/// @return false if it was stopped
+bool run_children(const RunPool &pool, const std::vector<ChildRun> &runs, const ChildEvents &events);
+
+/// Does runs of the queue that another process leads, until that one closes it, ends or dies.
+/// @return how many
+/// @throws InputError   nobody leads within half a minute      @throws Interrupted  after a signal
+std::size_t help_with_runs(const std::filesystem::path &queue_folder, int jobs);
+
+/// Rank among the processes that `mpirun` or `srun` has started with one command, 0 without them: ranks above 0 help
+/// the first. Read from what the launcher leaves in the environment; no MPI is initialised.
+int launch_rank();
+
+/// How much of a campaign a process does, as its command line says.
+struct CampaignShare
+{
+  int jobs = 1;
+  bool helper = false;
+
+  void add_options(CLI::App &line);
+  /// Helps whoever leads the campaign in the folder, if this process is to.   @return false if it is to lead
+  /// @throws as help_with_runs()
+  bool help(const std::filesystem::path &folder) const;
+};
 } // namespace isostat

@@ -23,18 +23,14 @@ fs::path element_test_program()
 
 ChildRun element_test_run(const fs::path &scene_file, const fs::path &folder, const fs::path &log)
 {
-  std::vector<std::string> command = {element_test_program().string(),
-                                      scene_file.string(),
-                                      "--output",
-                                      folder.string(),
-                                      "--threads",
-                                      "1",
-                                      "--no-figures"};
-  if (fs::exists(folder / "checkpoint" / "last.h5"))
-    command.push_back("--resume");
-  else
-    fs::remove_all(folder);
-  return {command, log};
+  const std::vector<std::string> command = {element_test_program().string(),
+                                            fs::absolute(scene_file).string(),
+                                            "--output",
+                                            fs::absolute(folder).string(),
+                                            "--threads",
+                                            "1",
+                                            "--no-figures"};
+  return {command, log, folder};
 }
 
 bool is_finished_run(const fs::path &folder, const Scene &scene)

@@ -10,8 +10,7 @@ namespace isostat
 /// The element_test beside the running program.   @throws InputError  it is not there
 std::filesystem::path element_test_program();
 
-/// The command that does a run on one thread, or the rest of it where there is a checkpoint. What a run has left that
-/// ended before its first checkpoint is removed.
+/// A run on one thread, or the rest of it where there is a checkpoint.
 /// @param folder  of the results   @param log  what it prints
 ChildRun element_test_run(const std::filesystem::path &scene_file, const std::filesystem::path &folder,
                           const std::filesystem::path &log);

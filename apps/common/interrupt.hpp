@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/apps/kill_resume_test.py
 #pragma once
+#include <array>
 #include <csignal>
-#include <initializer_list>
 
 namespace isostat
 {
 namespace detail
 {
 inline volatile std::sig_atomic_t stop = 0;
+inline constexpr std::array stopping = {SIGINT, SIGTERM, SIGUSR1};
 } // namespace detail
 
-/// From here on SIGINT and SIGTERM only raise a flag; the run stops after the step it is in and writes a checkpoint. A
-/// second signal ends the program at once.
+/// From here on SIGINT, SIGTERM and SIGUSR1 only raise a flag; the run stops after the step it is in and writes a
+/// checkpoint. A second signal of the kind ends the program at once. SIGUSR1 is the one that mpirun hands on to the
+/// ranks without ending them itself.
 inline void catch_signals()
 {
-  for (int signal : {SIGINT, SIGTERM})
+  for (int signal : detail::stopping)
     std::signal(signal, [](int caught) {
       detail::stop = 1;
       std::signal(caught, SIG_DFL);
@@ -31,20 +33,20 @@ class SignalsCaught
 public:
   SignalsCaught()
   {
-    sigaction(SIGINT, nullptr, &before_[0]);
-    sigaction(SIGTERM, nullptr, &before_[1]);
+    for (std::size_t k = 0; k < before_.size(); ++k)
+      sigaction(detail::stopping[k], nullptr, &before_[k]);
     catch_signals();
   }
   ~SignalsCaught()
   {
-    sigaction(SIGINT, &before_[0], nullptr);
-    sigaction(SIGTERM, &before_[1], nullptr);
+    for (std::size_t k = 0; k < before_.size(); ++k)
+      sigaction(detail::stopping[k], &before_[k], nullptr);
     detail::stop = 0;
   }
   SignalsCaught(const SignalsCaught &) = delete;
   SignalsCaught &operator=(const SignalsCaught &) = delete;
 
 private:
-  struct sigaction before_[2] = {};
+  std::array<struct sigaction, detail::stopping.size()> before_ = {};
 };
 } // namespace isostat

@@ -31,7 +31,7 @@ struct Options
   std::string scene, ratios, output, command_line;
   std::vector<std::string> set;
   CampaignPlan plan;
-  int jobs = 1;
+  CampaignShare share;
   bool overwrite = false, quiet = false, no_figures = false;
 };
 
@@ -100,7 +100,8 @@ std::string state(const std::vector<RunResult> &results, int jobs)
 
 /// Runs what is not finished; a line on stderr for each run that ends, and every half minute what is at work. What
 /// fails is noted and does not stop the rest.   @return false if stopped
-bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo, const Options &options)
+bool run_all(const Campaign &campaign, const RunPool &pool, const std::vector<Campaign::Run *> &todo,
+             const Options &options)
 {
   std::vector<ChildRun> children;
   for (const Campaign::Run *run : todo)
@@ -108,7 +109,7 @@ bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo,
   Stopwatch since_line;
   const auto say = [&](const std::string &line) {
     if (!options.quiet)
-      fmt::print(stderr, "{}{}\n", state(campaign.results(), options.jobs), line);
+      fmt::print(stderr, "{}{}\n", state(campaign.results(), options.share.jobs), line);
     since_line.restart();
   };
   const ChildEvents events = {
@@ -126,17 +127,17 @@ bool run_all(const Campaign &campaign, const std::vector<Campaign::Run *> &todo,
           lines += "\n       " + todo[k]->name + ": " + last_line(children[k].log);
         say(lines);
       }};
-  return run_children(children, options.jobs, events);
+  return run_children(pool, children, events);
 }
 
 /// Specimens first, so that runs side by side do not prepare the same one.
-bool run_campaign(Campaign &campaign, const Options &options)
+bool run_campaign(Campaign &campaign, const RunPool &pool, const Options &options)
 {
   std::vector<Campaign::Run> specimens = campaign.preparations();
   std::vector<Campaign::Run *> first, then;
   for (Campaign::Run &specimen : specimens)
     first.push_back(&specimen);
-  if (!run_all(campaign, first, options))
+  if (!run_all(campaign, pool, first, options))
     return false;
   for (Campaign::Run &run : campaign.runs)
     {
@@ -148,18 +149,23 @@ bool run_campaign(Campaign &campaign, const Options &options)
       else if (run.result.status == RunStatus::missing)
         then.push_back(&run);
     }
-  return run_all(campaign, then, options);
+  return run_all(campaign, pool, then, options);
 }
 
 void find_resistance(Options options)
 {
   options.plan.ratios = parse_ratios(options.ratios);
   const Scene scene = read_scene(options.scene, options.set);
-  Campaign campaign(scene, options.plan, output_folder(options.output, scene.output.folder + "_resistance"));
+  const fs::path folder = output_folder(options.output, scene.output.folder + "_resistance");
+  if (options.share.help(folder))
+    return;
+  Campaign campaign(scene, options.plan, folder);
   element_test_program();
   campaign.open(options.overwrite, options.command_line);
+  TaskQueue queue(folder / "queue");
+  queue.lead();
   catch_signals();
-  const bool complete = run_campaign(campaign, options);
+  const bool complete = run_campaign(campaign, {queue, options.share.jobs}, options);
   const std::string text = write_report(campaign);
   fmt::print("{}", text);
   const std::vector<RunResult> results = campaign.results();
@@ -194,8 +200,7 @@ int main(int argc, char **argv)
   line.add_option("--reversals-after", options.plan.reversals_after,
                   "a run ends after so many reversals since liquefaction (default 1; 0: at once)")
       ->check(CLI::Range(0, 1000));
-  line.add_option("-j,--jobs", options.jobs, "runs side by side, each on one thread (default 1)")
-      ->check(CLI::Range(1, 1024));
+  options.share.add_options(line);
   line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>_resistance)");
   line.add_option("--set", options.set, "override a key, e.g. --set specimen.pressure=\"100 kPa\" (repeatable)");
   line.add_flag("--overwrite", options.overwrite, "start anew: remove finished runs of this folder");

@@ -10,6 +10,7 @@
 //   specimen_library apps/scenes/rve_library.toml --realisations 5 --pressures "20 kPa,50 kPa,100 kPa"
 //                    --relative-densities 0.5,0.64 --consolidation k0 --jobs 2 --output results/library.h5 --append
 //   specimen_library --list --output results/library.h5
+#include "apps/common/child_runs.hpp"
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
@@ -37,8 +38,8 @@ struct Options
   std::string scene, output, consolidation, pressures, relative_densities;
   std::vector<std::string> set;
   std::uint64_t realisations = 1;
-  int jobs = 0;
-  bool list = false, append = false, overwrite = false, quiet = false;
+  PreparationShare share{.jobs = 0};
+  bool list = false, append = false, overwrite = false;
 };
 
 /// "a, b,c" -> a b c
@@ -215,14 +216,19 @@ void make_library(const Options &options)
   const Scene scene = checked_scene(options);
   std::vector<Task> tasks = combinations(scene, options);
   const fs::path path = options.output.empty() ? scene.output.folder + ".h5" : options.output;
-  check_output(path, options);
+  PreparationShare share = options.share;
+  share.helper = share.helper || launch_rank() > 0;
+  if (share.jobs == 0)
+    share.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (!share.helper)
+    check_output(path, options);
   std::error_code ignored;
   const bool extend = options.append && fs::exists(path, ignored);
   tasks = missing_ones(std::move(tasks), extend ? list_library(path) : std::vector<LibraryEntry>{});
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   catch_signals();
-  prepare_side_by_side(tasks, path.parent_path() / scene.specimen.cache, options.jobs > 0 ? options.jobs : cores,
-                       options.quiet);
+  prepare_side_by_side(tasks, path.parent_path() / scene.specimen.cache, share);
+  if (share.helper)
+    return;
   if (std::any_of(tasks.begin(), tasks.end(), [](const Task &task) { return task.specimen.has_value(); }))
     {
       LibraryWriter library = extend ? LibraryWriter::append(path) : LibraryWriter::create(path);
@@ -269,14 +275,17 @@ int main(int argc, char **argv)
                   "instead of the density or preparation friction of the scene, e.g. 0.5,0.64");
   line.add_option("--consolidation", options.consolidation, "instead of specimen.consolidation")
       ->check(CLI::IsMember({"isotropic", "k0"}));
-  line.add_option("-j,--jobs", options.jobs,
+  line.add_option("-j,--jobs", options.share.jobs,
                   "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
                   "Specimens do not depend on it")
       ->check(CLI::Range(0, 1024));
   line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
+  line.add_flag("--helper", options.share.helper,
+                "only prepare what other processes with the same cache do not prepare, and leave the library to them; "
+                "ranks of mpirun and srun above 0 do so by themselves");
   line.add_flag("--list", options.list, "print what is in the library, and stop");
   CLI::Option *overwrite = line.add_flag("--overwrite", options.overwrite, "replace a library that is there");
   line.add_flag("--append", options.append, "add what a library that is there lacks")->excludes(overwrite);
-  line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
+  line.add_flag("-q,--quiet", options.share.quiet, "no progress on stderr");
   return run_command(line, argc, argv, [&] { run(options); });
 }

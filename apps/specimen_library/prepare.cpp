@@ -3,12 +3,16 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/files/file_lock.hpp"
+#include "base/files/hash.hpp"
 #include "base/record/progress.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
+#include <list>
 #include <mutex>
 #include <thread>
 
@@ -22,13 +26,31 @@ namespace fs = std::filesystem;
 class Queue
 {
 public:
-  Queue(std::vector<Task> &tasks, int jobs, bool quiet) : tasks_(tasks), jobs_(jobs), quiet_(quiet) {}
-
-  /// The next task, null when there is none left or a signal has come.
-  Task *take()
+  Queue(std::vector<Task> &tasks, const fs::path &cache, const PreparationShare &share)
+      : tasks_(tasks), cache_(cache), share_(share)
   {
-    const std::lock_guard lock(mutex_);
-    return next_ < tasks_.size() && !stop_requested() ? &tasks_[next_++] : nullptr;
+    for (Task &task : tasks)
+      left_.push_back(&task);
+  }
+
+  /// The next task that no other process prepares, with its lock. Nothing when there is none left or a signal has come;
+  /// a helper does not wait for what others prepare.
+  std::optional<std::pair<Task *, FileLock>> take()
+  {
+    for (; !stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(100)))
+      {
+        const std::lock_guard guard(mutex_);
+        for (auto task = left_.begin(); task != left_.end(); ++task)
+          if (FileLock lock = FileLock::attempt(lock_file(**task)))
+            {
+              std::pair<Task *, FileLock> taken{*task, std::move(lock)};
+              left_.erase(task);
+              return taken;
+            }
+        if (share_.helper || left_.empty())
+          break;
+      }
+    return std::nullopt;
   }
 
   void say(const Task &task, const std::string &line)
@@ -41,6 +63,8 @@ public:
   void done(const Task &task, double seconds)
   {
     const std::lock_guard lock(mutex_);
+    std::error_code gone;
+    fs::remove(lock_file(task), gone);
     ++n_done_;
     seconds_ += seconds;
     n_prepared_ += seconds > 0;
@@ -49,7 +73,7 @@ public:
     line += seconds > 0 ? fmt::format(", {:.0f} s", seconds) : "";
     const auto left = static_cast<double>(tasks_.size() - n_done_);
     if (left > 0 && n_prepared_ > 0)
-      line += fmt::format("; ETA {}", duration_text(left * seconds_ / static_cast<double>(n_prepared_) / jobs_));
+      line += fmt::format("; ETA {}", duration_text(left * seconds_ / static_cast<double>(n_prepared_) / share_.jobs));
     print(task, line);
   }
 
@@ -58,15 +82,23 @@ public:
 private:
   void print(const Task &task, const std::string &line) const
   {
-    if (!quiet_)
+    if (!share_.quiet)
       std::fprintf(stderr, "[%zu/%zu] %s: %s\n", n_done_, tasks_.size(), task.name.c_str(), line.c_str());
+  }
+
+  fs::path lock_file(const Task &task) const
+  {
+    Hash hash;
+    hash.text(specimen_recipe(task.scene));
+    return cache_ / fmt::format("{:016x}.lock", hash.value());
   }
 
   std::mutex mutex_;
   std::vector<Task> &tasks_;
-  int jobs_;
-  bool quiet_;
-  std::size_t next_ = 0, n_done_ = 0, n_prepared_ = 0;
+  fs::path cache_;
+  PreparationShare share_;
+  std::list<Task *> left_;
+  std::size_t n_done_ = 0, n_prepared_ = 0;
   double seconds_ = 0;
 };
 
@@ -92,9 +124,10 @@ private:
 
 void work(Queue &queue, const fs::path &cache)
 {
-  while (Task *task = queue.take())
+  while (const auto taken = queue.take())
     {
       const Stopwatch watch;
+      Task *task = taken->first;
       TaskObserver observer(queue, *task);
       try
         {
@@ -114,15 +147,16 @@ void work(Queue &queue, const fs::path &cache)
 }
 } // namespace
 
-void prepare_side_by_side(std::vector<Task> &tasks, const fs::path &cache, int jobs, bool quiet)
+void prepare_side_by_side(std::vector<Task> &tasks, const fs::path &cache, const PreparationShare &share)
 {
-  Queue queue(tasks, jobs, quiet);
+  fs::create_directories(cache);
+  Queue queue(tasks, cache, share);
   std::vector<std::jthread> threads;
-  const std::size_t n_threads = std::min(tasks.size(), static_cast<std::size_t>(std::max(1, jobs)));
+  const std::size_t n_threads = std::min(tasks.size(), static_cast<std::size_t>(std::max(1, share.jobs)));
   for (std::size_t k = 0; k < n_threads; ++k)
     threads.emplace_back([&] { work(queue, cache); });
   threads.clear(); // joins
-  if (queue.n_done() < tasks.size())
+  if (stop_requested() && queue.n_done() < tasks.size())
     throw Interrupted(fmt::format("interrupted: {} of {} specimens are in {}; the same command goes on from there",
                                   queue.n_done(), tasks.size(), cache.string()));
 }

@@ -20,9 +20,19 @@ struct Task
   bool bad_input = false; ///< the failure is one of the scene
 };
 
-/// Prepares all tasks, or takes them from the cache, `jobs` side by side, each on a thread of its own. One that fails
-/// does not keep the others from being prepared. Says on stderr what begins, what is done, and when the rest will be.
+/// How much of the preparations a process does.
+struct PreparationShare
+{
+  int jobs = 1;        ///< side by side, each on a thread of its own
+  bool helper = false; ///< leave alone what other processes prepare
+  bool quiet = false;
+};
+
+/// Prepares all tasks, or takes them from the cache. Processes with the same cache share them: a task is locked by who
+/// prepares it, and waited for by the others, unless they are helpers; if that process dies, the next one prepares it.
+/// One that fails does not keep the others from being prepared. Says on stderr what begins, what is done, and when the
+/// rest will be.
 /// @throws Interrupted  after a signal; what was finished is in the cache
-/// @post every task has a specimen or a failure
-void prepare_side_by_side(std::vector<Task> &tasks, const std::filesystem::path &cache, int jobs, bool quiet);
+/// @post every task has a specimen or a failure, unless this is a helper
+void prepare_side_by_side(std::vector<Task> &tasks, const std::filesystem::path &cache, const PreparationShare &share);
 } // namespace isostat

@@ -118,8 +118,8 @@ class Bits(GrainColumnTest):
         outside = float(re.search(r"outside of packings +(\S+) %", result.stdout)[1])
         self.assertTrue(0 < outside < 100, result.stdout)
 
-    def stop(self, n, with_signal, wait, *more):
-        """Starts n ranks; one of them gets a signal `wait` seconds after the first checkpoint of this run."""
+    def stop(self, n, with_signal, wait, *more, to_mpirun=False):
+        """Starts n ranks; one of them, or mpirun, gets a signal `wait` s after the first checkpoint of this run."""
         last, begin = self.folder / "parts/checkpoint/last.h5", time.time()
         with subprocess.Popen(self.command_on_ranks(n, self.scene, "-o", "parts", "-q", *more), cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
@@ -131,7 +131,7 @@ class Bits(GrainColumnTest):
             time.sleep(wait)
             with contextlib.suppress(ProcessLookupError, FileNotFoundError):
                 ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
-                os.kill(int(ranks.split()[-1]), with_signal)
+                os.kill(process.pid if to_mpirun else int(ranks.split()[-1]), with_signal)
             _, message = process.communicate(timeout=60 * PATIENCE)
         return process.returncode, message
 
@@ -145,11 +145,13 @@ class Bits(GrainColumnTest):
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")
 
-    def test_sigterm(self):
+    def test_orderly_stops(self):
+        """SIGTERM of one rank, and SIGUSR1 of mpirun, which hands it on to all."""
         self.whole()
-        code, message = self.stop(2, signal.SIGTERM, 0.1)
-        self.assertEqual(code, 130, message)
-        self.assertEqual(len(re.findall(r"interrupted at step \d+; go on with --resume", message)), 1)
+        for with_signal, to_mpirun, resume in ((signal.SIGTERM, False, []), (signal.SIGUSR1, True, ["--resume"])):
+            code, message = self.stop(2, with_signal, 0.1, *resume, to_mpirun=to_mpirun)
+            self.assertEqual(code, 130, message)
+            self.assertEqual(len(re.findall(r"interrupted at step \d+; go on with --resume", message)), 1)
         self.assert_done(self.run_on_ranks(1, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")
 

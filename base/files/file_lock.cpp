@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files/file_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace isostat
+{
+FileLock::~FileLock()
+{
+  if (file_ >= 0)
+    close(file_);
+}
+
+FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missing)
+{
+  const int flags = missing == MissingFile::create ? O_CREAT : 0;
+  FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
+  return lock && flock(lock.file_, LOCK_EX | LOCK_NB) == 0 ? std::move(lock) : FileLock();
+}
+
+bool is_unlocked(const std::filesystem::path &file)
+{
+  return static_cast<bool>(FileLock::attempt(file, FileLock::MissingFile::no_lock));
+}
+} // namespace isostat

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// tested: tests/base/files/file_lock_test.cpp
+#pragma once
+#include <filesystem>
+#include <utility>
+
+namespace isostat
+{
+/// A lock on a file (flock): one holder among the processes and threads of all machines that see the file. It ends with
+/// this object, or with the last process that has the file open, however that ends.
+class FileLock
+{
+public:
+  enum class MissingFile
+  {
+    create,
+    no_lock
+  };
+
+  FileLock() = default;
+  FileLock(FileLock &&other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  FileLock &operator=(FileLock &&other) noexcept
+  {
+    std::swap(file_, other.file_);
+    return *this;
+  }
+  ~FileLock();
+
+  /// The lock, or none if another holder has it or the file cannot be opened for writing. Children that become another
+  /// program do not inherit it.
+  static FileLock attempt(const std::filesystem::path &file, MissingFile missing = MissingFile::create);
+
+  explicit operator bool() const { return file_ >= 0; }
+  /// Of the open file: who keeps it open, keeps the lock.
+  int descriptor() const { return file_; }
+
+private:
+  explicit FileLock(int file) : file_(file) {}
+  int file_ = -1;
+};
+
+/// Whether the file is there and nobody has its lock.
+bool is_unlocked(const std::filesystem::path &file);
+} // namespace isostat

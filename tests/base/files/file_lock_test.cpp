@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files/file_lock.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace isostat
+{
+namespace
+{
+const std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("isostat_lock_{}", getpid());
+
+TEST(FileLock, HasOneHolderAndEndsWithIt)
+{
+  EXPECT_FALSE(FileLock::attempt(path, FileLock::MissingFile::no_lock));
+  EXPECT_FALSE(is_unlocked(path));
+  {
+    FileLock lock = FileLock::attempt(path);
+    EXPECT_TRUE(lock);
+    EXPECT_FALSE(is_unlocked(path));
+    EXPECT_FALSE(FileLock::attempt(path));
+    const FileLock moved = std::move(lock);
+    EXPECT_TRUE(moved);
+    EXPECT_FALSE(is_unlocked(path));
+  }
+  EXPECT_TRUE(is_unlocked(path));
+  std::filesystem::remove(path);
+}
+
+TEST(FileLock, LastsAsLongAsAnyProcessHasTheFileOpen)
+{
+  int until[2];
+  ASSERT_EQ(pipe(until), 0);
+  pid_t child = 0;
+  {
+    const FileLock lock = FileLock::attempt(path);
+    ASSERT_TRUE(lock);
+    child = fork();
+    if (child == 0)
+      {
+        char byte;
+        close(until[1]);
+        _exit(static_cast<int>(read(until[0], &byte, 1)));
+      }
+  }
+  EXPECT_FALSE(is_unlocked(path)) << "the child has the file open";
+  close(until[1]);
+  int status = 1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(is_unlocked(path));
+  close(until[0]);
+  std::filesystem::remove(path);
+}
+} // namespace
+} // namespace isostat
