@@ -45,6 +45,7 @@ def version():
     return re.search(r"project\(isostat VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 
 
-setup(version=version(), package_dir={"isostat": "python/isostat", "isostat.figures": "apps/figures"},
-      packages=["isostat", "isostat.figures"], package_data={"isostat": ["py.typed", "*.pyi"]},
+setup(version=version(), package_dir={"isostat": "python/isostat", "isostat.figures": "apps/figures",
+                                        "isostat.report": "apps/report"},
+      packages=["isostat", "isostat.figures", "isostat.report"], package_data={"isostat": ["py.typed", "*.pyi"]},
       ext_modules=[Extension("isostat._core", [])], cmdclass={"build_ext": CMakeBuild})

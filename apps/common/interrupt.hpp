@@ -10,6 +10,7 @@ namespace detail
 {
 inline volatile std::sig_atomic_t stop = 0;
 inline constexpr std::array stopping = {SIGINT, SIGTERM, SIGUSR1};
+inline std::array<struct sigaction, stopping.size()> second = {}; ///< what takes the second signal of each kind
 } // namespace detail
 
 /// From here on SIGINT, SIGTERM and SIGUSR1 only raise a flag; the run stops after the step it is in and writes a
@@ -20,33 +21,34 @@ inline void catch_signals()
   for (int signal : detail::stopping)
     std::signal(signal, [](int caught) {
       detail::stop = 1;
-      std::signal(caught, SIG_DFL);
+      for (std::size_t k = 0; k < detail::second.size(); ++k)
+        if (detail::stopping[k] == caught)
+          sigaction(caught, &detail::second[k], nullptr);
     });
 }
 
 inline bool stop_requested() { return detail::stop != 0; }
 
-/// Signals are caught as long as this lives, for a run within a program that has handlers of its own.
+/// Signals are caught as long as this lives, for a run within a program that has handlers of its own: these take the
+/// second signal of a kind.
 /// tested: tests/python/column_test.py
 class SignalsCaught
 {
 public:
   SignalsCaught()
   {
-    for (std::size_t k = 0; k < before_.size(); ++k)
-      sigaction(detail::stopping[k], nullptr, &before_[k]);
+    for (std::size_t k = 0; k < detail::second.size(); ++k)
+      sigaction(detail::stopping[k], nullptr, &detail::second[k]);
     catch_signals();
   }
   ~SignalsCaught()
   {
-    for (std::size_t k = 0; k < before_.size(); ++k)
-      sigaction(detail::stopping[k], &before_[k], nullptr);
+    for (std::size_t k = 0; k < detail::second.size(); ++k)
+      sigaction(detail::stopping[k], &detail::second[k], nullptr);
+    detail::second = {};
     detail::stop = 0;
   }
   SignalsCaught(const SignalsCaught &) = delete;
   SignalsCaught &operator=(const SignalsCaught &) = delete;
-
-private:
-  std::array<struct sigaction, detail::stopping.size()> before_ = {};
 };
 } // namespace isostat

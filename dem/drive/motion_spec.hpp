@@ -37,6 +37,10 @@ inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number
 /// The keys of such packings: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();
 
+/// For settings that come from a program rather than from a scene.
+/// @throws InputError  a number outside of the range of its key, naming both
+void check(const MotionSpec &motion);
+
 /// What the motion says of damping, for the steps to come.
 void set_damping(const MotionSpec &motion, StepSettings &settings);
 

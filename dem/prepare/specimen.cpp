@@ -163,19 +163,19 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
   return specimen;
 }
 
-void check_domain(const Scene &scene, const Snapshot &state)
+void check_domain(const Scene &scene, const Snapshot &state, const std::string &name)
 {
   const std::string is = state.cell ? "periodic-cell" : "rigid-box";
   if (scene.specimen.domain != is)
     throw InputError(fmt::format("{}: a specimen in a {}, but the scene has specimen.domain = \"{}\". Give the other "
                                  "domain or another specimen.",
-                                 scene.specimen.file, is, scene.specimen.domain));
+                                 name, is, scene.specimen.domain));
 }
 
 /// What a scene says of its grains and of its pressure, and what its file has instead, which is taken.
 void note_differences(const Scene &scene, const Snapshot &state, RunObserver &observer)
 {
-  const std::string &file = scene.specimen.file;
+  const std::string file = scene.specimen.file.empty() ? "the specimen that is given" : scene.specimen.file;
   if (const double is = state.grains.density, said = scene.grading.density; std::abs(is - said) > 1e-3 * said)
     observer.event(fmt::format("warning: {}: its grains have a density of {:g} kg/m3, and keep it; grading.density = "
                                "{:g} kg/m3 is without effect",
@@ -198,7 +198,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
   if (path.extension() == ".h5")
     {
       Specimen specimen = read_stored_packing(path, place.entry);
-      check_domain(scene, specimen.state);
+      check_domain(scene, specimen.state, scene.specimen.file);
       specimen.state.law = scene.contact;
       note_differences(scene, specimen.state, observer);
       describe(scene, specimen);
@@ -215,7 +215,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
     observer.event(fmt::format("warning: {}: {}", path.string(), note));
   Specimen specimen;
   specimen.state = sorted_along_curve(read.state);
-  check_domain(scene, specimen.state);
+  check_domain(scene, specimen.state, scene.specimen.file);
   note_differences(scene, specimen.state, observer);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
@@ -271,6 +271,18 @@ std::string specimen_recipe(const Scene &scene)
   const std::string text = to_toml(recipe);
   // the sections behind those of the specimen stand at their defaults: a key more there is no other specimen
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
+}
+
+Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer)
+{
+  check_domain(scene, given.state, "the specimen that is given");
+  given.state.step = 0;
+  given.state.time = 0;
+  given.state.strain.setZero();
+  given.state.law = scene.contact;
+  note_differences(scene, given.state, observer);
+  describe(scene, given);
+  return given;
 }
 
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)

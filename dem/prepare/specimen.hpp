@@ -21,6 +21,11 @@ namespace isostat
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer,
                          int threads = 1);
 
+/// A packing that a program gives, as the specimen of a scene: time and strain count from here, its figures are those
+/// of the packing, the contact law is the scene's.   @throws InputError  it is in another domain than the scene's
+/// tested: tests/python/run_test.py
+Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer);
+
 /// All that a prepared specimen depends on, as text: the key of the cache and part of its provenance.
 std::string specimen_recipe(const Scene &scene);
 } // namespace isostat

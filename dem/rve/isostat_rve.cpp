@@ -86,34 +86,30 @@ void write_voigt(const Mat3 &symmetric, double *numbers)
     numbers[k] = symmetric(voigt_row[k], voigt_column[k]);
 }
 
-void check(bool allowed, const char *key, double value, const char *range)
-{
-  if (!allowed)
-    throw InputError(fmt::format("settings.{} = {:g}; allowed is {}. isostat_rve_default_settings() gives values to "
-                                 "begin with.",
-                                 key, value, range));
-}
-
 RveSettings cpp_settings(const isostat_rve_settings *given_settings)
 {
   isostat_rve_settings s;
   isostat_rve_default_settings(&s);
   if (given_settings)
     s = *given_settings;
-  check(s.inertial_number > 0 && s.inertial_number < 1, "inertial_number", s.inertial_number, "(0, 1)");
-  check(s.strain_rate >= 0 && std::isfinite(s.strain_rate), "strain_rate", s.strain_rate, "> 0, or 0: none");
-  check(s.damping >= 0 && s.damping < 1, "damping", s.damping, "[0, 1)");
   RveSettings settings;
   settings.motion = controlled_motion();
   settings.motion.inertial_number = s.inertial_number;
   settings.motion.damping = s.damping;
-  if (s.strain_rate > 0)
+  if (s.strain_rate != 0) // 0: none
     settings.motion.strain_rate = s.strain_rate;
   settings.frame = matrix(s.frame, "frame");
   settings.max_increment = s.max_increment;
   settings.min_steps = s.min_steps;
   settings.max_steps = s.max_steps;
-  settings.check();
+  try
+    {
+      settings.check();
+    }
+  catch (const InputError &error)
+    {
+      throw InputError(fmt::format("{} isostat_rve_default_settings() gives values to begin with.", error.what()));
+    }
   return settings;
 }
 

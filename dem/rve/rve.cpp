@@ -59,6 +59,7 @@ std::uint64_t hash_of(const Packing &grains, Law law)
 
 void RveSettings::check() const
 {
+  isostat::check(motion);
   if (!((frame.transpose() * frame - Mat3::Identity()).norm() < 1e-9 && frame.determinant() > 0))
     throw InputError("the frame of a representative volume element must be a rotation: orthogonal, determinant +1");
   if (!(max_increment > 0 && max_increment <= 0.1))
@@ -107,7 +108,7 @@ double Rve::saturated_density(double water) const
 
 void Rve::review()
 {
-  if (drive_.steps % indicator_interval == 0 && settings_.go_on && !settings_.go_on())
+  if (drive_.steps % indicator_interval == 0 && !rolling_back_ && settings_.go_on && !settings_.go_on())
     throw RunFailure("it was interrupted");
   if (drive_.steps % indicator_interval == 0)
     drive_.pace.indicator = quasi_static_indicator(assembly_, mean_stress(), drive_.p0, drive_.pace.rate);
@@ -175,8 +176,10 @@ void Rve::roll_back()
   const RveState safe = safe_;
   const std::vector<Mat3> done = std::move(since_safe_);
   restore(safe);
+  rolling_back_ = true;
   for (const Mat3 &own_gradient : done)
     run_strain(own_gradient); // bitwise as before
+  rolling_back_ = false;
   since_safe_ = done;
 }
 

@@ -26,7 +26,7 @@ struct RveSettings
   std::function<bool()> go_on = {};     ///< asked every 50 steps, if given; false: the increment is rejected
 
   /// tested: tests/dem/rve/rve_test.cpp
-  void check() const; ///< @throws InputError  frame is no rotation, a limit is not positive
+  void check() const; ///< @throws InputError  motion out of range, frame is no rotation, a limit is not positive
 };
 
 /// Prescribed strain in some components, target stress in the others: one increment of a laboratory test.
@@ -159,5 +159,6 @@ private:
   /// State before a failed increment: a copy made every 500 steps, and the strains since, which are run again.
   RveState safe_;
   std::vector<Mat3> since_safe_;
+  bool rolling_back_ = false; ///< nobody is asked whether to go on
 };
 } // namespace isostat

@@ -7,6 +7,7 @@
 #include "dem/io/text_tables.hpp"
 #include "dem/io/vtp.hpp"
 #include "dem/prepare/convert.hpp"
+#include "dem/prepare/packing_check.hpp"
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
 
@@ -118,15 +119,31 @@ void bind_files(py::module_ &module)
       "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
       "import_tables",
-      [](const fs_path &path, const Law &law, double density) { return import_tables(path, law, density); },
+      [](const fs_path &path, const Law &law, double density) {
+        const Snapshot read = import_tables(path, law, density);
+        warn(check_packing(read, path.string(), [](const std::string &unit) {
+          return fmt::format("give length_unit=\"{}\" to isostat.read_packing()", unit);
+        }));
+        return read;
+      },
       py::arg("path"), py::arg("law") = Law(), py::arg("density") = 2650.0,
-      "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide).");
+      "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide). Refuses\n"
+      "what no packing of soil is, as read_packing() does.");
   module.def(
-      "write_vtp", [](const fs_path &path, const Snapshot &snapshot) { write_grains_vtp(path, snapshot); },
-      py::arg("path"), py::arg("snapshot"), "Grains for ParaView.");
+      "write_vtp",
+      [](const fs_path &path, const Snapshot &snapshot, bool overwrite) {
+        check_new(path, overwrite);
+        write_grains_vtp(path, snapshot);
+      },
+      py::arg("path"), py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
+      "Grains for ParaView. A file that is there is replaced only with `overwrite`.");
   module.def(
       "write_force_chains_vtp",
-      [](const fs_path &path, const Snapshot &snapshot) { write_force_chains_vtp(path, snapshot); }, py::arg("path"),
-      py::arg("snapshot"), "Force chains for ParaView.");
+      [](const fs_path &path, const Snapshot &snapshot, bool overwrite) {
+        check_new(path, overwrite);
+        write_force_chains_vtp(path, snapshot);
+      },
+      py::arg("path"), py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
+      "Force chains for ParaView. A file that is there is replaced only with `overwrite`.");
 }
 } // namespace isostat::python

@@ -86,7 +86,10 @@ void bind_measures(py::module_ &module)
           "the same order, shear as gamma. yielding_contacts_resist=False: no ks where contacts slide, no kr where "
           "they "
           "roll.")
-      .def("measures", &measures, "All scalars of the history, by name; SI, compression positive.");
+      .def("measures", &measures,
+           "Scalars that a packing alone tells, as columns of the history, by name; SI, compression positive. "
+           "measure_units()\n"
+           "lists them; strains and the stresses of box or cell are columns of the history only.");
   module.def(
       "measure_units",
       [] {

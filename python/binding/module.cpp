@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.hpp"
+#include "base/record/installation.hpp"
 #include "python/binding/binding.hpp"
 
 namespace isostat::python
@@ -29,6 +30,7 @@ PYBIND11_MODULE(_core, module)
   namespace py = pybind11;
   using namespace isostat;
   module.doc() = "The compiled part of isostat; use what the package itself offers.";
+  module.attr("__version__") = version();
   python::bind_errors(module);
   python::bind_scene(module);
   python::bind_snapshot(module);

@@ -4,6 +4,7 @@
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "dem/io/specimen_file.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
 
@@ -21,6 +22,23 @@ struct Moment
   std::shared_ptr<const Assembly> assembly;
   Observation seen;
   std::size_t stage;
+  std::uint64_t step;
+  double time, void_ratio;
+  Vec3 strain;
+
+  Moment(std::shared_ptr<const Assembly> assembly_, const DriveState &state, const Observation &seen_)
+      : assembly(std::move(assembly_)), seen(seen_), stage(state.place.stage), step(assembly->step()),
+        time(assembly->time()), void_ratio(isostat::void_ratio(assembly->volume(), assembly->solid_volume())),
+        strain(strain_since_start(*assembly, state.path))
+  {}
+
+  /// The packing as it is, with the strain of the call.
+  std::shared_ptr<Snapshot> snapshot() const
+  {
+    auto now = std::make_shared<Snapshot>(assembly->snapshot());
+    now->strain = strain;
+    return now;
+  }
 };
 
 /// Calls back, keeps rows of a run that leaves no files, and looks for Ctrl-C.
@@ -57,7 +75,7 @@ private:
     const py::gil_scoped_acquire gil;
     try
       {
-        ask(function, {assembly, seen, state.place.stage});
+        ask(function, {assembly, state, seen});
       }
     catch (const py::error_already_set &error)
       {
@@ -122,7 +140,7 @@ py::dict units_of(const Result &result)
 
 struct Request
 {
-  const Scene &scene;
+  Scene scene;
   std::string output, cache;
   FolderUse use;
   int threads;
@@ -130,13 +148,43 @@ struct Request
   const Specimen *specimen;
 };
 
-TestRun begin(const Request &request)
+constexpr const char *kept_specimen = "specimen.h5"; ///< in the results folder, of a run that was given one
+
+/// The scene names the specimen that is kept beside it instead of what it says of preparation.
+void name_kept_specimen(Scene &scene)
+{
+  scene.specimen.file = kept_specimen;
+  scene.specimen.relative_density.reset();
+  scene.specimen.void_ratio.reset();
+  scene.specimen.preparation_friction.reset();
+}
+
+/// From a specimen that is given. It is kept with the results, so that their scene can be run again.
+TestRun begin_from(const Specimen &given, Request &request, const StepSettings &how)
+{
+  WatchedPreparation preparation(request.quiet);
+  const Specimen specimen = given_specimen(request.scene, given, preparation);
+  if (!request.output.empty())
+    {
+      open_result_folder(request.output, request.use);
+      request.use = FolderUse::fresh;
+      write_specimen(fs::path(request.output) / kept_specimen, specimen);
+      name_kept_specimen(request.scene);
+    }
+  return start_test(request.scene, specimen, how);
+}
+
+TestRun begin(Request &request)
 {
   const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
   if (request.use == FolderUse::resume)
-    return resume_test(request.scene, request.output, how);
+    {
+      if (fs::exists(fs::path(request.output) / kept_specimen))
+        name_kept_specimen(request.scene);
+      return resume_test(request.scene, request.output, how);
+    }
   if (request.specimen)
-    return start_test(request.scene, *request.specimen, how);
+    return begin_from(*request.specimen, request, how);
   return start_test(request.scene, prepared(request.scene, request.cache, request.threads, request.quiet), how);
 }
 
@@ -172,7 +220,7 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
     }
 }
 
-Result run(const Request &request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
+Result run(Request request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
 {
   Result result;
   Watcher watcher;
@@ -193,6 +241,7 @@ Result run(const Request &request, const py::object &on_record, const py::object
     throw Interrupted("interrupted");
   test.assembly->compute_forces();
   result.snapshot = std::make_shared<Snapshot>(test.assembly->snapshot());
+  result.snapshot->strain = strain_since_start(*test.assembly, test.state.path);
   return result;
 }
 
@@ -207,9 +256,8 @@ void bind_moment(py::module_ &module)
 {
   py::class_<Moment>(module, "Moment", "What a callback of run() sees, at the end of a force evaluation or a step.")
       .def_property_readonly(
-          "step", [](const Moment &m) { return m.seen.step; }, "Time steps since the run began.")
-      .def_property_readonly(
-          "time", [](const Moment &m) { return m.assembly->time(); }, "s.")
+          "step", [](const Moment &m) { return m.step; }, "Time steps since the run began.")
+      .def_readonly("time", &Moment::time, "s.")
       .def_readonly("stage", &Moment::stage, "Number of the stage, from 0.")
       .def_property_readonly(
           "p", [](const Moment &m) { return m.seen.p; }, "Mean effective stress of the walls or of the cell, Pa.")
@@ -222,15 +270,16 @@ void bind_moment(py::module_ &module)
           "tau", [](const Moment &m) { return m.seen.tau; }, "Shear stress xy of a cell, Pa.")
       .def_property_readonly(
           "gamma", [](const Moment &m) { return m.seen.gamma; }, "Shear strain xy of a cell.")
-      .def_property_readonly(
-          "void_ratio", [](const Moment &m) { return void_ratio(m.assembly->volume(), m.assembly->solid_volume()); },
-          "e.")
+      .def_readonly("void_ratio", &Moment::void_ratio, "e.")
       .def_property_readonly("positions", &running<&Packing::position>,
-                             "Centres of the running packing, (n, 3), m: a view that goes on changing with the run.")
-      .def_property_readonly("velocities", &running<&Packing::velocity>, "(n, 3), m/s: a view, as positions.")
-      .def(
-          "snapshot", [](const Moment &m) { return std::make_shared<Snapshot>(m.assembly->snapshot()); },
-          "A copy of the packing with its contacts, to keep or to measure. Within on_record.");
+                             "Centres of the running packing, (n, 3), m: a view that goes on changing with the run. "
+                             "A sheared cell is kept\nupright, so the axes turn with it; snapshot() has those of the "
+                             "laboratory.")
+      .def_property_readonly("velocities", &running<&Packing::velocity>,
+                             "(n, 3), m/s: a view, as positions. In a cell without the part of its homogeneous motion.")
+      .def("snapshot", &Moment::snapshot,
+           "A copy of the packing with its contacts, to keep or to measure. In on_step, where grains have moved since "
+           "forces were\nevaluated, shear forces and moments are those of before the step: measure within on_record.");
 }
 } // namespace
 
@@ -247,6 +296,8 @@ void bind_run(py::module_ &module)
   module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
                        const Specimen *specimen, bool overwrite, bool resume, int threads, bool quiet,
                        const py::object &on_record, const py::object &on_step, std::uint64_t every) {
+    if (threads < 0)
+      throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads));
     const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
     return run({scene, output, cache, use, threads, quiet, specimen}, on_record, on_step, every);
   });

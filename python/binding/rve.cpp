@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
 
+#include <atomic>
 #include <fmt/format.h>
 
 namespace isostat::python
@@ -35,6 +36,42 @@ RveSettings settings_of(const std::optional<double> &inertial_number, const std:
   return settings;
 }
 
+/// An element as Python holds it. The GIL is released while it works, so another thread could come in.
+struct Element
+{
+  Rve rve;
+  std::atomic<bool> in_use = false;
+
+  explicit Element(Rve &&rve_) : rve(std::move(rve_)) {}
+};
+
+/// As long as it lives this thread alone has the element.   @throws RunFailure  another one has it
+class Use
+{
+public:
+  explicit Use(Element &element) : element_(element)
+  {
+    if (element.in_use.exchange(true))
+      throw RunFailure("this element is in use by another thread: give each thread an element of its own, or wait");
+  }
+  ~Use() { element_.in_use = false; }
+  Use(const Use &) = delete;
+  Use &operator=(const Use &) = delete;
+
+private:
+  Element &element_;
+};
+
+/// A method of the element for one thread at a time.
+template <typename Returned, typename... Argument>
+auto alone(Returned (*function)(Rve &, Argument...))
+{
+  return [function](Element &element, Argument... argument) {
+    const Use use(element);
+    return function(element.rve, std::forward<Argument>(argument)...);
+  };
+}
+
 /// An increment without the GIL. Ctrl-C takes it back and raises KeyboardInterrupt.
 template <typename Increment>
 RveResponse taken(const Increment &increment)
@@ -48,18 +85,32 @@ RveResponse taken(const Increment &increment)
   return response;
 }
 
-template <typename... Argument>
-auto without_gil(RveResponse (Rve::*function)(Argument...))
+RveResponse advance(Rve &rve, const Mat3 &gradient)
 {
-  return [function](Rve &rve, std::decay_t<Argument>... argument) {
-    return taken([&] { return (rve.*function)(argument...); });
-  };
+  return taken([&] { return rve.advance(gradient); });
+}
+
+RveResponse undrained(Rve &rve, const Mat3 &gradient)
+{
+  return taken([&] { return rve.undrained(gradient); });
 }
 
 RveResponse mixed(Rve &rve, const Mat3 &gradient, const Mat3 &stress, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double tolerance)
 {
   return taken([&] { return rve.advance(MixedIncrement{gradient, stress, controlled, tolerance}); });
+}
+
+Mat6 stiffness(Rve &rve, bool yielding_contacts_resist)
+{
+  const py::gil_scoped_release free;
+  return rve.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::released);
+}
+
+py::bytes packed(Rve &rve)
+{
+  const std::vector<std::byte> bytes = rve.pack();
+  return {reinterpret_cast<const char *>(bytes.data()), bytes.size()};
 }
 
 void bind_response(py::module_ &module)
@@ -86,59 +137,57 @@ void bind_rve(py::module_ &module)
   bind_response(module);
   py::class_<RveState>(module, "RveState", "The complete state of an element; for restore().")
       .def_property_readonly("bytes", &RveState::bytes, "Memory it takes.");
-  py::class_<Rve>(module, "Rve",
-                  "A periodic packing as a material point: strain in, stress out. Nothing moves between calls.\n"
-                  "Displacement gradients (3, 3) are relative to the present shape; stress is tension positive, Pa.")
+  py::class_<Element>(module, "Rve",
+                      "A periodic packing as a material point: strain in, stress out. Nothing moves between calls. One "
+                      "thread at a time\n"
+                      "may use it; another one gets a RunFailure. Displacement gradients (3, 3) are relative to the "
+                      "present shape; stress\n"
+                      "is the Cauchy effective stress, tension positive, Pa.")
       .def(py::init([](const Snapshot &specimen, const std::optional<double> &inertial_number,
                        const std::optional<double> &damping, const std::optional<double> &strain_rate,
                        const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment,
                        std::uint64_t max_steps) {
-             return Rve(specimen,
-                        settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps));
+             return std::make_unique<Element>(Rve(specimen, settings_of(inertial_number, damping, strain_rate, frame,
+                                                                        min_steps, max_increment, max_steps)));
            }),
            py::arg("specimen"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
            py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
            py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000,
-           "specimen: a periodic packing at rest. inertial_number, damping (local), strain_rate (1/s): as the keys of\n"
-           "[motion]; None: what columns use. frame: rotation, x_lab = frame x_specimen. max_steps: an increment that "
-           "takes\n"
-           "more time steps is rejected, so a target stress that cannot be reached ends there. Ctrl-C takes an "
-           "increment "
-           "back.")
-      .def("advance", without_gil<const Mat3 &>(&Rve::advance), py::arg("gradient"),
-           "Strains it by a displacement gradient (3, 3).")
-      .def("undrained", without_gil(&Rve::undrained), py::arg("gradient"), "The same without its volumetric part.")
-      .def("mixed", &mixed, py::arg("gradient"), py::arg("stress"), py::arg("controlled"), py::arg("tolerance") = 1e-3,
+           "specimen: a periodic packing at rest.\n"
+           "inertial_number, damping (local) [-], strain_rate (1/s): as the keys of [motion]; None: what columns use.\n"
+           "frame: rotation (3, 3), x_lab = frame x_specimen.\n"
+           "min_steps: time steps that an increment takes at least; with few of them small strains are not "
+           "quasi-static.\n"
+           "max_increment: norm of the gradient above which an increment is rejected [-], at most 0.1.\n"
+           "max_steps: an increment that takes more time steps is rejected, so a target stress that cannot be reached\n"
+           "ends there.\n"
+           "Ctrl-C takes an increment back. Raises InputError for settings out of range, naming it.")
+      .def("advance", alone(&advance), py::arg("gradient"), "Strains it by a displacement gradient (3, 3).")
+      .def("undrained", alone(&undrained), py::arg("gradient"), "The same without its volumetric part.")
+      .def("mixed", alone(&mixed), py::arg("gradient"), py::arg("stress"), py::arg("controlled"),
+           py::arg("tolerance") = 1e-3,
            "Prescribed strain in some components, target stress (Pa, tension positive) where `controlled` (3, 3) is "
-           "true.")
-      .def_property_readonly("stress", &Rve::stress, "(3, 3), Pa, tension positive.")
-      .def_property_readonly("void_ratio", &Rve::void_ratio, "e.")
-      .def_property_readonly("dry_density", &Rve::dry_density, "Of the skeleton, kg/m3.")
-      .def(
-          "stiffness",
-          [](const Rve &rve, bool yielding_contacts_resist) {
-            const py::gil_scoped_release free;
-            return rve.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::released);
-          },
-          py::arg("yielding_contacts_resist") = true, "As Snapshot.stiffness().")
-      .def("snapshot", [](const Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); })
-      .def("save", &Rve::save)
-      .def("restore", &Rve::restore, py::arg("state"), "Of this element, or of one with the same grains and law.")
-      .def(
-          "pack",
-          [](const Rve &rve) {
-            const std::vector<std::byte> bytes = rve.pack();
-            return py::bytes(reinterpret_cast<const char *>(bytes.data()), bytes.size());
-          },
-          "The element as bytes for another process on the same type of machine.")
+           "true.\n"
+           "Rejected where the element has a frame other than identity. tolerance: of the stress, over p' [-].")
+      .def_property_readonly("stress", alone(+[](Rve &rve) { return rve.stress(); }), "(3, 3), Pa, tension positive.")
+      .def_property_readonly("void_ratio", alone(+[](Rve &rve) { return rve.void_ratio(); }), "e.")
+      .def_property_readonly("dry_density", alone(+[](Rve &rve) { return rve.dry_density(); }),
+                             "Of the skeleton, kg/m3.")
+      .def("stiffness", alone(&stiffness), py::arg("yielding_contacts_resist") = true, "As Snapshot.stiffness().")
+      .def("snapshot", alone(+[](Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); }),
+           "A copy of the packing with its contacts, in the laboratory frame.")
+      .def("save", alone(+[](Rve &rve) { return rve.save(); }), "Its complete state, for restore().")
+      .def("restore", alone(+[](Rve &rve, const RveState &state) { rve.restore(state); }), py::arg("state"),
+           "Of this element, or of one with the same grains and law.")
+      .def("pack", alone(&packed), "The element as bytes for another process on the same type of machine.")
       .def_static(
           "unpack",
           [](const std::string &bytes, const std::optional<double> &inertial_number,
              const std::optional<double> &damping, const std::optional<double> &strain_rate,
              const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment, std::uint64_t max_steps) {
-            return Rve::unpack(
+            return std::make_unique<Element>(Rve::unpack(
                 std::as_bytes(std::span(bytes.data(), bytes.size())),
-                settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps));
+                settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps)));
           },
           py::arg("bytes"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
           py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,

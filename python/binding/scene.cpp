@@ -23,7 +23,8 @@ void bind_scene(py::module_ &module)
       .def_property_readonly(
           "name", [](const Law &law) { return law->name(); }, "As the key law of a scene.")
       .def_property_readonly("parameters", &parameters, "Numbers and switches by name, in SI.")
-      .def("__eq__", [](const Law &one, const Law &other) { return one == other; })
+      .def(
+          "__eq__", [](const Law &one, const Law &other) { return one == other; }, py::is_operator())
       .def("__repr__", [](const Law &law) {
         return "<isostat.Law " + std::string(law->name()) + " " + std::string(py::str(parameters(law))) + ">";
       });
@@ -37,7 +38,9 @@ void bind_scene(py::module_ &module)
           "folder", [](const Scene &scene) { return scene.output.folder; },
           "Where run() leaves results unless it is told: results/<name of the scene file>.")
       .def_property_readonly("text", &to_toml, "The whole scene as TOML: every key with its value and unit.")
-      .def("__eq__", [](const Scene &one, const Scene &other) { return one == other; })
+      .def(
+          "__eq__", [](const Scene &one, const Scene &other) { return one == other; }, py::is_operator())
+      .def("__hash__", [](const Scene &scene) { return py::hash(py::str(to_toml(scene))); })
       .def("__str__", &to_toml);
 
   module.def("default_scene", &default_scene, "A commented scene with all defaults, units and ranges, as text.");

@@ -4,6 +4,7 @@
 #include "dem/measure/summary.hpp"
 #include "python/binding/binding.hpp"
 
+#include <cmath>
 #include <memory>
 
 namespace isostat::python
@@ -40,13 +41,14 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// Of three lengths or of edges in columns.   @throws InputError
 PeriodicCell periodic_cell(const Doubles &cell)
 {
-  if (cell.ndim() == 1 && cell.size() == 3 && cell.at(0) > 0 && cell.at(1) > 0 && cell.at(2) > 0)
+  if (cell.ndim() == 1 && cell.size() == 3 && cell.at(0) > 0 && cell.at(1) > 0 && cell.at(2) > 0 &&
+      std::isfinite(cell.at(0) * cell.at(1) * cell.at(2)))
     return PeriodicCell::with_edges({cell.at(0), cell.at(1), cell.at(2)});
   PeriodicCell found;
   if (cell.ndim() == 2 && cell.shape(0) == 3 && cell.shape(1) == 3)
     found.edges = py::cast<Mat3>(cell);
   found.reference_volume = found.edges.determinant();
-  if (cell.size() != 9 || !(found.reference_volume > 0))
+  if (cell.size() != 9 || !(found.reference_volume > 0 && std::isfinite(found.reference_volume)))
     throw InputError("cell: must be three lengths, or three edges in the columns of a (3, 3) array that form a "
                      "right-handed cell, in m.");
   return found;
@@ -59,23 +61,31 @@ Snapshot from_spheres(const Doubles &centres, const std::vector<double> &radii, 
   if (x.size() != radii.size() || x.empty())
     throw InputError("radii: as many as centres, and one at least.");
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (!(radii[i] > 0) || !x[i].allFinite())
-      throw InputError("sphere " + std::to_string(i) + ": a radius must be positive, in m, and a centre finite.");
+    if (!(radii[i] > 0 && std::isfinite(radii[i])) || !x[i].allFinite())
+      throw InputError("sphere " + std::to_string(i) +
+                       ": a radius must be positive and finite, in m, and a centre finite.");
+  if (!(density > 0 && std::isfinite(density)))
+    throw InputError("density: must be positive and finite, in kg/m3.");
   if (box.has_value() == cell.has_value())
     throw InputError("give either box = [lower, upper] or cell, in m.");
   Snapshot snapshot;
   snapshot.grains = make_packing(x, radii, density);
   snapshot.law = law;
+  const auto checked = [&] {
+    if (snapshot.volume() > snapshot.grains.solid_volume())
+      return snapshot;
+    throw InputError("box or cell: is smaller than the spheres in it. Are the radii in m?");
+  };
   if (cell)
     {
       snapshot.cell = periodic_cell(*cell);
-      return snapshot;
+      return checked();
     }
   const std::vector<Vec3> corners = points(*box, "box");
   if (corners.size() != 2 || !((corners[1] - corners[0]).array() > 0).all())
     throw InputError("box: must be [lower, upper], two corners with lower < upper, in m.");
   snapshot.box = {corners[0], corners[1]};
-  return snapshot;
+  return checked();
 }
 
 void add_grains(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
@@ -84,8 +94,11 @@ void add_grains(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
       .def(
           "__len__", [](const Snapshot &s) { return s.grains.n_grains(); }, "Number of grains.")
       .def_property_readonly("positions", &of_grains<&Packing::position>, "Centres, (n, 3), m.")
-      .def_property_readonly("velocities", &of_grains<&Packing::velocity>, "Of the half step before, (n, 3), m/s.")
-      .def_property_readonly("spins", &of_grains<&Packing::spin>, "Of the half step before, (n, 3), rad/s.")
+      .def_property_readonly(
+          "velocities", &of_grains<&Packing::velocity>,
+          "Of the half step before, (n, 3), m/s; in a cell without the part of its homogeneous motion.")
+      .def_property_readonly("spins", &of_grains<&Packing::spin>,
+                             "Of the half step before, (n, 3), rad/s; as velocities.")
       .def_property_readonly(
           "radii",
           [](const Self &self) {
@@ -168,7 +181,8 @@ void bind_snapshot(py::module_ &module)
           "from_spheres", &from_spheres, py::arg("centres"), py::arg("radii"), py::kw_only(),
           py::arg("density") = 2650.0, py::arg("box") = py::none(), py::arg("cell") = py::none(),
           py::arg("law") = Law(),
-          "Resting spheres without contacts.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
+          "Resting spheres without contacts. Raises InputError for numbers that are no spheres in a larger "
+          "domain.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
           "box: two corners, m; or cell: of a periodic packing, three lengths or the edges in columns, (3, 3), m.\n"
           "Contacts form when a run begins, without shear forces: let a `rebalance` stage come first.")
       .def_readonly("time", &Snapshot::time, "s.")

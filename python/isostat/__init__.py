@@ -10,7 +10,7 @@
 SI units. Stress and strain tensors are tension positive; p', q and the strains of a history compression positive.
 A contact law of one's own is written in C++ (CONTRIBUTING.md): Python would be called for every contact.
 """
-from isostat._core import (InputError, Law, Moment, RunFailure, Rve, RveResponse, RveState, Snapshot, Specimen, convert,
+from isostat._core import (__version__, InputError, Law, Moment, RunFailure, Rve, RveResponse, RveState, Snapshot, Specimen, convert,
                            default_scene, import_tables, measure_units, read_packing, read_snapshot, read_specimen,
                            scene_manual, write_force_chains_vtp, write_packing, write_specimen, write_vtp)
 from isostat.results import History, Results, draw, read

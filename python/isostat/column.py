@@ -44,7 +44,7 @@ class Material(abc.ABC):
     The state is a dictionary of arrays that the class chooses; the solver keeps the committed one and that of the last
     trial, writes it to checkpoints, and asks for a step as often as it needs. So update() must not change the state that
     it is given: its arrays are read-only. Order of components: xx, yy, zz, yz, xz, xy; tension positive; effective stress in Pa; shear strain as
-    gamma = 2 eps. Arrays that are given are read-only and valid during the call only.
+    gamma = 2 eps. Arrays that are given are read-only copies.
     """
 
     @abc.abstractmethod

@@ -3,8 +3,11 @@
 import collections.abc
 import csv
 import importlib
+import os
 import pathlib
 import re
+import subprocess
+import sys
 
 import numpy as np
 
@@ -67,6 +70,8 @@ def draw(folder, name, program="element_test"):
     try:
         drawing = importlib.import_module(f"isostat.figures.{program}").DRAWING
     except ModuleNotFoundError as error:
+        if error.name != f"isostat.figures.{program}":
+            raise
         raise _core.InputError(f"{program}: no program of that name leaves figures.") from error
     if name not in drawing.figures:
         raise _core.InputError(f"{name}: no figure of {program}; there are {', '.join(drawing.figures)}.")
@@ -125,12 +130,27 @@ class Results:
         return (self.folder / "provenance.txt").read_text(encoding="utf-8")
 
     def packing(self, number):
-        """The stored Snapshot of this number."""
+        """The stored Snapshot of this number, from 0; negative numbers count from the last."""
+        n = len(self.snapshots)
+        if not -n <= number < n:
+            raise _core.InputError(f"{self.folder}: has {n} stored packings, numbered from 0; there is no number {number}.")
         return _core.read_snapshot(str(self.snapshots[number]))
 
     def draw(self, name):
         """The axes of one of the figures that the program leaves: results.draw("fig_stress_path")."""
         return draw(self.folder, name, self.program)
+
+    def report(self):
+        """Leaves figures and report.html in the folder, as the program does, and returns the path of the report.
+
+        Needs matplotlib and h5py.   Raises RunFailure with what went wrong
+        """
+        done = subprocess.run([sys.executable, "-m", "report", "leave", self.program, self.folder.resolve()],
+                              env={**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).parent)},
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise _core.RunFailure(done.stderr.strip())
+        return self.folder / "report.html"
 
     def __repr__(self):
         return f"<isostat.Results of {self.folder}>"

@@ -7,8 +7,14 @@ import tempfile
 
 from isostat import _core
 from isostat.results import History, Results, draw
+from isostat.scene import Scene
 
 CACHE = os.path.join("results", "specimens")
+
+
+def as_scene(scene):
+    """The Scene itself, or one that is made from what is given."""
+    return scene if isinstance(scene, Scene) else Scene(scene)
 
 
 def prepare(scene, *, cache=CACHE, threads=0, quiet=True):
@@ -17,16 +23,18 @@ def prepare(scene, *, cache=CACHE, threads=0, quiet=True):
     cache: folder of prepared specimens. threads: that share a step; 0: as many as the packing can feed; changes no bit.
     quiet: without progress on stderr. Returns a Specimen. Raises InputError (a density that cannot be reached).
     """
-    return _core.prepare(scene, os.fspath(cache), threads, quiet)
+    return _core.prepare(as_scene(scene), os.fspath(cache), threads, quiet)
 
 
 def run(scene, output=None, *, specimen=None, cache=None, overwrite=False, resume=False, threads=0, quiet=True,
         on_record=None, on_step=None, every=1000):
     """Runs the stages of a scene, to the same bits as the program element_test does.
 
+    scene       a Scene, or what one is made from: a path, text or a dictionary
     output      folder for history, snapshots, ParaView files, checkpoints and summary; None: nothing is written but
                 prepared specimens
-    specimen    a Specimen or Snapshot to start from, instead of what the scene says
+    specimen    a Specimen or Snapshot to start from, instead of what the scene says; it is kept in `output` as
+                specimen.h5, which the scene there names
     cache       folder of prepared specimens; None: beside the output folder, as the program does
     overwrite   replaces results that are there          resume   goes on from the newest checkpoint of `output`
     threads     0: as many as the packing can feed; changes no bit of the result
@@ -38,6 +46,7 @@ def run(scene, output=None, *, specimen=None, cache=None, overwrite=False, resum
     change the packing.
     Raises InputError, and RunFailure with the step, the grain and the last checkpoint.
     """
+    scene = as_scene(scene)
     if isinstance(specimen, _core.Snapshot):
         specimen = _core.Specimen(specimen)
     if (resume or overwrite) and output is None:

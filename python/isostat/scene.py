@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes from files, text, dictionaries and keywords.   tested: tests/python/scene_test.py"""
 import json
-import math
 import os
 import pathlib
 import tomllib
@@ -12,7 +11,8 @@ from isostat import _core
 class Scene(_core.Scene):
     """A whole test: grading, contact law, specimen, motion, stages, output; checked by the same schema as the programs.
 
-    Scene("test.toml")                                     a file; a relative specimen.file counts from the working folder
+    Scene("test.toml")                                     a file; a relative specimen.file counts from its folder, and
+                                                           from the working folder if nothing is there
     Scene(text)                                            TOML text (it has line breaks)
     Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; what is left out has its default
     Scene(title="mine", specimen={"pressure": "100 kPa"})  sections as keywords
@@ -27,6 +27,10 @@ class Scene(_core.Scene):
     def with_(self, **keys):
         """The scene with other values: scene.with_(**{"motion.damping": 0.05})."""
         return type(self)(self.text, set=keys)
+
+    def __reduce__(self):
+        """Copies and pickles go by the text."""
+        return type(self), (self.text,)
 
     def to_dict(self):
         """Every key with its value, as nested dictionaries."""
@@ -65,7 +69,7 @@ def value_text(value):
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
-        return repr(value) if math.isfinite(value) else ("nan" if math.isnan(value) else "inf")
+        return repr(value)  # "nan" and "inf" as in TOML
     if isinstance(value, os.PathLike):
         return json.dumps(os.fspath(value), ensure_ascii=False)
     raise _core.InputError(f"{value!r}: a scene has strings, numbers, true and false, lists and dictionaries.")

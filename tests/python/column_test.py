@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -84,6 +85,24 @@ class Interrupts(Hyperbolic):
         return super().update(state, gradient)
 
 
+class Forgets(Elastic):
+    """Keeps the array that it is given, without a copy."""
+
+    def initial(self, stress):
+        return {"stress": stress}
+
+
+class HoldsOn(Elastic):
+    """Never ends on its own after the first signal."""
+
+    def update(self, state, gradient):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+        while True:
+            time.sleep(0.01)
+
+
 class ColumnTest(ToleranceTest):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -148,6 +167,15 @@ class ColumnTest(ToleranceTest):
         self.assertEqual(signal.getsignal(signal.SIGINT), before)
         parts = self.run_with(Interrupts(0), "parts", resume=True)
         self.assertEqual((parts.folder / "history.csv").read_bytes(), (whole.folder / "history.csv").read_bytes())
+
+    def test_a_second_interrupt_is_that_of_the_interpreter(self):
+        with self.assertRaises(KeyboardInterrupt):
+            self.run_with(HoldsOn(), "held")
+
+    def test_a_law_may_keep_what_it_is_given(self):
+        one, other = self.run_with(Elastic(), "copies").history, self.run_with(Forgets(), "keeps").history
+        for name in one:
+            np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
     def test_wave_moduli_of_an_isotropic_stiffness(self):
         found = Elastic().wave_moduli({"stress": np.zeros((2, 6))})

@@ -101,6 +101,36 @@ class RunTest(ToleranceTest):
         np.testing.assert_array_equal(given.snapshot.positions, self.run_scene().snapshot.positions)
         self.assertEqual(self.specimen.numbers["grains"], 300)
 
+    def test_a_given_packing_is_kept_and_the_scene_runs_again(self):
+        end = self.run_scene().snapshot
+        self.assertGreater(end.step, 1000)
+        folder = self.folder / "given"
+        given = isostat.run(self.scene, folder, specimen=end, on_step=lambda moment: moment.step < 500, every=1)
+        given = isostat.run(self.scene, folder, resume=True)
+        self.assertEqual((given.history["step"][0], given.summary["grains"]), (0, 300))
+        self.assert_near(given.summary["void_ratio"], end.void_ratio, 1e-12, "sums of volumes in another order")
+        self.assertTrue(given.report().is_file())
+        again = isostat.run(folder / "scene.toml", self.folder / "again", threads=1)
+        self.assertEqual((folder / "history.csv").read_bytes(), (self.folder / "again/history.csv").read_bytes())
+        with self.assertRaisesRegex(isostat.InputError, "specimen that is given: a specimen in a periodic-cell"):
+            isostat.run(self.scene.with_(**{"specimen.domain": "rigid-box"}), specimen=end)
+
+    def test_a_moment_keeps_its_numbers(self):
+        kept, taken = [], []
+
+        def look(moment):
+            kept.append((moment, moment.step, moment.time, moment.void_ratio))
+            taken.append(moment.snapshot())
+
+        run = self.run_scene(on_step=look, every=200)
+        self.assertGreater(len(kept), 2)
+        for (moment, *numbers), snapshot in zip(kept, taken):
+            self.assertEqual(numbers, [moment.step, moment.time, moment.void_ratio])
+            self.assertEqual((moment.step, moment.time), (snapshot.step, snapshot.time))
+            self.assertEqual(moment.step % 200, 0)
+        self.assertNotEqual(run.snapshot.strain[1], 0)
+        self.assert_close(-run.snapshot.strain[1], run.history["eps_y"][-1], 1e-12, "the same sum")
+
     def test_ctrl_c_leaves_a_checkpoint(self):
         program = (f"import sys; sys.path.insert(0, {str(BINARIES.parent / 'python')!r})\n"
                    f"import isostat, os, signal\n"
@@ -133,6 +163,11 @@ class RunTest(ToleranceTest):
             isostat.read(self.folder)
         with self.assertRaisesRegex(isostat.InputError, "results folder exists.*overwrite=True"):
             self.run_scene(self.folder / "read")
+        with self.assertRaisesRegex(isostat.InputError, "there is no number 99"):
+            results.packing(99)
+        with self.assertRaisesRegex(isostat.InputError, "threads = -3: must be 0"):
+            self.run_scene(threads=-3)
+        self.assertRegex(isostat.__version__, r"^\d+\.\d+")
 
 
 if __name__ == "__main__":

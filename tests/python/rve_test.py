@@ -74,6 +74,29 @@ class RveTest(ToleranceTest):
         np.testing.assert_array_equal(rve.stress, before)
         self.assertTrue(rve.advance(np.diag([0.0, -1e-5, 0.0])))
 
+    def test_one_thread_at_a_time(self):
+        rve, refused = isostat.Rve(self.packing, min_steps=3000), []
+        other = threading.Thread(target=rve.advance, args=(np.diag([0.0, -1e-5, 0.0]),))
+        other.start()
+        while other.is_alive():
+            for use in (lambda: rve.stress, rve.save, rve.stiffness, lambda: rve.undrained(np.zeros((3, 3)))):
+                try:
+                    use()
+                except isostat.RunFailure as failure:
+                    refused.append(str(failure))
+        other.join()
+        self.assertGreater(len(refused), 3)
+        self.assertIn("in use by another thread", refused[0])
+        alone = isostat.Rve(self.packing, min_steps=3000)
+        alone.advance(np.diag([0.0, -1e-5, 0.0]))
+        np.testing.assert_array_equal(rve.stress, alone.stress)
+
+    def test_settings_out_of_range_are_refused(self):
+        for setting in ({"damping": 1.5}, {"damping": -2}, {"inertial_number": -1e-3}, {"inertial_number": 1e3},
+                        {"strain_rate": -5}, {"strain_rate": float("nan")}):
+            with self.subTest(setting), self.assertRaisesRegex(isostat.InputError, next(iter(setting)) + " = .*must"):
+                isostat.Rve(self.packing, **setting)
+
     def test_too_large_an_increment_is_rejected(self):
         rve = isostat.Rve(self.packing)
         before = rve.stress

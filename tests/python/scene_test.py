@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes in Python: file, text, dictionary and keywords are the same scene, and wrong ones are refused in words."""
+import copy
 import pathlib
+import pickle
 import tempfile
 import unittest
 
 import numpy as np
 
 from package import ToleranceTest, isostat
+from isostat.scene import value_text
 
 STAGE = {"kind": "undrained-cyclic", "deviator_amplitude": "40 kPa", "until": {"cycles": 3}}
 TEXT = """title = "t"
@@ -32,6 +35,13 @@ class SceneTest(ToleranceTest):
             path.write_text(TEXT, encoding="utf-8")
             self.assertEqual(isostat.Scene(path).to_dict()["stage"], of_text.to_dict()["stage"])
             self.assertEqual(isostat.Scene(path).folder, "results/t")
+
+    def test_scenes_are_values(self):
+        scene = isostat.Scene(TEXT)
+        self.assertFalse(scene == None or scene in [1, "x"])  # noqa: E711  (an operator that must not raise)
+        for twin in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+            self.assertEqual((twin, hash(twin), type(twin)), (scene, hash(scene), isostat.Scene))
+        self.assertEqual(value_text(float("-inf")), "-inf")
 
     def test_single_keys_go_over_it(self):
         scene = isostat.Scene(TEXT, set={"motion.damping": np.float64(0.05), "specimen.pressure": "100 kPa"})

@@ -64,9 +64,17 @@ class SnapshotTest(ToleranceTest):
             np.testing.assert_array_equal(isostat.read_snapshot(path).radii, again.radii)
             text = pathlib.Path(folder) / "three.txt"
             text.write_text("\n".join(" ".join(f"{v!r}" for v in [*x, R]) for x in CENTRES.tolist()) + "\n")
-            np.testing.assert_array_equal(isostat.import_tables(str(text)).positions, CENTRES)
-            isostat.write_vtp(str(pathlib.Path(folder) / "three.vtp"), again)
-            self.assertIn("PolyData", (pathlib.Path(folder) / "three.vtp").read_text()[:200])
+            with self.assertWarnsRegex(UserWarning, "overlap by 10 %"):
+                np.testing.assert_array_equal(isostat.import_tables(str(text)).positions, CENTRES)
+            drawn = pathlib.Path(folder) / "three.vtp"
+            for write in (isostat.write_vtp, isostat.write_force_chains_vtp):
+                write(str(drawn), again, overwrite=True)
+                self.assertIn("PolyData", drawn.read_text()[:200])
+                with self.assertRaisesRegex(isostat.InputError, "three.vtp: the file exists"):
+                    write(drawn, again)
+            text.write_text("0 0 0 0.6\n2 0 0 0.6\n", encoding="utf-8")
+            with self.assertRaisesRegex(isostat.InputError, "largest radius.*length_unit"):
+                isostat.import_tables(text)
 
     def test_packings_of_other_programs(self):
         small = isostat.Snapshot.from_spheres(CENTRES, [R] * 3, cell=R * np.array([[5, 0.5, 0], [0, 5, 0], [0, 0, 5]]))
@@ -98,6 +106,14 @@ class SnapshotTest(ToleranceTest):
                                  ((CENTRES[:, :2], [R, R, R]), r"shape \(n, 3\)")):
             with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
                 make(*arguments, box=BOX)
+        for bad in ({"density": 0}, {"density": float("nan")}):
+            with self.subTest(bad), self.assertRaisesRegex(isostat.InputError, "density"):
+                make(CENTRES, [R] * 3, box=BOX, **bad)
+        for radius, words in ((float("inf"), "sphere 0"), (5.0, "smaller than the spheres")):
+            with self.subTest(radius), self.assertRaisesRegex(isostat.InputError, words):
+                make(CENTRES, [radius] * 3, box=BOX)
+        with self.assertRaisesRegex(isostat.InputError, "cell"):
+            make(CENTRES, [R] * 3, cell=[1, 1, float("inf")])
         with self.assertRaisesRegex(isostat.InputError, "either box"):
             make(CENTRES, [R, R, R])
         with self.assertRaisesRegex(isostat.InputError, "lower < upper"):

@@ -11,7 +11,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BINARIES = pathlib.Path(sys.argv.pop(1)).resolve()
-PARTS = ("CMakeLists.txt", "LICENSE", "README.md", "apps/figures", "pyproject.toml", "python", "setup.py")
+PARTS = ("CMakeLists.txt", "LICENSE", "README.md", "apps/figures", "apps/report", "pyproject.toml", "python",
+         "setup.py")
 OFFLINE = ("--no-index", "--no-deps", "--disable-pip-version-check", "--quiet")
 
 PROGRAM = """

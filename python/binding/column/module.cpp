@@ -126,7 +126,9 @@ PYBIND11_MODULE(_column, module)
       .def_property_readonly(
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")
-      .def("__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; })
+      .def(
+          "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
+      .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })
       .def("__str__", [](const ColumnScene &scene) { return to_toml(scene); });
   module.def("run", &python::run);
   module.def("wave_moduli", &python::wave_moduli);

@@ -12,10 +12,10 @@ namespace isostat::python
 {
 namespace
 {
-/// A read-only array (n, columns...) over values that live as long as the call.
-py::array_t<double> borrowed(const double *first, std::vector<py::ssize_t> shape)
+/// A read-only array (n, columns...) with a copy of the values: a law may keep it.
+py::array_t<double> copied(const double *first, std::vector<py::ssize_t> shape)
 {
-  py::array_t<double> array(std::move(shape), first, py::none());
+  py::array_t<double> array(std::move(shape), first);
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
@@ -69,8 +69,7 @@ PythonMaterial::Array PythonMaterial::shaped(const py::object &value, const char
 void PythonMaterial::set_initial_stress(std::span<const Stress> effective)
 {
   const py::gil_scoped_acquire gil;
-  committed_ =
-      frozen(law_.attr("initial")(borrowed(effective.front().data(), {static_cast<py::ssize_t>(n_points_), 6})));
+  committed_ = frozen(law_.attr("initial")(copied(effective.front().data(), {static_cast<py::ssize_t>(n_points_), 6})));
   trial_ = py::none();
 }
 
@@ -78,7 +77,7 @@ void PythonMaterial::trial(std::span<const Gradient> increments, std::span<Stres
 {
   const py::gil_scoped_acquire gil;
   const py::object answer =
-      law_.attr("update")(committed_, borrowed(increments.front().data(), {static_cast<py::ssize_t>(n_points_), 3, 3}));
+      law_.attr("update")(committed_, copied(increments.front().data(), {static_cast<py::ssize_t>(n_points_), 3, 3}));
   if (!py::isinstance<py::tuple>(answer) || py::len(answer) != 2)
     throw InputError(fmt::format("material of layer \"{}\": update() must return (stress, state).", layer_));
   const auto both = answer.cast<py::tuple>();

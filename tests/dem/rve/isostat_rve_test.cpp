@@ -275,11 +275,11 @@ TEST_F(IsostatRve, WrongSettingsAreRefused)
     EXPECT_EQ(none, nullptr);
   };
   for (const double bad : {0.0, -1.0, 1.0, not_a_number})
-    refused(&isostat_rve_settings::inertial_number, bad, "settings.inertial_number = ");
+    refused(&isostat_rve_settings::inertial_number, bad, "inertial_number = ");
   for (const double bad : {-1.0, not_a_number, std::numeric_limits<double>::infinity()})
-    refused(&isostat_rve_settings::strain_rate, bad, "settings.strain_rate = ");
+    refused(&isostat_rve_settings::strain_rate, bad, "strain_rate = ");
   for (const double bad : {-0.1, 1.0, not_a_number})
-    refused(&isostat_rve_settings::damping, bad, "settings.damping = ");
+    refused(&isostat_rve_settings::damping, bad, "damping = ");
   for (const double bad : {0.0, 0.2, not_a_number})
     refused(&isostat_rve_settings::max_increment, bad, "max_increment = ");
   refused(&isostat_rve_settings::min_steps, uint64_t{0}, "min_steps");

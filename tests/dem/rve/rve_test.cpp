@@ -294,6 +294,24 @@ TEST(Rve, StateIsSmall)
   EXPECT_LE(at_five, 400);
 }
 
+TEST(Rve, AnInterruptThatLastsTakesTheIncrementBack)
+{
+  bool stop = false;
+  RveSettings asked;
+  asked.min_steps = 120;
+  asked.go_on = [&stop] { return !stop; };
+  Rve rve(specimen(), asked), other(specimen(), asked);
+  for (Rve *each : {&rve, &other})
+    ASSERT_EQ(each->advance(simple_shear(2e-5)).outcome, RveOutcome::accepted);
+  const Mat3 before = rve.stress();
+  stop = true; // also while the increments since the last copy are run again
+  const RveResponse interrupted = rve.advance(simple_shear(1e-4));
+  stop = false;
+  EXPECT_EQ(interrupted.outcome, RveOutcome::rejected);
+  EXPECT_EQ(rve.stress(), before);
+  EXPECT_EQ(rve.advance(simple_shear(3e-5)).stress, other.advance(simple_shear(3e-5)).stress);
+}
+
 TEST(Rve, SettingsAreChecked)
 {
   RveSettings mirrored;
@@ -303,5 +321,18 @@ TEST(Rve, SettingsAreChecked)
   huge.max_increment = 1;
   EXPECT_THROW(Rve(specimen(), huge), InputError);
   EXPECT_THROW(Rve(test::specimen(200, 8), {}), InputError);
+  for (double MotionSpec::*number : {&MotionSpec::damping, &MotionSpec::contact_damping, &MotionSpec::time_step_safety})
+    for (const double bad : {-0.5, 1.5, std::nan("")})
+      {
+        RveSettings wrong;
+        wrong.motion.*number = bad;
+        EXPECT_THROW(Rve(specimen(), wrong), InputError) << bad;
+      }
+  for (std::optional<double> MotionSpec::*number : {&MotionSpec::inertial_number, &MotionSpec::strain_rate})
+    {
+      RveSettings wrong;
+      wrong.motion.*number = -1e-3;
+      EXPECT_THROW(Rve(specimen(), wrong), InputError);
+    }
 }
 } // namespace isostat
