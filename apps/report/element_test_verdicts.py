@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
+import re
+
 import numpy as np
 
 from figures.common import LIQUEFIED
@@ -7,6 +9,8 @@ from figures.column_results import quantity
 
 SERVO = ("compress", "rebalance", "hold", "k0-compress")
 REACHED = 1 - 1e-6  # of a strain: rows have ten digits
+# From where on a test counts as fast, docs/user_guide.md#choosing-the-rate: inertial number, largest indicator.
+FAST_INERTIA, FAST_INDICATOR = 1e-3, 0.2
 
 
 def stage_rows(run, number):
@@ -86,17 +90,46 @@ def liquefaction(results, run):
                                  f"{np.nanmin(run.p_ratio):.3f}."), "plain"
 
 
-def rate(scene):
-    """Whether the rate of the stages that shear was left to the control, or fixed."""
+def said(results, name):
+    """What a line of the summary says, or nothing."""
+    found = re.search(rf"^  {name}\s+(\S.*?)\s*$", results.summary, re.M)
+    return found[1] if found else ""
+
+
+def how_driven(scene, summary):
+    """Whether the rate of the stages that shear was left to the control, or fixed; None if there is no such stage.
+    @param summary  what the summary says of the rate: inertial numbers, and the bound on the load where there is one"""
     common = scene.get("motion", {}).get("strain_rate")
     rates = [stage.get("strain_rate", common) for stage in scene.get("stage", [])
              if "strain" in stage or "until" in stage]
     fixed = sorted(set(rates) - {None})
     if fixed:
-        which = "in some stages; in the others controlled" if None in rates else "not controlled"
-        yield "Rate:", f"fixed at {', '.join(fixed)}, {which}.", "plain"
-    elif rates:
-        yield "Rate:", "controlled, by the inertial number and by the load that a wave time may add.", "good"
+        which = f"in some stages; in the others controlled: {summary}" if None in rates else "not controlled"
+        return f"fixed at {', '.join(fixed)}, {which}.", "plain"
+    return (f"controlled, {summary}." if summary else "controlled.", "good") if rates else None
+
+
+def rate(results):
+    """How the stages that shear were driven, and how far from equilibrium that has brought the packing."""
+    summary, largest = said(results, "strain rate"), said(results, "largest indicator")
+    driven = how_driven(results.scene, summary)
+    if not driven:
+        return
+    text, kind = driven
+    if not largest:
+        yield "Rate:", text, "plain"
+        return
+    eta, fast = float(largest.split()[0]), []
+    if any(float(number) > FAST_INERTIA for number in re.findall(r"\bI = ([\d.e+-]+)", summary)):
+        fast.append(f"I is above {FAST_INERTIA:g}")
+    if eta > FAST_INDICATOR:
+        fast.append(f"the indicator is above {FAST_INDICATOR:g}")
+    text += f" The largest quasi-static indicator before liquefaction is {eta:g}"
+    if fast:
+        yield "Rate:", text + (f"; {' and '.join(fast)}, so the test counts as fast. Compare it with one at a tenth of "
+                               "the rate."), "attention"
+    else:
+        yield "Rate:", f"{text}; above {FAST_INDICATOR:g} a test counts as fast.", kind
 
 
 def tolerances(results):
@@ -126,4 +159,4 @@ def lines(results, run):
     found = []
     if run is not None:
         found += [*endings(results.scene, run), *liquefaction(results, run)]
-    return [*found, *rate(results.scene), *tolerances(results)]
+    return [*found, *rate(results), *tolerances(results)]
