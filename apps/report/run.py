@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of a run: verdicts, summary, figures, scene, provenance, how to go on and how to cite, on one page."""
 import importlib
+import json
 import re
 
 from figures.common import BadInput, note
 from figures.drawing import fitting
 
 from . import citation, html, verdicts
-from .folder import NoResults, Results
+from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named
 
 REPORT = "report.html"
@@ -54,25 +55,36 @@ def summary_parts(results):
     return [html.properties(pairs)] if pairs and all(pairs) else [html.text_block("\n".join(lines), "summary")]
 
 
+def calls(results):
+    """How to go on with the run, and how to run its scene again: as it was started, from a shell or from Python."""
+    function = results.command.split()[0]
+    if function not in IN_PYTHON:
+        command = results.command.replace(" --overwrite", "")
+        return (command if "--resume" in command else command + " --resume",
+                f"{results.program} scene.toml --output results/again")
+    function, folder = function.removesuffix("()"), json.dumps(results.path.as_posix(), ensure_ascii=False)
+    return f"{function}(scene, {folder}, resume=True)", f'{function}(scene, "results/again")'
+
+
 def resume_parts(results):
     """How to go on and how to repeat the run, as far as its files tell."""
     program, command = results.program, results.command.replace(" --overwrite", "")
     parts = []
     if not command:
         return parts
+    resumed, again = calls(results)
     if program in KEPT:
         parts += [html.paragraph("What has been computed is kept. The same command goes on with what is missing:"),
                   html.text_block(command, "command")]
     elif program in RESUMED and results.has_checkpoint:
         ended = "" if results.numbers is None else " The run has ended; this repeats what came after that checkpoint."
-        words = command if "--resume" in command else command + " --resume"
         parts += [html.paragraph("From the newest checkpoint, to the same bits, with the options of the first call."
-                                 + ended), html.text_block(words, "command")]
+                                 + ended), html.text_block(resumed, "command")]
     elif program in RESUMED and results.numbers is not None:
         parts.append(html.paragraph("The run has ended and has left no checkpoint; there is nothing to resume."))
     if program not in KEPT and results.scene_text and program != "rve_replay":
         parts += [html.paragraph("The same run again, from the scene below, in another folder:"),
-                  html.text_block(f"{program} scene.toml --output results/again", "command")]
+                  html.text_block(again, "command")]
     return parts
 
 

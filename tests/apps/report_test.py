@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs."""
+import html
 import pathlib
 import re
 import shutil
@@ -12,7 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures import element_test, soil_column  # noqa: E402  (the path comes first)
 from figures.common import plt  # noqa: E402
 from report import narrow  # noqa: E402
-from report.run import captions  # noqa: E402
+from report.folder import find_results  # noqa: E402
+from report.run import calls, captions  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
 from support import BIN, CYCLIC, PATIENCE, main, tiny_scene  # noqa: E402
 
@@ -99,6 +101,8 @@ class Reports(ReportTest):
         super().setUpClass()
         cls.said = cls.make_test("cyclic", output='checkpoint = "0.001 s"', stages=CYCLIC.format(steps=2000))
         cls.make_test("whole", motion="damping = 0.2", stages=MONOTONIC)
+        cls.make_test("fast", "--set", "contact.young=10 GPa", "--set", "stage.0.deviator_amplitude=60 kPa",
+                      motion="inertial_number = 0.02\nload_per_wave = 0", stages=CYCLIC.format(steps=20000))
 
     def test_cyclic(self):
         words = self.assert_whole("cyclic")
@@ -114,8 +118,35 @@ class Reports(ReportTest):
     def test_target(self):
         words = self.assert_whole("whole")
         self.assertIn("Stage 0, undrained-monotonic: ended at its target, axial strain of 0.1 %.", words)
-        self.assertIn("Rate: controlled", words)
+        self.assertIn("Rate: controlled, I = 4e-05 at p0', or less: the load changes by 10 % of p0' at most", words)
+        self.assertRegex(words, r"largest quasi-static indicator before liquefaction is [0-9.]+; above 0\.2 a test")
+        self.assertIn('<li class="good"><strong>Rate:', self.report("whole"))
         self.assertIn("Not liquefied:", words)
+
+    def test_a_fast_test_asks_for_attention(self):
+        """Its verdict has the indicator of the summary, and no bound on the load where there is none."""
+        words = self.assert_whole("fast")
+        verdict = re.search(r"Rate: .*? of the rate\.", words)[0]
+        self.assertIn("I is above 0.001 and the indicator is above 0.2, so the test counts as fast.", verdict)
+        self.assertIn("controlled, I = 0.02 at p0'.", verdict)
+        self.assertNotIn("load", verdict)
+        largest = float(re.search(r"indicator before liquefaction is ([0-9.]+);", verdict)[1])
+        self.assertIn(f"largest indicator {largest:.4f} (recorded", words)
+        self.assertIn('<li class="attention"><strong>Rate:', self.report("fast"))
+
+    def test_started_from_python(self):
+        """What goes on and what repeats are calls, not commands of a shell."""
+        shutil.copytree(self.runs / "cyclic", self.folder / "out")
+        provenance = self.folder / "out/provenance.txt"
+        for function in ("isostat.column.run", "isostat.run"):
+            text = provenance.read_text(encoding="utf-8")
+            provenance.write_text(re.sub(r"(?m)^(command\s+).*$", rf"\1{function}() in Python", text), encoding="utf-8")
+            self.assertEqual(calls(find_results(self.folder / "out")), (
+                f'{function}(scene, "{self.folder}/out", resume=True)', f'{function}(scene, "results/again")'))
+        self.assert_done(self.run_app("isostat", "report", "out"))
+        text = html.unescape((self.folder / "out/report.html").read_text(encoding="utf-8"))
+        self.assertIn('>isostat.run(scene, "out", resume=True)<', text)
+        self.assertNotIn("in Python --resume", text)
 
     def test_without(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=300)))
