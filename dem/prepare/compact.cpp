@@ -66,7 +66,11 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation
     start.cell = PeriodicCell::with_edges(cloud.box.edges());
   start.law = law;
   const double pressure = specimen.consolidation == "k0" ? k0_start * specimen.pressure : specimen.pressure;
-  return run_stage(start, servo_stage<Compress>(pressure, compressed_balance), specimen.damping, how);
+  Compress stage;
+  stage.of_cloud = true;
+  stage.pressure = pressure;
+  stage.balance = compressed_balance;
+  return run_stage(start, stage, specimen.damping, how);
 }
 
 Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how)

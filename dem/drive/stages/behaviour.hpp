@@ -29,7 +29,7 @@ struct Verdict
 struct ServoSpec
 {
   double pressure = 200e3;     ///< p0'; consolidated without lateral strain: the vertical effective stress, Pa
-  double compaction_rate = 30; ///< strain-rate ceiling of the servo while the cloud is compacted, 1/s
+  double compaction_rate = 60; ///< strain-rate ceiling of the servo while the cloud is compacted, 1/s
 
   bool operator==(const ServoSpec &) const = default;
 };

@@ -40,10 +40,21 @@ bool ServoStage::on_target(const StageContext &c) const
   return stress_error(c.assembly, target(c), axes()) < stress_tolerance();
 }
 
-/// Bound on the strain rate: the approach is fast, the last of the pressure slow.
+/// A packing that carries load is brought on slowly.
+double ServoStage::rate_share(double reached) const { return reached < 0.05 ? 0.5 : 0.125; }
+
+/// Grains that fly knock at walls and each other long before they carry load: up to half of the pressure may be of
+/// impacts, and slowing down for it only lengthens the flight (docs/theory.md, section 7).
+double Compress::rate_share(double reached) const
+{
+  if (!of_cloud)
+    return ServoStage::rate_share(reached);
+  return reached < 0.5 ? 1.0 : 0.5;
+}
+
 double ServoStage::rate_cap(const StageContext &c, const Observation &seen) const
 {
-  return c.servo.compaction_rate * (seen.p < 0.05 * target(c)[0] ? 1.0 : 0.25);
+  return c.servo.compaction_rate * rate_share(seen.p / target(c)[0]);
 }
 
 RigidBox ServoStage::next_box(const StageContext &c, const Observation &seen) const

@@ -59,6 +59,8 @@ public:
 protected:
   bool on_target(const StageContext &c) const final;
   virtual double stress_tolerance() const { return 0.002; } ///< relative, on each stress at the end
+  /// Bound on the strain rate as a share of ServoSpec::compaction_rate.   @param reached  p over its target
+  virtual double rate_share(double reached) const;
 
 private:
   Vec3 target(const StageContext &c) const { return Vec3::Constant(pressure > 0 ? pressure : c.servo.pressure); }
@@ -71,8 +73,13 @@ class Compress : public ServoStage
 public:
   const char *kind() const override { return "compress"; }
 
+  bool of_cloud = false; ///< it makes a packing of a cloud (dem/prepare): no stage of a scene does
+
+  bool operator==(const Compress &) const = default;
+
 protected:
   double stress_tolerance() const override { return 0.01; }
+  double rate_share(double reached) const override;
 };
 
 /// Keeps the isotropic pressure until the forces are in balance.
