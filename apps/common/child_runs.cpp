@@ -19,11 +19,11 @@ constexpr double patience = 30;        ///< s that a helper waits for somebody t
 constexpr double revival_interval = 2; ///< s between looks for runs whose process has died
 
 /// The runs of a queue that this process does.
-class Bench
+class Worker
 {
 public:
   /// @param gives_back  a run that was stopped is left to another process; else it counts as ended
-  Bench(const RunPool &pool, bool gives_back)
+  Worker(const RunPool &pool, bool gives_back)
       : queue_(pool.queue), jobs_(static_cast<std::size_t>(pool.jobs)), gives_back_(gives_back)
   {}
   bool idle() const { return running_.empty(); }
@@ -84,8 +84,9 @@ std::string await_session(const TaskQueue &queue, const fs::path &folder)
   const std::string earlier = queue.last_session();
   for (const Stopwatch watch; watch.seconds() < patience && !stop_requested(); rest())
     {
+      const bool begun = queue.last_session() != earlier; // looked at first: by now it is open, or it is over
       const std::string session = queue.open_session();
-      if (!session.empty() || queue.last_session() != earlier)
+      if (!session.empty() || begun)
         return session;
     }
   if (stop_requested())
@@ -102,18 +103,18 @@ bool run_children(const RunPool &pool, const std::vector<ChildRun> &runs, const 
   std::map<std::size_t, std::size_t> index; // by number in the queue
   for (std::size_t k = 0; k < runs.size(); ++k)
     index[queue.post(runs[k])] = k;
-  Bench bench(pool, false);
+  Worker own(pool, false);
   Stopwatch since_revival;
-  for (std::size_t left = runs.size(); left > 0 && !(stop_requested() && bench.idle()); rest())
+  for (std::size_t left = runs.size(); left > 0 && !(stop_requested() && own.idle()); rest())
     {
       if (stop_requested())
         {
           queue.withdraw();
-          bench.stop();
+          own.stop();
         }
       else
-        bench.start();
-      bench.finish_ended();
+        own.start();
+      own.finish_ended();
       for (const auto &[number, done] : queue.take_done())
         {
           events.finished(index.at(number), done.code, done.seconds);
@@ -136,19 +137,19 @@ std::size_t help_with_runs(const fs::path &queue_folder, int jobs)
 {
   TaskQueue queue(queue_folder);
   const std::string session = await_session(queue, queue_folder);
-  Bench bench({queue, jobs}, true);
-  for (bool open = !session.empty(); open || !bench.idle(); rest())
+  Worker worker({queue, jobs}, true);
+  for (bool open = !session.empty(); open || !worker.idle(); rest())
     {
       open = open && !stop_requested() && queue.open_session() == session;
       if (open)
-        bench.start();
+        worker.start();
       else
-        bench.stop();
-      bench.finish_ended();
+        worker.stop();
+      worker.finish_ended();
     }
   if (stop_requested())
     throw Interrupted("interrupted; what has been run is kept");
-  return bench.n_done();
+  return worker.n_done();
 }
 
 int launch_rank()
