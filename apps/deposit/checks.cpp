@@ -108,7 +108,8 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
   if (scene.analysis.kind == AnalysisKind::consolidation)
     document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
                               "\"dynamic\", or layers another material.");
-  check_packings(document, "grains", scene.grains);
+  if (scene.needs_common_library())
+    check_packings(document, "grains", scene.grains);
   check_depths(document, scene, "grains.path_depths", scene.grain_output.path_depths);
   check_depths(document, scene, "grains.snapshot_depths", scene.grain_output.snapshot_depths);
 }

@@ -28,6 +28,16 @@ void find_motion_files(const SceneDocument &document, const std::string &path, C
       scene.motions[i].file = found_file(document, fmt::format("motion.{}.file", i), path, scene.motions[i].file);
 }
 
+/// Those that layers of grains are made of.
+void find_libraries(const SceneDocument &document, const std::string &path, ColumnScene &scene)
+{
+  if (scene.needs_common_library())
+    scene.grains.library = found_file(document, "grains.library", path, scene.grains.library);
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (std::string &library = scene.layers[k].grains.library; !library.empty())
+      library = found_file(document, fmt::format("layer.{}.library", k), path, library);
+}
+
 Motion motion_of(const ColumnMotion &motion)
 {
   switch (motion.kind)
@@ -88,6 +98,13 @@ bool ColumnScene::has_grains() const
                      [](const ColumnLayer &layer) { return layer.material == LayerMaterial::grains; });
 }
 
+bool ColumnScene::needs_common_library() const
+{
+  return std::any_of(layers.begin(), layers.end(), [](const ColumnLayer &layer) {
+    return layer.material == LayerMaterial::grains && layer.grains.library.empty();
+  });
+}
+
 RveMaterialSettings ColumnScene::packings(int threads) const
 {
   RveMaterialSettings settings = grains;
@@ -125,8 +142,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   const SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
   ColumnScene scene = checked_scene(document);
   find_motion_files(document, path, scene);
-  if (scene.has_grains())
-    scene.grains.library = found_file(document, "grains.library", path, scene.grains.library);
+  find_libraries(document, path, scene);
   if (scene.output.folder.empty())
     scene.output.folder = results_folder(path);
   return scene;

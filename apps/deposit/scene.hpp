@@ -186,6 +186,7 @@ struct ColumnScene
 
   double height() const; ///< that of soil_profile(), m
   bool has_grains() const;
+  bool needs_common_library() const;               ///< a layer of grains names none of its own
   RveMaterialSettings packings(int threads) const; ///< `grains` with the drainage of the scene
 
   bool operator==(const ColumnScene &) const = default; ///< bit for bit, every field

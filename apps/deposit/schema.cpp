@@ -301,6 +301,12 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.output.spectrum_damping; }},
 };
 
+constexpr Key sand_keys[] = {
+  {.path = "layer.library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5", .kinds = grains,
+   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.library; }},
+};
+
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
 
 constexpr Dimension dimensions[] = {
@@ -335,6 +341,7 @@ const SceneSchema &column_schema()
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
+      sand_keys,
       loading_keys,
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
       result_keys};

@@ -78,9 +78,7 @@ void RveMaterial::make(const std::function<Rve(std::size_t)> &maker)
 InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const
 {
   InSituStart start(settings_.motion, settings_.in_situ, cache);
-  std::optional<NearestSpecimens> library;
-  if (!requests_.empty())
-    library.emplace(settings_.library);
+  std::map<std::string, NearestSpecimens> libraries; // by file
   for (std::size_t id = 0; id < batch_.size(); ++id)
     {
       if (!batch_.is_mine(id))
@@ -88,11 +86,13 @@ InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const
       const std::size_t point = points().point_of(id);
       const Mat3 target = column_frame().transpose() * to_matrix(effective[point]) * column_frame();
       std::shared_ptr<const StartingSpecimen> specimen;
-      if (library)
+      if (!requests_.empty())
         {
           SpecimenRequest request = requests_[point];
           request.realisation += id % settings_.realisations;
-          specimen = library->find(request, -target(1, 1), -0.5 * (target(0, 0) + target(2, 2)));
+          const std::string &file = request.library.empty() ? settings_.library : request.library;
+          NearestSpecimens &library = libraries.try_emplace(file, file).first->second;
+          specimen = library.find(request, -target(1, 1), -0.5 * (target(0, 0) + target(2, 2)));
         }
       else
         specimen =

@@ -33,7 +33,7 @@ struct RveMaterialCost
 class RveMaterial : public Material
 {
 public:
-  /// set_initial_stress() makes the elements, from a library of specimens.
+  /// set_initial_stress() makes the elements, from a library of specimens, or one for each sand.
   RveMaterial(std::vector<SpecimenRequest> points, const RveMaterialSettings &settings, MPI_Comm comm);
   /// Elements as they are, one specimen each, by id; periodic, in their own axes (y vertical).
   RveMaterial(const std::vector<Snapshot> &specimens, const RveMaterialSettings &settings, MPI_Comm comm);

@@ -14,6 +14,7 @@ struct SpecimenRequest
   /// D_r of the soil [-]; left out: the library holds one density only. The library's nearest one is taken.
   std::optional<double> relative_density;
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
+  std::string library = {};    ///< file with the specimens of this sand; empty: that of RveMaterialSettings
 
   bool operator==(const SpecimenRequest &) const = default;
 };

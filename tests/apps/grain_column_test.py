@@ -156,6 +156,32 @@ class Bits(GrainColumnTest):
         self.assert_same_bytes("whole", "parts")
 
 
+class Sands(GrainColumnTest):
+    """Two layers of different sands, each from a library of its own."""
+
+    def test_each_layer_has_its_own_packings(self):
+        self.assert_done(self.run_app(
+            "specimen_library", SPECIMENS, "-o", self.cache / "stiff.h5", "--pressures", "30 kPa", "-q",
+            *settings(grading__grains=300, grading__cloud_edge="3.107 mm", specimen__density_tolerance=0.04,
+                      contact__young="1 GPa")))
+        layer = GRAINS[GRAINS.index("[[layer]]"):GRAINS.index("[grains]")].replace("3 m", "1.5 m").replace("= 5", "= 3")
+        stiff = layer + f'library = "{self.cache}/stiff.h5"\n'
+        text = GRAINS.replace(GRAINS[GRAINS.index("[[layer]]"):GRAINS.index("[grains]")], layer + stiff)
+        scene = self.write("sands.toml", text.format(cache=self.cache))
+        short = settings(analysis__duration="0.05 s")
+        self.assert_done(self.run_column(scene, "-o", "one", "-q", *short))
+        self.assert_done(self.run_on_ranks(2, scene, "-o", "two", "-q", *short))
+        self.assert_same_bytes("one", "two")
+        for depth, grains in (("d0", 250), ("d1", 300)):
+            with h5py.File(self.folder / f"one/grains/{depth}_00000.h5") as file:
+                self.assertEqual(len(file["snapshot/grains/mass"]), grains)
+        own = text.replace(layer + stiff, stiff + stiff).replace('library = "{cache}/library.h5"\n', "")
+        scene = self.write("own.toml", own.format(cache=self.cache))
+        self.assert_done(self.run_column(scene, "--validate"))
+        result = self.run_column(scene, "-o", "out", *settings(layer__1__library="nowhere.h5"))
+        self.assert_refused(result, "layer.1.library", "nowhere.h5", "is not there")
+
+
 class Rest(GrainColumnTest):
     """10,000 steps without motion."""
 

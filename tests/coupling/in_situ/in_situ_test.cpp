@@ -105,6 +105,35 @@ TEST_F(InSitu, GivenElementsGoToTheirStressToo)
   EXPECT_NEAR_BECAUSE(material.element(0)->stress()(2, 2), -120e3, 1200, "what set_initial_stress() promises");
 }
 
+TEST_F(InSitu, PointsMayBeOfOtherSands)
+{
+  LibraryWriter writer = LibraryWriter::create(folder / "coarse.h5");
+  test::CellRecipe coarse = test::soft_recipe(4, 100e3);
+  coarse.grading = test::small_grading(250);
+  coarse.law->young = 1e9;
+  Specimen specimen;
+  specimen.state = test::prepare_in_cell(coarse);
+  specimen.numbers = {{"seed", 4}, {"relative_density", 0.5}, {"vertical_stress_Pa", 100e3}, {"K0", 1.0}};
+  writer.add(writer.next_name(), specimen);
+  writer.commit();
+  const std::vector<SpecimenRequest> requests = {{0.5, 0}, {0.5, 0, folder / "coarse.h5"}, {0.5, 0}};
+  const std::vector<Stress> target(3, test::in_situ(90e3, 0.8));
+  RveMaterial both(requests, settings, MPI_COMM_SELF), again(requests, settings, MPI_COMM_SELF);
+  both.set_initial_stress(target);
+  for (const std::size_t point : {0, 1, 2})
+    {
+      const Assembly &assembly = both.element(point)->assembly();
+      EXPECT_EQ(assembly.packing().n_grains(), point == 1 ? 250u : 200u);
+      EXPECT_EQ(assembly.law()->young, point == 1 ? 1e9 : 5e8);
+    }
+  EXPECT_EQ(list_library(settings.cache).size(), 2u) << "equal points share their state in situ";
+  again.unpack(both.pack());
+  std::vector<Stress> one(3), other(3);
+  both.trial(test::column_increments(3, 1), one);
+  again.trial(test::column_increments(3, 1), other);
+  EXPECT_EQ(one, other);
+}
+
 TEST_F(InSitu, WhatCannotBeIsSaid)
 {
   RveMaterial material(std::vector<SpecimenRequest>(2), settings, MPI_COMM_SELF);
