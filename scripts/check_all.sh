@@ -7,6 +7,7 @@
 #   scripts/check_all.sh [--grains] GATE...    only these of the gates
 #
 #   format      clang-format on every file
+#   docs        scripts/docs.sh on the release preset: the site without a warning, no link that leads nowhere
 #   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on what the last ten commits have
 #               touched: a source takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of
 #               its rules in each of them
@@ -26,10 +27,14 @@ if [[ "${1:-}" == --grains ]]; then
   shift
 fi
 gates=("$@")
-((${#gates[@]})) || gates=(format tidy sanitizers)
+((${#gates[@]})) || gates=(format docs tidy sanitizers)
 
 format() {
   git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
+}
+
+docs() {
+  scripts/setup.sh --docs && scripts/docs.sh
 }
 
 # Sources of the folders: all, or of the grains those of the last ten commits that are still there.
