@@ -41,9 +41,9 @@ public:
       {
         const std::lock_guard guard(mutex_);
         for (auto task = left_.begin(); task != left_.end(); ++task)
-          if (FileLock lock = FileLock::attempt(lock_file(**task)))
+          if (std::optional<FileLock> lock = lock_of(**task))
             {
-              std::pair<Task *, FileLock> taken{*task, std::move(lock)};
+              std::pair<Task *, FileLock> taken{*task, std::move(*lock)};
               left_.erase(task);
               return taken;
             }
@@ -91,6 +91,20 @@ private:
     Hash hash;
     hash.text(specimen_recipe(task.scene));
     return cache_ / fmt::format("{:016x}.lock", hash.value());
+  }
+
+  /// Nothing if another process prepares it. A cache that cannot be written has no locks: it may hold the specimen.
+  std::optional<FileLock> lock_of(const Task &task) const
+  {
+    try
+      {
+        FileLock lock = FileLock::attempt(lock_file(task));
+        return lock ? std::optional(std::move(lock)) : std::nullopt;
+      }
+    catch (const RunFailure &)
+      {
+        return FileLock();
+      }
   }
 
   std::mutex mutex_;

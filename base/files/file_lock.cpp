@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files/file_lock.hpp"
 
+#include "base/error.hpp"
+
+#include <cstring>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -17,6 +21,8 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
 {
   const int flags = missing == MissingFile::create ? O_CREAT : 0;
   FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
+  if (!lock && missing == MissingFile::create)
+    throw RunFailure(fmt::format("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno)));
   return lock && flock(lock.file_, LOCK_EX | LOCK_NB) == 0 ? std::move(lock) : FileLock();
 }
 

@@ -26,8 +26,8 @@ public:
   }
   ~FileLock();
 
-  /// The lock, or none if another holder has it or the file cannot be opened for writing. Children that become another
-  /// program do not inherit it.
+  /// The lock, or none if another holder has it, or (no_lock) the file is not there. Children that become another
+  /// program do not inherit it.   @throws RunFailure  the file cannot be made or opened for writing (create)
   static FileLock attempt(const std::filesystem::path &file, MissingFile missing = MissingFile::create);
 
   explicit operator bool() const { return file_ >= 0; }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files/file_lock.hpp"
 
+#include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,6 +30,14 @@ TEST(FileLock, HasOneHolderAndEndsWithIt)
   }
   EXPECT_TRUE(is_unlocked(path));
   std::filesystem::remove(path);
+}
+
+TEST(FileLock, SaysWhyAFileCannotBeLocked)
+{
+  const std::filesystem::path nowhere = path / "of" / "nothing";
+  EXPECT_FALSE(FileLock::attempt(nowhere, FileLock::MissingFile::no_lock));
+  EXPECT_THAT(message_of<RunFailure>([&] { FileLock::attempt(nowhere); }),
+              testing::HasSubstr("nothing: cannot be opened for writing: No such file"));
 }
 
 TEST(FileLock, LastsAsLongAsAnyProcessHasTheFileOpen)
