@@ -8,6 +8,7 @@ import pathlib
 import re
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -15,13 +16,13 @@ from isostat import _core
 from isostat.scene import Scene
 
 
-class History(collections.abc.Mapping):
+class History(collections.abc.Mapping[str, np.ndarray]):
     """Columns by name, in SI, compression positive: history["p"]. `units` has their units."""
 
-    def __init__(self, columns, units):
+    def __init__(self, columns: dict[str, np.ndarray], units: dict[str, str]):
         self._columns, self.units = dict(columns), dict(units)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> np.ndarray:
         try:
             return self._columns[name]
         except KeyError:
@@ -38,7 +39,7 @@ class History(collections.abc.Mapping):
         rows = len(next(iter(self._columns.values()), ()))
         return f"<isostat.History of {rows} rows: {', '.join(self._columns)}>"
 
-    def to_pandas(self):
+    def to_pandas(self) -> Any:
         """A DataFrame; its attrs["units"] has the units. Needs pandas."""
         import pandas  # only who asks for it needs it
 
@@ -47,7 +48,7 @@ class History(collections.abc.Mapping):
         return frame
 
 
-def read_table(path):
+def read_table(path: str | os.PathLike[str]) -> History:
     """A CSV table whose header has `name (unit)`, as a History."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
@@ -60,7 +61,7 @@ def read_table(path):
                    {name: unit or "-" for name, unit in zip(names, units)})
 
 
-def draw(folder, name, program="element_test"):
+def draw(folder: str | os.PathLike[str], name: str, program: str = "element_test") -> list[Any]:
     """Draws one of the figures that a program leaves, fig_redundancy say, and returns its axes.
 
     isostat.draw("results/mine", "fig_redundancy")[0].figure.savefig("mine.pdf"). Needs matplotlib.
@@ -92,26 +93,28 @@ class Results:
     history     History                            scene       Scene, with every key resolved
     summary     numbers of summary.json            snapshots   paths of the stored packings; packing(k) reads one
     provenance  text: version, compiler, seed ...  finished    whether the run came to its end
+    snapshot    the packing at the end, where run() gave this; else None
 
     A run that is under way or was interrupted has a history as far as it came; its summary is None, finished False.
     """
 
     program = "element_test"
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | os.PathLike[str]):
         self.folder = pathlib.Path(folder)
         if not (self.folder / "history.csv").is_file():
             raise _core.InputError(f"{self.folder}: holds no history.csv. Give the folder of a run of element_test.")
         self.history = read_table(self.folder / "history.csv")
+        self.snapshot: _core.Snapshot | None = None
         self.snapshots = sorted((self.folder / "snapshots").glob("snapshot_*.h5"))
 
     @property
-    def scene(self):
+    def scene(self) -> Scene:
         """The Scene that was run, with every key resolved."""
         return Scene((self.folder / "scene.toml").read_text(encoding="utf-8"))
 
     @property
-    def summary(self):
+    def summary(self) -> dict[str, Any] | None:
         """Of a run that has finished; else None.   Raises InputError (a damaged file)"""
         files = importlib.import_module("isostat.figures.files")
         try:
@@ -120,27 +123,27 @@ class Results:
             raise _core.InputError(str(error)) from error
 
     @property
-    def finished(self):
+    def finished(self) -> bool:
         """Whether the run came to its end: it writes summary.json last."""
         return (self.folder / "summary.json").is_file()
 
     @property
-    def provenance(self):
+    def provenance(self) -> str:
         """Text: version, compiler, seed, command."""
         return (self.folder / "provenance.txt").read_text(encoding="utf-8")
 
-    def packing(self, number):
+    def packing(self, number: int) -> _core.Snapshot:
         """The stored Snapshot of this number, from 0; negative numbers count from the last."""
         n = len(self.snapshots)
         if not -n <= number < n:
             raise _core.InputError(f"{self.folder}: has {n} stored packings, numbered from 0; there is no number {number}.")
         return _core.read_snapshot(str(self.snapshots[number]))
 
-    def draw(self, name):
+    def draw(self, name: str) -> list[Any]:
         """The axes of one of the figures that the program leaves: results.draw("fig_stress_path")."""
         return draw(self.folder, name, self.program)
 
-    def report(self):
+    def report(self) -> pathlib.Path:
         """Leaves figures and report.html in the folder, as the program does, and returns the path of the report.
 
         Needs matplotlib and h5py.   Raises RunFailure with what went wrong
@@ -156,6 +159,6 @@ class Results:
         return f"<isostat.Results of {self.folder}>"
 
 
-def read(folder):
+def read(folder: str | os.PathLike[str]) -> Results:
     """The Results of a run, finished or not: `finished` tells, and the summary of an unfinished one is None."""
     return Results(folder)

@@ -4,6 +4,8 @@ import csv
 import os
 import pathlib
 import tempfile
+from collections.abc import Callable
+from typing import Any
 
 from isostat import _core
 from isostat.results import History, Results, draw
@@ -12,12 +14,17 @@ from isostat.scene import Scene
 CACHE = os.path.join("results", "specimens")
 
 
-def as_scene(scene):
+SceneLike = Scene | str | os.PathLike[str] | dict[str, Any]
+Callback = Callable[[_core.Moment], object]
+
+
+def as_scene(scene: SceneLike) -> Scene:
     """The Scene itself, or one that is made from what is given."""
     return scene if isinstance(scene, Scene) else Scene(scene)
 
 
-def prepare(scene, *, cache=CACHE, threads=0, quiet=True):
+def prepare(scene: SceneLike, *, cache: str | os.PathLike[str] = CACHE, threads: int = 0,
+            quiet: bool = True) -> _core.Specimen:
     """The specimen that a scene asks for: from its file, from the cache, or prepared and put into the cache.
 
     cache: folder of prepared specimens. threads: that share a step; 0: as many as the packing can feed; changes no bit.
@@ -26,8 +33,10 @@ def prepare(scene, *, cache=CACHE, threads=0, quiet=True):
     return _core.prepare(as_scene(scene), os.fspath(cache), threads, quiet)
 
 
-def run(scene, output=None, *, specimen=None, cache=None, overwrite=False, resume=False, threads=0, quiet=True,
-        on_record=None, on_step=None, every=1000):
+def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
+        specimen: _core.Specimen | _core.Snapshot | None = None, cache: str | os.PathLike[str] | None = None,
+        overwrite: bool = False, resume: bool = False, threads: int = 0, quiet: bool = True,
+        on_record: Callback | None = None, on_step: Callback | None = None, every: int = 1000) -> "Results | Run":
     """Runs the stages of a scene, to the same bits as the program element_test does.
 
     scene       a Scene, or what one is made from: a path, text or a dictionary
@@ -70,11 +79,11 @@ class Run:
     snapshot    the packing at the end
     """
 
-    def __init__(self, scene, done):
+    def __init__(self, scene: Scene, done: _core.Result):
         self.scene, self.snapshot, self.finished = scene, done.snapshot, done.finished
         self.history = History(done.history, done.units)
 
-    def draw(self, name):
+    def draw(self, name: str) -> list[Any]:
         """The axes of one of the figures of element_test: run.draw("fig_stress_path")."""
         with tempfile.TemporaryDirectory() as name_of_folder:
             folder = pathlib.Path(name_of_folder)

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import tomllib
+from typing import Any, Self
 
 from isostat import _core
 
@@ -21,10 +22,11 @@ class Scene(_core.Scene):
     Raises InputError with the place, the value, the allowed range and a remedy.
     """
 
-    def __init__(self, source=None, /, *, set=None, **sections):
+    def __init__(self, source: str | os.PathLike[str] | dict[str, Any] | None = None, /, *,
+                 set: dict[str, Any] | None = None, **sections: Any):
         super().__init__(*scene_source(_core.Scene, source, set, sections))
 
-    def with_(self, **keys):
+    def with_(self, **keys: Any) -> Self:
         """The scene with other values: scene.with_(**{"motion.damping": 0.05})."""
         return type(self)(self.text, set=keys)
 
@@ -32,7 +34,7 @@ class Scene(_core.Scene):
         """Copies and pickles go by the text."""
         return type(self), (self.text,)
 
-    def to_dict(self):
+    def to_dict(self) -> dict[str, Any]:
         """Every key with its value, as nested dictionaries."""
         return tomllib.loads(self.text)
 
