@@ -137,7 +137,7 @@ class Packing:
             tolerance = 0.01 if self.grains > 2000 else 0.03 if self.relative_density > 0.25 else 0.10
             lines += [f"relative_density = {self.relative_density}", f"e_min = {e_min}", f"e_max = {e_max}",
                       f"density_tolerance = {tolerance}"]
-        lines += ['compaction_rate = "10 1/s"'] if self.young < 1 else []  # at 30 1/s some soft packings explode
+        lines += ['compaction_rate = "10 1/s"'] if self.young < 1 else []  # at the default some soft packings explode
         lines += [way.specimen] if way.specimen else []
         return {"grains": self.grains, "edge": 10 * (self.grains / 10000) ** (1 / 3), "seed": self.seed,
                 "sizes": f"\n{way.sizes}" if way.sizes else "", "young": self.young,
