@@ -152,12 +152,17 @@ std::size_t help_with_runs(const fs::path &queue_folder, int jobs)
   return worker.n_done();
 }
 
-int launch_rank()
+Launch launch()
 {
-  for (const char *name : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"})
-    if (const char *text = std::getenv(name))
-      return std::atoi(text);
-  return 0;
+  constexpr std::pair<const char *, const char *> launchers[] = {
+      {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
+  for (const auto &[rank, size] : launchers)
+    if (const char *text = std::getenv(rank))
+      {
+        const char *all = std::getenv(size);
+        return {std::atoi(text), all ? std::atoi(all) : 1};
+      }
+  return {};
 }
 
 void CampaignShare::add_options(CLI::App &line)
@@ -171,7 +176,7 @@ void CampaignShare::add_options(CLI::App &line)
 
 bool CampaignShare::help(const fs::path &folder) const
 {
-  if (!helper && launch_rank() == 0)
+  if (!helper && launch().rank == 0)
     return false;
   catch_signals();
   const std::size_t n = help_with_runs(folder / "queue", jobs);

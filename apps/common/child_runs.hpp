@@ -35,9 +35,13 @@ bool run_children(const RunPool &pool, const std::vector<ChildRun> &runs, const 
 /// @throws InputError   nobody leads within half a minute      @throws Interrupted  after a signal
 std::size_t help_with_runs(const std::filesystem::path &queue_folder, int jobs);
 
-/// Rank among the processes that `mpirun` or `srun` has started with one command, 0 without them: ranks above 0 help
-/// the first. Read from what the launcher leaves in the environment; no MPI is initialised.
-int launch_rank();
+/// This process among those that `mpirun` or `srun` has started with one command: ranks above 0 help the first. Read
+/// from what the launcher leaves in the environment; no MPI is initialised.
+struct Launch
+{
+  int rank = 0, size = 1;
+};
+Launch launch();
 
 /// How much of a campaign a process does, as its command line says.
 struct CampaignShare

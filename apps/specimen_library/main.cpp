@@ -217,9 +217,9 @@ void make_library(const Options &options)
   std::vector<Task> tasks = combinations(scene, options);
   const fs::path path = options.output.empty() ? scene.output.folder + ".h5" : options.output;
   PreparationShare share = options.share;
-  share.helper = share.helper || launch_rank() > 0;
-  if (share.jobs == 0)
-    share.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  share.helper = share.helper || launch().rank > 0;
+  if (share.jobs == 0) // ranks have a core each
+    share.jobs = launch().size > 1 ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (!share.helper)
     check_output(path, options);
   std::error_code ignored;
@@ -276,8 +276,8 @@ int main(int argc, char **argv)
   line.add_option("--consolidation", options.consolidation, "instead of specimen.consolidation")
       ->check(CLI::IsMember({"isotropic", "k0"}));
   line.add_option("-j,--jobs", options.share.jobs,
-                  "preparations side by side, each on one thread; 0: as many as the machine has cores (default). "
-                  "Specimens do not depend on it")
+                  "preparations side by side, each on one thread; 0: as many as the machine has cores, of ranks one "
+                  "each (default). Specimens do not depend on it")
       ->check(CLI::Range(0, 1024));
   line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=6 (repeatable)");
   line.add_flag("--helper", options.share.helper,

@@ -88,7 +88,7 @@ class CampaignRanks(AppTest):
     def test_library(self):
         """Each specimen is prepared once, by whichever rank is free."""
         scene = self.write("rve.toml", LIBRARY)
-        make = self.command("specimen_library", scene, *NARROW, "-n", "6", "-j", "1", "-o")
+        make = self.command("specimen_library", scene, *NARROW, "-n", "6", "-o")
         code, said = self.ended(self.start([*make, "one.h5", "--set", "specimen.cache=one"]))
         self.assertEqual(code, 0, said)
         code, said = self.ended(self.start(["mpirun", "--oversubscribe", "-n", "3", *make, "two.h5",
