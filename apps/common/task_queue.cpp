@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 namespace isostat
 {
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 namespace
 {
@@ -112,10 +112,9 @@ TaskQueue::~TaskQueue()
 
 std::size_t TaskQueue::post(const ChildRun &run)
 {
-  const json task = {{"command", run.command},
-                     {"log", fs::absolute(run.log).string()},
-                     {"results", fs::absolute(run.results).string()}};
-  write_replacing(file(next_, ".task"), task.dump(2) + "\n");
+  write_json(file(next_, ".task"), {{"command", run.command},
+                                    {"log", fs::absolute(run.log).string()},
+                                    {"results", fs::absolute(run.results).string()}});
   return next_++;
 }
 
@@ -126,7 +125,7 @@ std::map<std::size_t, TaskQueue::Done> TaskQueue::take_done()
   std::map<std::size_t, Done> all;
   for (const std::size_t number : numbers(".done"))
     {
-      const json done = json::parse(read_text(file(number, ".done")));
+      const Json done = read_json(file(number, ".done"));
       all[number] = {done.at("code"), done.at("seconds")};
       fs::remove(file(number, ".run"));
       fs::remove(file(number, ".done"));
@@ -161,7 +160,7 @@ std::optional<TaskQueue::Claim> TaskQueue::claim()
         fs::rename(file(number, ".task"), file(number, ".run"), gone);
       if (!lock || gone)
         continue;
-      const json task = json::parse(read_text(file(number, ".run")));
+      const Json task = read_json(file(number, ".run"));
       return Claim{number,
                    {task.at("command"), task.at("log").get<std::string>(), task.at("results").get<std::string>()},
                    std::move(lock)};
@@ -171,6 +170,6 @@ std::optional<TaskQueue::Claim> TaskQueue::claim()
 
 void TaskQueue::finish(const Claim &claim, const Done &done)
 {
-  write_replacing(file(claim.number, ".done"), json{{"code", done.code}, {"seconds", done.seconds}}.dump() + "\n");
+  write_json(file(claim.number, ".done"), {{"code", done.code}, {"seconds", done.seconds}});
 }
 } // namespace isostat

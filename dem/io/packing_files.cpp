@@ -144,6 +144,13 @@ ForeignPacking read_foreign_packing(const fs::path &path, const ReadOptions &opt
   return found;
 }
 
+void count_from_here(Snapshot &state)
+{
+  state.strain.setZero();
+  state.time = 0;
+  state.step = 0;
+}
+
 Specimen read_stored_packing(const fs::path &path, const std::string &entry)
 {
   if (!entry.empty() || is_specimen_library(path))
@@ -153,9 +160,7 @@ Specimen read_stored_packing(const fs::path &path, const std::string &entry)
     return read_specimen(path);
   Specimen specimen = read_specimen(file.root());
   specimen.provenance["recipe"] = "snapshot " + path.string();
-  specimen.state.strain.setZero(); // a run counts time and strain from its own start
-  specimen.state.time = 0;
-  specimen.state.step = 0;
+  count_from_here(specimen.state);
   return specimen;
 }
 

@@ -37,6 +37,10 @@ struct ReadOptions
 /// tested: tests/dem/io/packing_files_test.cpp, lammps_test.cpp
 ForeignPacking read_foreign_packing(const std::filesystem::path &path, const ReadOptions &options);
 
+/// A run counts time, steps and strain from its own start: those of the run that a state comes from are forgotten.
+/// tested: tests/dem/io/packing_files_test.cpp, tests/python/run_test.py
+void count_from_here(Snapshot &state);
+
 /// An HDF5 file of Isostat: a specimen, an entry of a library, or a snapshot of a run (which has no story: the file is
 /// its provenance). @param entry  of a library; empty: none
 /// @throws InputError  as read_specimen() does

@@ -277,9 +277,7 @@ std::string specimen_recipe(const Scene &scene)
 Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer)
 {
   check_domain(scene, given.state, "the specimen that is given");
-  given.state.step = 0;
-  given.state.time = 0;
-  given.state.strain.setZero();
+  count_from_here(given.state);
   given.state.law = scene.contact;
   note_differences(scene, given.state, observer);
   describe(scene, given);

@@ -31,6 +31,16 @@ void check_new(const fs_path &path, bool overwrite)
         fmt::format("{}: the file exists; give overwrite=True to replace it, or another name", path.string()));
 }
 
+/// A writer that replaces a file only if it is told to.
+template <typename What>
+auto to_new_file(void (*write)(const fs_path &, const What &))
+{
+  return [write](const fs_path &path, const What &what, bool overwrite) {
+    check_new(path, overwrite);
+    write(path, what);
+  };
+}
+
 void warn(const std::vector<std::string> &notes)
 {
   for (const std::string &note : notes)
@@ -109,14 +119,8 @@ void bind_files(py::module_ &module)
                                    : read_library_entry(place.path, place.entry);
       },
       py::arg("path"), "A specimen file, or one of a library: \"library.h5#s0007\".");
-  module.def(
-      "write_specimen",
-      [](const fs_path &path, const Specimen &specimen, bool overwrite) {
-        check_new(path, overwrite);
-        write_specimen(path, specimen);
-      },
-      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("overwrite") = false,
-      "An HDF5 file that `specimen.file` of a scene may name.");
+  module.def("write_specimen", to_new_file<Specimen>(&write_specimen), py::arg("path"), py::arg("specimen"),
+             py::kw_only(), py::arg("overwrite") = false, "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
       "import_tables",
       [](const fs_path &path, const Law &law, double density) {
@@ -129,21 +133,11 @@ void bind_files(py::module_ &module)
       py::arg("path"), py::arg("law") = Law(), py::arg("density") = 2650.0,
       "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide). Refuses\n"
       "what no packing of soil is, as read_packing() does.");
-  module.def(
-      "write_vtp",
-      [](const fs_path &path, const Snapshot &snapshot, bool overwrite) {
-        check_new(path, overwrite);
-        write_grains_vtp(path, snapshot);
-      },
-      py::arg("path"), py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
-      "Grains for ParaView. A file that is there is replaced only with `overwrite`.");
-  module.def(
-      "write_force_chains_vtp",
-      [](const fs_path &path, const Snapshot &snapshot, bool overwrite) {
-        check_new(path, overwrite);
-        write_force_chains_vtp(path, snapshot);
-      },
-      py::arg("path"), py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
-      "Force chains for ParaView. A file that is there is replaced only with `overwrite`.");
+  module.def("write_vtp", to_new_file<Snapshot>(&write_grains_vtp), py::arg("path"), py::arg("snapshot"), py::kw_only(),
+             py::arg("overwrite") = false,
+             "Grains for ParaView. A file that is there is replaced only with `overwrite`.");
+  module.def("write_force_chains_vtp", to_new_file<Snapshot>(&write_force_chains_vtp), py::arg("path"),
+             py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
+             "Force chains for ParaView. A file that is there is replaced only with `overwrite`.");
 }
 } // namespace isostat::python
