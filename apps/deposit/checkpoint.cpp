@@ -13,7 +13,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-column-checkpoint";
-constexpr std::uint64_t schema_version = 2; // 1: other names, as greatest_energy and least_IR
+constexpr std::uint64_t schema_version = 3; // 2: unknowns in the order of their numbers, the soil as one row of bytes
 
 /// Numbers and vectors of a checkpoint or of the solver's state in it.
 template <class Part>
@@ -55,7 +55,7 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   checkpoint.file = path.string();
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
-  checkpoint.state.material = hdf5::read_bytes(root, "material");
+  checkpoint.state.material = MaterialState::from_bytes(hdf5::read_bytes(root, "material"));
   get(root, "state_", checkpoint.state);
   get(root, "", checkpoint);
   return checkpoint;
@@ -74,7 +74,7 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
   write_newest(folder, [&](hdf5::Group root) {
     set_format(root, format_name, schema_version, checkpoint.scene);
     root.set_attribute("step", checkpoint.state.step);
-    hdf5::write_bytes(root, "material", checkpoint.state.material);
+    hdf5::write_bytes(root, "material", checkpoint.state.material.bytes());
     put(root, "state_", checkpoint.state);
     put(root, "", checkpoint);
   });

@@ -79,8 +79,8 @@ constexpr Key ground_keys[] = {
    .text = "Elements over the width.",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.cells_across; }},
   {.path = "mesh.distributed", .kind = Kind::boolean, .value = "false",
-   .text = "One mesh shared out over all MPI ranks; false: a copy on every rank, whose results are the same bits for any "
-           "number of ranks.",
+   .text = "One mesh shared out over all MPI ranks, without profiles and files for ParaView; false: a copy on every rank, "
+           "whose results are the same bits for any number of ranks.",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.distributed; }},
 
   {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_names,

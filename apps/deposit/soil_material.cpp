@@ -97,7 +97,8 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
   for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
     if (scene.layers[layer].material != LayerMaterial::grains)
       {
-        if (!points[layer].empty())
+        // a part without points has a header all the same: states of all ranks fit together
+        if (!points[layer].empty() || scene.layers[layer].material != LayerMaterial::user)
           parts.push_back({stressed_layer(scene, layer, points[layer], in_situ, user), points[layer]});
       }
     else

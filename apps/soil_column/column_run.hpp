@@ -53,8 +53,7 @@ public:
             at = run_.n_steps();
             observe();
           }
-        if (!scene_.mesh.distributed)
-          save();
+        save();
         write([&] { files_.finish(follower_.peaks); });
       }
     catch (const RunFailure &failure)
@@ -145,27 +144,22 @@ private:
     const bool asking_is_cheap = alone_ || space_.shared_out(); // next to the sums over all ranks in each step
     if ((now || asking_is_cheap) && on_any_rank(stop_requested()))
       stop();
-    if (now && !scene_.mesh.distributed &&
-        as_first_rank(since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes))
+    if (now && as_first_rank(since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes))
       save();
   }
 
-  /// After a signal: leaves a checkpoint unless the run is distributed.   @throws Interrupted
+  /// After a signal: leaves a checkpoint.   @throws Interrupted
   [[noreturn]] void stop()
   {
-    const bool distributed = scene_.mesh.distributed;
-    if (distributed)
-      write([&] { files_.flush(); });
-    else
-      save();
-    throw Interrupted(fmt::format("interrupted at step {}; {}", run_.n_steps(),
-                                  distributed ? "a distributed run keeps no checkpoint" : "go on with --resume"));
+    save();
+    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run_.n_steps()));
   }
 
   /// Brings all files up to date, then writes a checkpoint.
   void save()
   {
     SolverState state = run_.save();
+    follower_.gather();
     write([&] { files_.save(std::move(state), follower_.peaks, more_numbers()); });
     since_checkpoint_.restart();
   }

@@ -34,10 +34,6 @@ RunResult run_dimension(const ColumnRequest &request)
 
 RunResult run_column(const ColumnRequest &request)
 {
-  if (request.use == FolderUse::resume && request.scene.mesh.distributed)
-    throw InputError(fmt::format("{}: cannot be resumed, because a distributed run (mesh.distributed = true) keeps no "
-                                 "checkpoint. Start it anew with --overwrite.",
-                                 request.folder.string()));
   on_first_rank([&] { check_result_folder(request.folder, request.use); });
   RunResult result = run_dimension(request);
   if (ranks().first())

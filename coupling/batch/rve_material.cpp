@@ -13,7 +13,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t version = 1; ///< of the bytes
+constexpr std::uint64_t version = 2; ///< of the bytes
 
 /// 1 - m m^T/3: strain without its volume.
 Stiffness deviator()
@@ -233,37 +233,45 @@ void RveMaterial::wave_moduli(std::span<WaveModuli> moduli) const
   points().mean(waves_.moduli(), moduli);
 }
 
-std::vector<std::byte> RveMaterial::pack() const
+MaterialState RveMaterial::pack() const
 {
   batch_.check_made();
   ByteWriter out;
   out.text(name());
-  out.count(version), out.count(n_points()), out.count(settings_.realisations), out.count(settings_.undrained);
-  out.count(waves_.n_commits());
+  out.count(version), out.count(settings_.realisations), out.count(settings_.undrained), out.count(waves_.n_commits());
+  MaterialState state{out.take(), std::vector<Bytes>(n_points())};
+  ByteWriter point; // elements come point by point
   batch_.pack([&](std::size_t id, const Bytes &packed) {
-    waves_.write(id, out);
-    out.block(packed);
+    waves_.write(id, point);
+    point.block(packed);
+    if ((id + 1) % settings_.realisations == 0)
+      state.points[points().point_of(id)] = std::exchange(point, {}).take();
   });
-  return out.take();
+  return state;
 }
 
-void RveMaterial::unpack(std::span<const std::byte> bytes)
+void RveMaterial::unpack(const MaterialState &state)
 {
-  ByteReader in(bytes, name());
+  ByteReader in(state.common, name());
   in.expect(in.text(), name());
   in.expect(in.count(), version, "as their version");
-  in.expect(in.count(), n_points(), "points");
   in.expect(in.count(), settings_.realisations, "realisations");
   in.expect(in.count(), settings_.undrained, "as their drainage (1 is undrained)");
   WaveModuliCache waves(batch_.size(), settings_.refresh);
   waves.set_commits(in.count());
-  std::vector<std::span<const std::byte>> blocks(batch_.size());
-  for (std::size_t id = 0; id < batch_.size(); ++id)
-    {
-      waves.read(id, in);
-      blocks[id] = in.block();
-    }
   in.expect_end();
+  in.expect(state.points.size(), n_points(), "points");
+  std::vector<std::span<const std::byte>> blocks(batch_.size());
+  for (std::size_t p = 0; p < n_points(); ++p)
+    {
+      ByteReader point(state.points[p], name());
+      for (std::size_t id = p * settings_.realisations; id < (p + 1) * settings_.realisations; ++id)
+        {
+          waves.read(id, point);
+          blocks[id] = point.block();
+        }
+      point.expect_end();
+    }
   make([&](std::size_t id) { return Rve::unpack(blocks[id], element_settings().rve); });
   waves_ = std::move(waves);
 }

@@ -60,8 +60,8 @@ public:
   void wave_moduli(std::span<WaveModuli> moduli) const override;
 
   /// The same bytes for any number of ranks and threads, on every rank.
-  std::vector<std::byte> pack() const override;
-  void unpack(std::span<const std::byte> bytes) override;
+  MaterialState pack() const override;
+  void unpack(const MaterialState &state) override;
 
   /// Standard deviation of the stress over the realisations of each point, at the committed state; 0 for one. Pa
   void scatter(std::span<Stress> deviations) const { points().deviation(batch_.committed_stress(), deviations); }

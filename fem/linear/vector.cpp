@@ -51,6 +51,8 @@ void Vector::swap(Vector &other) noexcept
   std::swap(n_owned_, other.n_owned_);
 }
 
+bool Vector::belongs_to(const VectorPartition &partition) const { return of_dealii_->get_partitioner() == partition; }
+
 std::size_t Vector::size() const { return of_dealii_->size(); }
 
 std::size_t Vector::n_local() const { return n_owned_ + of_dealii_->get_partitioner()->n_ghost_indices(); }

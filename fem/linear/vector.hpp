@@ -31,7 +31,8 @@ public:
   ~Vector();
   void swap(Vector &other) noexcept;
 
-  std::size_t size() const; ///< of all ranks together
+  bool belongs_to(const VectorPartition &partition) const; ///< was made with it
+  std::size_t size() const;                                ///< of all ranks together
   std::size_t locally_owned_size() const { return n_owned_; }
   std::size_t n_local() const; ///< owned and ghosts
   /// Number over all ranks of a local unknown, owned or ghost; those of a rank are consecutive.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/composite.hpp"
 
-#include "base/files/bytes.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <numeric>
@@ -144,34 +142,44 @@ void CompositeMaterial::wave_moduli(std::span<WaveModuli> moduli) const
     fill_entries(part, moduli, [&](std::span<WaveModuli> own) { part.material->wave_moduli(own); });
 }
 
-std::vector<std::byte> CompositeMaterial::pack() const
+MaterialState CompositeMaterial::pack() const
 {
+  MaterialState state;
+  state.points.resize(n_points_);
   ByteWriter out;
   out.text(name());
   out.count(parts_.size());
   for (const Member &part : parts_)
     {
+      MaterialState of_part = part.material->pack();
       out.text(part.material->name());
-      out.count(part.places.size());
-      out.block(part.material->pack());
+      out.count(of_part.points.empty() && !part.places.empty()); // in one piece
+      out.block(of_part.common);
+      for (std::size_t k = 0; k < of_part.points.size(); ++k)
+        state.points[part.places[k]] = std::move(of_part.points[k]);
     }
-  return out.take();
+  state.common = out.take();
+  return state;
 }
 
-void CompositeMaterial::unpack(std::span<const std::byte> bytes)
+void CompositeMaterial::unpack(const MaterialState &state)
 {
-  ByteReader in(bytes, name());
+  ByteReader in(state.common, name());
   in.expect(in.text(), name());
   in.expect(in.count(), parts_.size(), "parts");
-  std::vector<std::span<const std::byte>> blocks;
+  in.expect(state.points.size(), n_points_, "points");
+  std::vector<MaterialState> states;
   for (const Member &part : parts_) // all headers first: nothing changes unless they fit
     {
       in.expect(in.text(), part.material->name());
-      in.expect(in.count(), part.places.size(), "points in a part");
-      blocks.push_back(in.block());
+      const bool in_one_piece = in.count() != 0;
+      const auto common = in.block();
+      states.push_back({{common.begin(), common.end()}, {}});
+      for (std::size_t k = 0; !in_one_piece && k < part.places.size(); ++k)
+        states.back().points.push_back(state.points[part.places[k]]);
     }
   in.expect_end();
   for (std::size_t k = 0; k < parts_.size(); ++k)
-    parts_[k].material->unpack(blocks[k]);
+    parts_[k].material->unpack(states[k]);
 }
 } // namespace isostat

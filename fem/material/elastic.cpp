@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/elastic.hpp"
 
-#include "base/files/bytes.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 namespace isostat
 {
+namespace
+{
+static_assert(sizeof(Stress) == 6 * sizeof(double));
+template <typename Stresses> // const or not
+auto numbers_of(Stresses &stresses)
+{
+  return std::span(stresses.empty() ? nullptr : stresses[0].data(), 6 * stresses.size());
+}
+} // namespace
+
 double ElasticParameters::bulk_modulus() const
 {
   return 2 * shear_modulus * (1 + poisson_ratio) / (3 * (1 - 2 * poisson_ratio));
@@ -73,30 +81,25 @@ void Elastic::wave_moduli(std::span<WaveModuli> moduli) const
   std::fill(moduli.begin(), moduli.end(), WaveModuli{bulk_ + 4 * shear_ / 3, shear_});
 }
 
-std::vector<std::byte> Elastic::pack() const
+MaterialState Elastic::pack() const
 {
   ByteWriter out;
   out.text(name());
   out.numbers(std::array{bulk_, shear_});
-  out.count(n_points());
-  for (const Stress &s : committed_)
-    out.numbers(s);
-  return out.take();
+  return {out.take(), packed_rows(numbers_of(committed_), n_points())};
 }
 
-void Elastic::unpack(std::span<const std::byte> bytes)
+void Elastic::unpack(const MaterialState &state)
 {
-  ByteReader in(bytes, name());
+  ByteReader in(state.common, name());
   in.expect(in.text(), name());
   std::array<double, 2> moduli{};
   in.numbers(moduli, "parameters");
   if (moduli != std::array{bulk_, shear_})
     in.fail("its elastic moduli are others");
-  in.expect(in.count(), n_points(), "points");
-  std::vector<Stress> stresses(n_points());
-  for (Stress &s : stresses)
-    in.numbers(s, "stress components");
   in.expect_end();
+  std::vector<Stress> stresses(n_points());
+  unpack_rows(state, name(), numbers_of(stresses), n_points());
   committed_ = std::move(stresses);
   has_trial_ = false;
 }

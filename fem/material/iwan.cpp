@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/iwan.hpp"
 
-#include "base/files/bytes.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan_scene.hpp"
 
@@ -154,28 +153,25 @@ void Iwan::wave_moduli(std::span<WaveModuli> moduli) const
     }
 }
 
-std::vector<std::byte> Iwan::pack() const
+MaterialState Iwan::pack() const
 {
   ByteWriter out;
   out.text(name());
   out.numbers(as_numbers(parameters_));
-  out.count(n_points_);
-  out.numbers(committed_);
-  return out.take();
+  return {out.take(), packed_rows(committed_, n_points_)};
 }
 
-void Iwan::unpack(std::span<const std::byte> bytes)
+void Iwan::unpack(const MaterialState &state)
 {
-  ByteReader in(bytes, name());
+  ByteReader in(state.common, name());
   in.expect(in.text(), name());
   std::vector<double> stored = as_numbers(parameters_);
   in.numbers(stored, "parameters");
   if (stored != as_numbers(parameters_))
     in.fail("its parameters are others");
-  in.expect(in.count(), n_points_, "points");
-  std::vector<double> states(committed_.size());
-  in.numbers(states, "numbers");
   in.expect_end();
+  std::vector<double> states(committed_.size());
+  unpack_rows(state, name(), states, n_points_);
   committed_ = std::move(states);
   has_trial_ = false;
 }

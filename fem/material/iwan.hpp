@@ -84,8 +84,8 @@ public:
   /// symmetric; singular at the floor of p'.
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  std::vector<std::byte> pack() const override;
-  void unpack(std::span<const std::byte> bytes) override;
+  MaterialState pack() const override;
+  void unpack(const MaterialState &state) override;
 
   /// p' of the committed state, compression positive. Pa
   double mean_pressure(std::size_t point) const;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/material/material_state.hpp"
+
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -67,10 +69,10 @@ public:
   /// large.
   virtual void wave_moduli(std::span<WaveModuli> moduli) const = 0;
 
-  /// The committed state as bytes; unpack() brings it back to the bit.
-  /// @throws InputError from unpack() if the bytes are not those of this material with these points
-  virtual std::vector<std::byte> pack() const = 0;
-  virtual void unpack(std::span<const std::byte> bytes) = 0;
+  /// The committed state; unpack() brings it back to the bit.
+  /// @throws InputError from unpack() if the state is not one of this material with as many points
+  virtual MaterialState pack() const = 0;
+  virtual void unpack(const MaterialState &state) = 0;
 };
 
 /// A material that keeps its points as two rows of values: the committed ones and those of the last trial.

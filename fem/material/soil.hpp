@@ -52,6 +52,7 @@ struct SoilProfile
 
   double height() const;                ///< summed from the base up, m
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
+  std::size_t cell_at(double z) const;  ///< number of the cell at a height, from the base up   @pre not on a boundary
   /// Vertical effective stress of the soil's own weight and of a uniform load on the surface, compression positive. Pa
   double vertical_effective_stress(double z, double surcharge = 0) const;
 };

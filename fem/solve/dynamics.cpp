@@ -143,27 +143,27 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit("initial_stress", self.initial_stresses_);
   visit("minus_reference_force", self.minus_reference_);
   visit("lagged_pressure", self.lagged_pressure_);
-  visit("kinetic", self.energy_.kinetic);
-  visit("internal", self.energy_.internal);
-  visit("external", self.energy_.external);
-  visit("half_way_kinetic", self.half_way_.kinetic);
-  visit("half_way_internal", self.half_way_.internal);
-  visit("half_way_external", self.half_way_.external);
-  visit("exchanged", self.exchanged_);
+  visit.sum("kinetic", self.energy_.kinetic);
+  visit.sum("internal", self.energy_.internal);
+  visit.sum("external", self.energy_.external);
+  visit.sum("half_way_kinetic", self.half_way_.kinetic);
+  visit.sum("half_way_internal", self.half_way_.internal);
+  visit.sum("half_way_external", self.half_way_.external);
+  visit.sum("exchanged", self.exchanged_);
 }
 
 SolverState Dynamics::save() const
 {
-  FieldWriter write(step_, material_, space_.shared_out());
+  FieldWriter write(step_, material_, space_);
   for_each_field(*this, write);
   return write.state;
 }
 
 void Dynamics::restore(const SolverState &state)
 {
-  for_each_field(*this, FieldReader(state, true));
-  material_.unpack(state.material);
-  for_each_field(*this, FieldReader(state));
+  for_each_field(*this, FieldReader(state, space_, true));
+  material_.unpack(FieldReader(state, space_).material());
+  for_each_field(*this, FieldReader(state, space_));
   step_ = state.step;
 }
 } // namespace isostat

@@ -79,8 +79,9 @@ public:
   DynamicsEnergy energy() const;
   const DynamicsSettings &settings() const { return settings_; }
 
-  /// To the bit.
-  /// @throws InputError  restore() of another mesh, material or step; save() of a mesh shared out over ranks
+  /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
+  /// @throws InputError  restore() of another mesh, material or step; save() of a mesh that is shared out with a
+  ///                     material that keeps its points in one piece
   SolverState save() const;
   void restore(const SolverState &state);
 

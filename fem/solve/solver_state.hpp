@@ -2,19 +2,22 @@
 #pragma once
 #include "fem/linear/vector.hpp"
 #include "fem/material/material.hpp"
+#include "fem/space/gather.hpp"
 
 #include <cstdint>
 #include <map>
 
 namespace isostat
 {
-/// All that a solver needs to go on to the same bits: what a checkpoint stores, whatever the solver is.
+/// All that a solver needs to go on to the same bits: what a checkpoint stores, whatever the solver is. Of a mesh that
+/// is shared out over ranks it is complete on the first rank alone, and in the order of Gathered, so that any number of
+/// ranks can go on from it.
 struct SolverState
 {
   std::uint64_t step = 0;
-  std::map<std::string, std::vector<double>> vectors; ///< owned values of unknowns; stresses point by point
+  std::map<std::string, std::vector<double>> vectors; ///< unknowns cell by cell; stresses point by point
   std::map<std::string, double> numbers;
-  std::vector<std::byte> material; ///< Material::pack()
+  MaterialState material; ///< Material::pack()
 };
 
 /// A solver names the fields of its state once, in
@@ -23,21 +26,30 @@ struct SolverState
 ///     static void for_each_field(Self &self, Visit &&visit) { visit("displacement", self.u_); ... }
 ///
 /// and saves and restores by the two visitors below: for_each_field(*this, FieldWriter), for_each_field(*this,
-/// FieldReader).   tested: tests/fem/solve/statics_state_test.cpp, tests/fem/solve/dynamics_test.cpp
+/// FieldReader).   tested: tests/fem/solve/statics_state_test.cpp, tests/fem/solve/dynamics_test.cpp,
+/// tests/apps/soil_column_resume_test.py (other numbers of ranks)
 class FieldWriter
 {
 public:
-  /// @throws InputError  the mesh is shared out over ranks: no rank has all values
-  FieldWriter(std::uint64_t step, const Material &material, bool shared_out);
+  /// Collective.
+  /// @throws InputError  the mesh is shared out, and the material keeps its points in one piece
+  FieldWriter(std::uint64_t step, const Material &material, const FiniteElementSpace &space);
 
-  void operator()(const char *name, double value);
+  void operator()(const char *name, double value) { state.numbers[name] = value; }
   void operator()(const char *name, const Vector &values);
   void operator()(const char *name, const std::vector<Stress> &stresses);
-  void operator()(const char *name, const std::vector<double> &values);
+  /// A value for each point, or no values.
+  void operator()(const char *name, const std::vector<double> &of_points);
   /// A number that a run that goes on must share.
   void constant(const char *name, double value) { (*this)(name, value); }
+  /// A number of which every rank has a part.
+  void sum(const char *name, double part);
 
   SolverState state;
+
+private:
+  const FiniteElementSpace &space_;
+  Gathered gathered_;
 };
 
 /// Takes the fields from a state; with `only_check` it changes nothing, so that a state that does not fit leaves the
@@ -46,19 +58,23 @@ public:
 class FieldReader
 {
 public:
-  explicit FieldReader(const SolverState &state, bool only_check = false) : state_(state), only_check_(only_check) {}
+  FieldReader(const SolverState &state, const FiniteElementSpace &space, bool only_check = false);
 
   void operator()(const char *name, double &value) const;
   void operator()(const char *name, Vector &values) const;
   void operator()(const char *name, std::vector<Stress> &stresses) const;
-  void operator()(const char *name, std::vector<double> &values) const;
+  void operator()(const char *name, std::vector<double> &of_points) const;
   void constant(const char *name, double value) const;
+  void sum(const char *name, double &part) const; ///< all of it on the first rank
+  /// What belongs to the points of this rank.
+  MaterialState material() const;
 
 private:
   double number(const char *name) const;
   const std::vector<double> &stored(const char *name, std::size_t size) const;
 
   const SolverState &state_;
-  bool only_check_;
+  Gathered gathered_;
+  bool first_, only_check_;
 };
 } // namespace isostat

@@ -158,16 +158,16 @@ void Statics::for_each_field(Self &self, Visit &&visit)
 
 SolverState Statics::save() const
 {
-  FieldWriter write(step_, material_, space_.shared_out());
+  FieldWriter write(step_, material_, space_);
   for_each_field(*this, write);
   return write.state;
 }
 
 void Statics::restore(const SolverState &state)
 {
-  for_each_field(*this, FieldReader(state, true));
-  material_.unpack(state.material);
-  for_each_field(*this, FieldReader(state));
+  for_each_field(*this, FieldReader(state, space_, true));
+  material_.unpack(FieldReader(state, space_).material());
+  for_each_field(*this, FieldReader(state, space_));
   step_ = state.step;
   system_ = std::make_unique<StaticsSystem>(space_, water_.get(), pressure_scale_);
 }

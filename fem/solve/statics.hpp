@@ -97,8 +97,10 @@ public:
   const StaticsEffort &effort() const { return effort_; }
   double residual() const { return residual_; } ///< of the last trial, in units of the force scale
 
-  /// To the bit. Between steps, or after a failed one.
-  /// @throws InputError  restore() of another mesh or material; save() of a mesh shared out over ranks
+  /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
+  /// after a failed one. Collective.
+  /// @throws InputError  restore() of another mesh or material; save() of a mesh that is shared out with a material
+  ///                     that keeps its points in one piece
   SolverState save() const;
   void restore(const SolverState &state);
 

@@ -27,6 +27,7 @@ public:
 
   /// A zero vector of displacements / of pressures.
   Vector displacement_vector() const { return Vector(displacements_); }
+  const VectorPartition &displacement_partition() const { return displacements_; }
   Vector pressure_vector() const { return Vector(pressures_); }
 
   /// Diagonal mass by Gauss-Lobatto at the nodes, kg; 0 at unknowns that a tie has removed.

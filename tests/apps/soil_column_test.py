@@ -170,7 +170,6 @@ class Mistakes(ColumnTest):
         strip = settings(mesh__dimension=2, mesh__distributed="true")
         self.refuse(["profile_interval", "distributed"], "--overwrite", *strip,
                     *settings(output__profile_interval="1 s"))
-        self.refuse(["cannot be resumed", "distributed"], "--resume", *strip)
 
     def test_folder(self):
         result = self.run_column(self.scene, "-o", "out", *settings(analysis__duration="0.1 s"))

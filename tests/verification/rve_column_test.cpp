@@ -41,8 +41,8 @@ public:
   void rollback() override { material_.rollback(); }
   void stiffness(std::span<Stiffness> tangents) const override { material_.stiffness(tangents); }
   void wave_moduli(std::span<WaveModuli> moduli) const override { material_.wave_moduli(moduli); }
-  std::vector<std::byte> pack() const override { return material_.pack(); }
-  void unpack(std::span<const std::byte> bytes) override { material_.unpack(bytes); }
+  MaterialState pack() const override { return material_.pack(); }
+  void unpack(const MaterialState &state) override { material_.unpack(state); }
 
 private:
   Material &material_;

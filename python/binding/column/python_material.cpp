@@ -123,18 +123,19 @@ void PythonMaterial::wave_moduli(std::span<WaveModuli> moduli) const
     }
 }
 
-std::vector<std::byte> PythonMaterial::pack() const
+MaterialState PythonMaterial::pack() const
 {
   const py::gil_scoped_acquire gil;
   const auto packed = law_.attr("pack")(committed_).cast<std::string>();
   const auto *first = reinterpret_cast<const std::byte *>(packed.data());
-  return {first, first + packed.size()};
+  return {{first, first + packed.size()}, {}};
 }
 
-void PythonMaterial::unpack(std::span<const std::byte> bytes)
+void PythonMaterial::unpack(const MaterialState &state)
 {
   const py::gil_scoped_acquire gil;
-  committed_ = frozen(law_.attr("unpack")(py::bytes(reinterpret_cast<const char *>(bytes.data()), bytes.size())));
+  committed_ =
+      frozen(law_.attr("unpack")(py::bytes(reinterpret_cast<const char *>(state.common.data()), state.common.size())));
   trial_ = py::none();
 }
 } // namespace isostat::python

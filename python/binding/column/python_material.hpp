@@ -24,8 +24,8 @@ public:
   void rollback() override;
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  std::vector<std::byte> pack() const override;
-  void unpack(std::span<const std::byte> bytes) override;
+  MaterialState pack() const override;
+  void unpack(const MaterialState &state) override;
 
 private:
   using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;

@@ -87,6 +87,10 @@ TEST(ColumnSceneError, MeshAndWater)
   expect_complaint(smallest, {"must be a whole number"}, {"mesh.dimension=1.5"});
   expect_complaint(smallest, {"mesh.distributed = true; must be false in a column"}, {"mesh.distributed=true"});
   EXPECT_EQ(complaint(smallest, {"mesh.distributed=true", "mesh.dimension=3"}), "accepted");
+  expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"user\"\ndensity = \"2000 kg/m3\"\ncells = 1\n" + dry +
+                       dynamic,
+                   {"column.toml:3: layer.0.material", "must not be \"user\" if mesh.distributed is true"},
+                   {"mesh.distributed=true", "mesh.dimension=2"});
   expect_complaint(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
   EXPECT_EQ(complaint(layer + undrained + dynamic, {"water.lagged_compressibility=true"}), "accepted");
   expect_complaint(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});

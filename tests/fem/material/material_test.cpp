@@ -114,6 +114,25 @@ TEST_P(MaterialProtocol, ComesBackFromBytesToTheBit)
   EXPECT_EQ(m->pack(), copy->pack());
 }
 
+TEST_P(MaterialProtocol, PointsOfOneStateMakeAnother)
+{
+  auto m = fresh(), half = GetParam()();
+  advance(*m, 20);
+  const MaterialState late = m->pack();
+  MaterialState mixed = half->pack();
+  for (std::size_t k : {1, 3})
+    mixed.points[k] = late.points[k];
+  half->unpack(mixed);
+  const std::vector<Gradient> none(n);
+  const auto stresses = trial(*m, none), partly = trial(*half, none), start = trial(*GetParam()(), none);
+  for (std::size_t k = 0; k < n; ++k)
+    EXPECT_EQ(partly[k], k == 1 || k == 3 ? stresses[k] : start[k]) << k;
+  EXPECT_EQ(MaterialState::from_bytes(late.bytes()), late);
+  const auto bytes = late.bytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 7)
+    EXPECT_THROW(MaterialState::from_bytes(std::span(bytes).first(size)), InputError);
+}
+
 TEST_P(MaterialProtocol, RefusesOtherBytes)
 {
   auto m = fresh();
@@ -122,11 +141,27 @@ TEST_P(MaterialProtocol, RefusesOtherBytes)
   EXPECT_THROW(m->unpack(Elastic({}, n + 1).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({.contraction = 0.1}, n).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({}, n - 1).pack()), InputError);
-  for (std::size_t size = 0; size < bytes.size(); size += 7)
-    EXPECT_THROW(m->unpack(std::span(bytes).first(size)), InputError);
-  auto longer = bytes;
-  longer.push_back({});
-  EXPECT_THROW(m->unpack(longer), InputError);
+  for (std::size_t size = 0; size < bytes.common.size(); size += 7)
+    {
+      auto cut = bytes;
+      cut.common.resize(size);
+      EXPECT_THROW(m->unpack(cut), InputError);
+    }
+  for (std::size_t size = 0; size < bytes.points[3].size(); size += 7)
+    {
+      auto cut = bytes;
+      cut.points[3].resize(size);
+      EXPECT_THROW(m->unpack(cut), InputError);
+    }
+  for (const bool in_common : {true, false})
+    {
+      auto longer = bytes;
+      (in_common ? longer.common : longer.points[4]).push_back({});
+      EXPECT_THROW(m->unpack(longer), InputError);
+    }
+  auto fewer = bytes;
+  fewer.points.pop_back();
+  EXPECT_THROW(m->unpack(fewer), InputError);
   EXPECT_EQ(m->pack(), bytes); // and none of them changed it
 }
 

@@ -4,7 +4,6 @@
 #include "fem/material/elastic.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
@@ -70,15 +69,13 @@ public:
     const double g = law_(0).modulus;
     std::fill(moduli.begin(), moduli.end(), WaveModuli{bulk_ + 4 * g / 3, g});
   }
-  std::vector<std::byte> pack() const override
+  MaterialState pack() const override
   {
-    std::vector<std::byte> bytes(committed_.size() * sizeof(committed_[0]));
-    std::memcpy(bytes.data(), committed_.data(), bytes.size());
-    return bytes;
+    return {{}, packed_rows({committed_[0].data(), 6 * committed_.size()}, committed_.size())};
   }
-  void unpack(std::span<const std::byte> bytes) override
+  void unpack(const MaterialState &state) override
   {
-    std::memcpy(committed_.data(), bytes.data(), bytes.size());
+    unpack_rows(state, name(), {committed_[0].data(), 6 * committed_.size()}, committed_.size());
     trial_ = committed_;
   }
 

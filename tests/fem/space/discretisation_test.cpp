@@ -96,6 +96,15 @@ TEST(Discretisation, PatchTests)
     }
 }
 
+TEST(Discretisation, PointsOfABlockAreNumberedXFastest)
+{
+  const Discretisation<2> strip(uneven(2), {});
+  const Discretisation<3> block(uneven(2), {});
+  for (const CellTables *tables : {static_cast<const CellTables *>(&strip), static_cast<const CellTables *>(&block)})
+    for (std::size_t q = 0; q < tables->n_points(); ++q)
+      EXPECT_EQ(tables->point_id[q], q);
+}
+
 TEST(Discretisation, PointsOfAColumnRiseThroughTheLayers)
 {
   const Discretisation<1> space(uneven(2), {});
