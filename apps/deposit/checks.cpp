@@ -35,8 +35,8 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
   const ColumnLayer &layer = scene.layers[i];
   if (scene.mesh.distributed && layer.material == LayerMaterial::user)
     document.refuse(fmt::format("layer.{}.material", i),
-                    "must not be \"user\" if mesh.distributed is true, because such a material keeps its points in "
-                    "one piece, which no checkpoint can share out. Give distributed = false.");
+                    "must not be \"user\" if mesh.distributed is true, because such a material keeps its points as "
+                    "a whole, which no checkpoint can share out. Give distributed = false.");
   const std::string prefix = fmt::format("layer.{}", i);
   if (scene.water.drainage != Drainage::dry && layer.density <= scene.water.density)
     document.refuse(prefix + ".density", fmt::format("must be above that of water, {} kg/m3, or the soil floats away.",

@@ -129,7 +129,7 @@ constexpr Key ground_keys[] = {
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
            "the mean effective stress, a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
-           "isostat.column.run() in Python takes by the name of the layer (docs/python.md).",
+           "isostat.column.run() in Python takes by the name of the layer (docs/python.md), not with mesh.distributed.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",

@@ -35,6 +35,7 @@ public:
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
     check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
     run_.restore(resumed_->state);
+    resumed_->state = {}; // that of all ranks
     follower_.peaks.restore(*resumed_);
     resumed_->get(files_.history().state);
   }

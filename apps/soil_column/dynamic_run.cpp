@@ -51,9 +51,17 @@ private:
     if (soil_.grains)
       {
         velocities_ = grain_velocities(scene_, soil_, space_);
+        unsigned long n_packings = soil_.grains->owners().size();
+        if (space_.shared_out())
+          {
+            const MPI_Comm all = space_.communicator();
+            MPI_Allreduce(MPI_IN_PLACE, &n_packings, 1, MPI_UNSIGNED_LONG, MPI_SUM, all);
+            MPI_Allreduce(MPI_IN_PLACE, &velocities_[0], 1, MPI_DOUBLE, MPI_MIN, all);
+            MPI_Allreduce(MPI_IN_PLACE, &velocities_[1], 1, MPI_DOUBLE, MPI_MAX, all);
+          }
         if (ranks().first())
-          this->progress_.say(fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", soil_.grains->owners().size(),
-                                          velocities_[0], velocities_[1]));
+          this->progress_.say(
+              fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, velocities_[0], velocities_[1]));
       }
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,

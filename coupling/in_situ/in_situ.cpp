@@ -90,8 +90,11 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &tar
   for (int k = 0; relative_drift(rve) > 2 * settings.tolerance; ++k)
     {
       if (k == max_waits)
-        throw RunFailure(fmt::format("{}: the packing does not come to rest there; K0 may be beyond what it can carry",
-                                     described(target)));
+        throw RunFailure(
+            fmt::format("{}: the packing does not come to rest there, it is too weak (of a thousand packings "
+                        "of 300 grains one may be, at a few kPa). Take packings of more grains, of other "
+                        "seeds (realisation), a surcharge, or a k0 nearer to 1",
+                        described(target)));
       go(rve, step, from, target);
     }
   return rve.pack();

@@ -153,7 +153,7 @@ MaterialState CompositeMaterial::pack() const
     {
       MaterialState of_part = part.material->pack();
       out.text(part.material->name());
-      out.count(of_part.points.empty() && !part.places.empty()); // in one piece
+      out.count(of_part.points.empty() && !part.places.empty()); // as a whole
       out.block(of_part.common);
       for (std::size_t k = 0; k < of_part.points.size(); ++k)
         state.points[part.places[k]] = std::move(of_part.points[k]);
@@ -172,10 +172,10 @@ void CompositeMaterial::unpack(const MaterialState &state)
   for (const Member &part : parts_) // all headers first: nothing changes unless they fit
     {
       in.expect(in.text(), part.material->name());
-      const bool in_one_piece = in.count() != 0;
+      const bool as_a_whole = in.count() != 0;
       const auto common = in.block();
       states.push_back({{common.begin(), common.end()}, {}});
-      for (std::size_t k = 0; !in_one_piece && k < part.places.size(); ++k)
+      for (std::size_t k = 0; !as_a_whole && k < part.places.size(); ++k)
         states.back().points.push_back(state.points[part.places[k]]);
     }
   in.expect_end();

@@ -40,9 +40,7 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
     throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
                                  "Give a smaller one, or leave it out.",
                                  time_step_, stable));
-  make_coefficients();
-  if (settings_.drainage == Drainage::coupled)
-    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
+  prepare_steps();
   if (settings_.lagged_compressibility)
     lagged_pressure_.assign(space_.n_points(), 0.0);
 }
@@ -69,6 +67,14 @@ void Dynamics::check_settings() const
     throw InputError(fmt::format("mass damping = {} 1/s; must be >= 0", settings_.mass_damping));
 }
 
+/// What the time step decides.
+void Dynamics::prepare_steps()
+{
+  make_coefficients();
+  if (settings_.drainage == Drainage::coupled)
+    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
+}
+
 /// Equation (4) solved for v+: v+ = D (f - F + G^T p) + keep v-, D = 1/(M/dt + C/2), keep = D (M/dt - C/2). C is mass
 /// damping and the dashpots (13).
 void Dynamics::make_coefficients()
@@ -92,6 +98,7 @@ void Dynamics::make_coefficients()
       keep_.local_element(i) = held ? 0 : (m / time_step_ - c / 2) / (m / time_step_ + c / 2);
     }
   min_energy_ = 0.5e-6 * mass_.l1_norm() / 3; // of all the soil at 1 mm/s
+  loaded_.clear();
   for (unsigned i = 0; i < n; ++i)
     if (dashpot_.local_element(i) != 0 || surface_.local_element(i) != 0)
       loaded_.push_back(i);
@@ -161,9 +168,14 @@ SolverState Dynamics::save() const
 
 void Dynamics::restore(const SolverState &state)
 {
-  for_each_field(*this, FieldReader(state, space_, true));
-  material_.unpack(FieldReader(state, space_).material());
-  for_each_field(*this, FieldReader(state, space_));
+  FieldReader reader(state, space_);
+  for_each_field(*this, reader);
+  reader.unpack(material_);
+  reader.take();
+  const double found_anew = time_step_;
+  for_each_field(*this, reader);
+  if (time_step_ != found_anew)
+    prepare_steps();
   step_ = state.step;
 }
 } // namespace isostat

@@ -81,13 +81,14 @@ public:
 
   /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
   /// @throws InputError  restore() of another mesh, material or step; save() of a mesh that is shared out with a
-  ///                     material that keeps its points in one piece
+  ///                     material that keeps its points as a whole
   SolverState save() const;
   void restore(const SolverState &state);
 
 private:
   // dynamics.cpp
   void check_settings() const;
+  void prepare_steps();
   void make_coefficients();
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);

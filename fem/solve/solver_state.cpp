@@ -4,38 +4,68 @@
 #include "base/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace isostat
 {
 namespace
 {
-bool is_first(const FiniteElementSpace &space)
+int rank_in(const FiniteElementSpace &space)
 {
   int rank = 0;
   if (space.shared_out())
     MPI_Comm_rank(space.communicator(), &rank);
-  return rank == 0;
+  return rank;
+}
+
+bool on_any_rank(const FiniteElementSpace &space, bool here)
+{
+  if (space.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_C_BOOL, MPI_LOR, space.communicator());
+  return here;
+}
+
+/// Throws what failed on the lowest rank, on all of them.   @param what  empty: nothing failed here
+void stop_together(const FiniteElementSpace &space, std::string what)
+{
+  if (space.shared_out())
+    {
+      const int rank = rank_in(space);
+      int failed = what.empty() ? std::numeric_limits<int>::max() : rank;
+      MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, space.communicator());
+      if (failed == std::numeric_limits<int>::max())
+        return;
+      unsigned long length = what.size();
+      MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, failed, space.communicator());
+      what.resize(length);
+      MPI_Bcast(what.data(), static_cast<int>(length), MPI_CHAR, failed, space.communicator());
+    }
+  if (!what.empty())
+    throw InputError(what);
 }
 } // namespace
 
 FieldWriter::FieldWriter(std::uint64_t step, const Material &material, const FiniteElementSpace &space)
-    : space_(space), gathered_(space)
+    : space_(space), order_(space)
 {
   state.step = step;
   state.material = material.pack();
-  if (!space.shared_out() && state.material.points.empty())
+  const auto &points = state.material.points;
+  const bool as_a_whole =
+      points.size() != space.n_points() || std::ranges::any_of(points, &std::vector<std::byte>::empty);
+  if (space.shared_out() && on_any_rank(space, as_a_whole))
+    throw InputError("checkpoint: a material that keeps its points as a whole cannot be saved from a mesh that is "
+                     "shared out over ranks");
+  if (points.empty())
     return;
-  if (space.shared_out() && std::ranges::any_of(state.material.points, &std::vector<std::byte>::empty))
-    throw InputError("checkpoint: a material that keeps its points in one piece (that of a layer with material = "
-                     "\"user\") cannot be saved from a mesh that is shared out over ranks; set mesh.distributed = "
-                     "false");
-  state.material.points = gathered_.point_bytes(std::move(state.material.points));
+  state.material.points = order_.point_bytes(std::move(state.material.points));
 }
 
 void FieldWriter::operator()(const char *name, const Vector &values)
 {
-  state.vectors[name] = values.size() == 0 ? std::vector<double>{} : gathered_.unknowns(values);
+  state.vectors[name] = values.size() == 0 ? std::vector<double>{} : order_.unknowns(values);
 }
 
 void FieldWriter::operator()(const char *name, const std::vector<Stress> &stresses)
@@ -43,12 +73,12 @@ void FieldWriter::operator()(const char *name, const std::vector<Stress> &stress
   std::vector<double> values;
   for (const Stress &stress : stresses)
     values.insert(values.end(), stress.begin(), stress.end());
-  state.vectors[name] = gathered_.points(values);
+  state.vectors[name] = order_.points(values);
 }
 
 void FieldWriter::operator()(const char *name, const std::vector<double> &of_points)
 {
-  state.vectors[name] = gathered_.points(of_points);
+  state.vectors[name] = order_.points(of_points);
 }
 
 void FieldWriter::sum(const char *name, double part)
@@ -58,8 +88,8 @@ void FieldWriter::sum(const char *name, double part)
   state.numbers[name] = part;
 }
 
-FieldReader::FieldReader(const SolverState &state, const FiniteElementSpace &space, bool only_check)
-    : state_(state), gathered_(space), first_(is_first(space)), only_check_(only_check)
+FieldReader::FieldReader(const SolverState &state, const FiniteElementSpace &space)
+    : state_(state), space_(space), order_(space)
 {}
 
 void FieldReader::operator()(const char *name, double &value) const
@@ -71,52 +101,69 @@ void FieldReader::operator()(const char *name, double &value) const
 
 void FieldReader::operator()(const char *name, Vector &values) const
 {
-  const std::vector<double> &found = stored(name, values.size() == 0 ? 0 : gathered_.n_numbers(values));
+  const std::vector<double> &found = stored(name, values.size() == 0 ? 0 : order_.n_numbers(values));
   if (!only_check_ && values.size() > 0)
-    gathered_.set_unknowns(found, values);
+    order_.set_unknowns(found, values);
 }
 
 void FieldReader::operator()(const char *name, std::vector<Stress> &stresses) const
 {
-  const std::vector<double> &found = stored(name, 6 * gathered_.n_points());
+  const std::vector<double> &found = stored(name, 6 * order_.n_points());
   std::vector<double> mine(6 * stresses.size());
-  gathered_.set_points(found, mine);
+  order_.set_points(found, mine);
   for (std::size_t k = 0; !only_check_ && k < mine.size(); ++k)
     stresses[k / 6][k % 6] = mine[k];
 }
 
 void FieldReader::operator()(const char *name, std::vector<double> &of_points) const
 {
-  const std::vector<double> &found = stored(name, of_points.empty() ? 0 : gathered_.n_points());
+  const std::vector<double> &found = stored(name, of_points.empty() ? 0 : order_.n_points());
   if (!only_check_)
-    gathered_.set_points(found, of_points);
+    order_.set_points(found, of_points);
 }
 
-void FieldReader::constant(const char *name, double value) const
+void FieldReader::constant(const char *name, double &value) const
 {
-  if (const double found = number(name); found != value)
+  const double found = number(name);
+  if (!(std::abs(found - value) <= 1e-12 * std::abs(value)))
     throw InputError(fmt::format("checkpoint: its {} is {:.17g}, this run's {:.17g}; resume with the scene of the "
                                  "first run",
                                  name, found, value));
+  if (!only_check_)
+    value = found;
 }
 
 void FieldReader::sum(const char *name, double &part) const
 {
   const double found = number(name);
   if (!only_check_)
-    part = first_ ? found : 0;
+    part = rank_in(space_) == 0 ? found : 0;
 }
 
-MaterialState FieldReader::material() const
+MaterialState FieldReader::own_points() const
 {
   const MaterialState &all = state_.material;
   if (all.points.empty())
     return all;
-  if (all.points.size() != gathered_.n_points())
-    throw InputError(fmt::format("checkpoint: its soil has {} points, this mesh {}; resume with the scene of the first "
-                                 "run",
-                                 all.points.size(), gathered_.n_points()));
-  return {all.common, gathered_.own_point_bytes(all.points)};
+  if (all.points.size() != order_.n_points())
+    throw InputError(fmt::format("checkpoint: the soil in it has {} points, this mesh {}; resume with the scene of the "
+                                 "first run",
+                                 all.points.size(), order_.n_points()));
+  return {all.common, order_.own_point_bytes(all.points)};
+}
+
+void FieldReader::unpack(Material &material) const
+{
+  std::string failure;
+  try
+    {
+      material.unpack(own_points());
+    }
+  catch (const InputError &error)
+    {
+      failure = error.what();
+    }
+  stop_together(space_, std::move(failure));
 }
 
 double FieldReader::number(const char *name) const

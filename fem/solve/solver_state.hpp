@@ -2,7 +2,7 @@
 #pragma once
 #include "fem/linear/vector.hpp"
 #include "fem/material/material.hpp"
-#include "fem/space/gather.hpp"
+#include "fem/space/mesh_order.hpp"
 
 #include <cstdint>
 #include <map>
@@ -10,8 +10,8 @@
 namespace isostat
 {
 /// All that a solver needs to go on to the same bits: what a checkpoint stores, whatever the solver is. Of a mesh that
-/// is shared out over ranks it is complete on the first rank alone, and in the order of Gathered, so that any number of
-/// ranks can go on from it.
+/// is shared out over ranks it is complete on the first rank alone, and in the order of MeshOrder, so that any number
+/// of ranks can go on from it.
 struct SolverState
 {
   std::uint64_t step = 0;
@@ -32,7 +32,7 @@ class FieldWriter
 {
 public:
   /// Collective.
-  /// @throws InputError  the mesh is shared out, and the material keeps its points in one piece
+  /// @throws InputError  on all ranks: the mesh is shared out, and the material keeps its points as a whole
   FieldWriter(std::uint64_t step, const Material &material, const FiniteElementSpace &space);
 
   void operator()(const char *name, double value) { state.numbers[name] = value; }
@@ -49,32 +49,37 @@ public:
 
 private:
   const FiniteElementSpace &space_;
-  Gathered gathered_;
+  MeshOrder order_;
 };
 
-/// Takes the fields from a state; with `only_check` it changes nothing, so that a state that does not fit leaves the
-/// solver as it was.
+/// Takes the fields from a state. Until take() is called it only checks and changes nothing, so that a state that does
+/// not fit leaves the solver as it was.
 /// @throws InputError  a field that is not there, has another number of values, or a constant with another value
 class FieldReader
 {
 public:
-  FieldReader(const SolverState &state, const FiniteElementSpace &space, bool only_check = false);
+  FieldReader(const SolverState &state, const FiniteElementSpace &space); ///< collective
+  void take() { only_check_ = false; }
 
   void operator()(const char *name, double &value) const;
   void operator()(const char *name, Vector &values) const;
   void operator()(const char *name, std::vector<Stress> &stresses) const;
   void operator()(const char *name, std::vector<double> &of_points) const;
-  void constant(const char *name, double value) const;
+  /// A number found anew may differ in its last digits, by sums over another number of ranks: the stored one counts.
+  void constant(const char *name, double &value) const;
   void sum(const char *name, double &part) const; ///< all of it on the first rank
-  /// What belongs to the points of this rank.
-  MaterialState material() const;
+  /// Unpacks what belongs to the points of this rank.   Collective.
+  /// @throws InputError  on all ranks: what unpack() threw on the lowest rank where it did
+  void unpack(Material &material) const;
 
 private:
+  MaterialState own_points() const;
   double number(const char *name) const;
   const std::vector<double> &stored(const char *name, std::size_t size) const;
 
   const SolverState &state_;
-  Gathered gathered_;
-  bool first_, only_check_;
+  const FiniteElementSpace &space_;
+  MeshOrder order_;
+  bool only_check_ = true;
 };
 } // namespace isostat

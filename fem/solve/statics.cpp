@@ -165,9 +165,11 @@ SolverState Statics::save() const
 
 void Statics::restore(const SolverState &state)
 {
-  for_each_field(*this, FieldReader(state, space_, true));
-  material_.unpack(FieldReader(state, space_).material());
-  for_each_field(*this, FieldReader(state, space_));
+  FieldReader reader(state, space_);
+  for_each_field(*this, reader);
+  reader.unpack(material_);
+  reader.take();
+  for_each_field(*this, reader);
   step_ = state.step;
   system_ = std::make_unique<StaticsSystem>(space_, water_.get(), pressure_scale_);
 }

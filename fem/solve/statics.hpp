@@ -100,7 +100,7 @@ public:
   /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
   /// after a failed one. Collective.
   /// @throws InputError  restore() of another mesh or material; save() of a mesh that is shared out with a material
-  ///                     that keeps its points in one piece
+  ///                     that keeps its points as a whole
   SolverState save() const;
   void restore(const SolverState &state);
 

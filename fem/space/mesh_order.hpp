@@ -10,10 +10,10 @@ namespace isostat
 /// this rank in that order; where it is, calls are collective unless stated otherwise, and the first rank alone gets
 /// the values.
 /// tested: tests/fem/solve/dynamics_test.cpp (one rank), tests/apps/soil_column_resume_test.py (other ranks)
-class Gathered
+class MeshOrder
 {
 public:
-  explicit Gathered(const FiniteElementSpace &space);
+  explicit MeshOrder(const FiniteElementSpace &space);
 
   std::size_t n_cells() const { return n_cells_; }   ///< of the whole mesh
   std::size_t n_points() const { return n_points_; } ///< of the whole mesh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fem/space/gather.hpp"
+#include "fem/space/mesh_order.hpp"
 
 #include "base/files/bytes.hpp"
 
@@ -45,7 +45,7 @@ std::vector<Bytes> on_first_rank(Bytes mine, MPI_Comm communicator)
 }
 } // namespace
 
-Gathered::Gathered(const FiniteElementSpace &space) : space_(space)
+MeshOrder::MeshOrder(const FiniteElementSpace &space) : space_(space)
 {
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     cell_number_.push_back(space.point_id[cell * space.n_gauss] / space.n_gauss);
@@ -56,12 +56,14 @@ Gathered::Gathered(const FiniteElementSpace &space) : space_(space)
 }
 
 /// Rows of equal length, in the order of their numbers; every number below n occurs once.
-std::vector<double> Gathered::rows(const std::vector<std::size_t> &numbers, std::size_t n,
-                                   std::span<const double> mine) const
+std::vector<double> MeshOrder::rows(const std::vector<std::size_t> &numbers, std::size_t n,
+                                    std::span<const double> mine) const
 {
   std::vector<double> all;
   const auto place = [&](const std::vector<std::size_t> &which, std::span<const double> values) {
-    const std::size_t width = which.empty() ? 0 : values.size() / which.size();
+    if (values.empty())
+      return;
+    const std::size_t width = values.size() / which.size();
     all.resize(std::max(all.size(), n * width));
     for (std::size_t k = 0; k < which.size(); ++k)
       std::copy_n(&values[k * width], width, &all[which[k] * width]);
@@ -86,18 +88,18 @@ std::vector<double> Gathered::rows(const std::vector<std::size_t> &numbers, std:
   return all;
 }
 
-const std::vector<unsigned> &Gathered::table_of(const Vector &values) const
+const std::vector<unsigned> &MeshOrder::table_of(const Vector &values) const
 {
   return values.belongs_to(space_.displacement_partition()) ? space_.cell_dofs : space_.cell_pressures;
 }
 
-std::size_t Gathered::n_numbers(const Vector &values) const
+std::size_t MeshOrder::n_numbers(const Vector &values) const
 {
   const bool displacements = values.belongs_to(space_.displacement_partition());
   return n_cells_ * (displacements ? 3 * space_.n_nodes : space_.pressure_nodes_per_cell());
 }
 
-std::vector<double> Gathered::unknowns(const Vector &values) const
+std::vector<double> MeshOrder::unknowns(const Vector &values) const
 {
   Vector whole = values;
   if (space_.shared_out())
@@ -108,7 +110,7 @@ std::vector<double> Gathered::unknowns(const Vector &values) const
   return rows(cell_number_, n_cells_, mine);
 }
 
-void Gathered::set_unknowns(std::span<const double> of_cells, Vector &values) const
+void MeshOrder::set_unknowns(std::span<const double> of_cells, Vector &values) const
 {
   const std::vector<unsigned> &table = table_of(values);
   const std::size_t width = cell_number_.empty() ? 0 : table.size() / cell_number_.size();
@@ -118,19 +120,21 @@ void Gathered::set_unknowns(std::span<const double> of_cells, Vector &values) co
       values.local_element(table[k]) = of_cells[cell_number_[k / width] * width + k % width];
 }
 
-std::vector<double> Gathered::points(std::span<const double> values) const
+std::vector<double> MeshOrder::points(std::span<const double> values) const
 {
   return rows(space_.point_id, n_points_, values);
 }
 
-void Gathered::set_points(std::span<const double> of_points, std::span<double> values) const
+void MeshOrder::set_points(std::span<const double> of_points, std::span<double> values) const
 {
-  const std::size_t width = space_.n_points() == 0 ? 0 : values.size() / space_.n_points();
+  if (values.empty())
+    return;
+  const std::size_t width = values.size() / space_.n_points();
   for (std::size_t q = 0; q < space_.n_points(); ++q)
     std::copy_n(&of_points[space_.point_id[q] * width], width, &values[q * width]);
 }
 
-std::vector<Bytes> Gathered::point_bytes(std::vector<Bytes> mine) const
+std::vector<Bytes> MeshOrder::point_bytes(std::vector<Bytes> mine) const
 {
   std::vector<Bytes> all(n_points_);
   if (!space_.shared_out())
@@ -158,7 +162,7 @@ std::vector<Bytes> Gathered::point_bytes(std::vector<Bytes> mine) const
   return all;
 }
 
-std::vector<Bytes> Gathered::own_point_bytes(const std::vector<Bytes> &all) const
+std::vector<Bytes> MeshOrder::own_point_bytes(const std::vector<Bytes> &all) const
 {
   std::vector<Bytes> mine;
   for (std::size_t number : space_.point_id)
