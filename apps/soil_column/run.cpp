@@ -18,6 +18,21 @@ RunResult run_kind(const ColumnRequest &request)
                                                               : run_consolidation<dim>(request);
 }
 
+/// A rank without cells is more than p4est and MUMPS take.
+void check_ranks(const ColumnScene &scene)
+{
+  std::size_t cells = 0;
+  for (const Layer &layer : soil_profile(scene).layers)
+    cells += layer.n_cells();
+  for (unsigned axis = 1; axis < scene.mesh.dimension; ++axis)
+    cells *= scene.mesh.cells_across;
+  if (scene.mesh.distributed && cells < static_cast<std::size_t>(ranks().size))
+    throw InputError(
+        fmt::format("mesh.distributed: {} cells on {} ranks; must be at most one rank for each cell. Start "
+                    "with mpirun -n {}, or give the mesh more cells.",
+                    cells, ranks().size, cells));
+}
+
 RunResult run_dimension(const ColumnRequest &request)
 {
   switch (request.scene.mesh.dimension)
@@ -34,7 +49,10 @@ RunResult run_dimension(const ColumnRequest &request)
 
 RunResult run_column(const ColumnRequest &request)
 {
-  on_first_rank([&] { check_result_folder(request.folder, request.use); });
+  on_first_rank([&] {
+    check_ranks(request.scene);
+    check_result_folder(request.folder, request.use);
+  });
   RunResult result = run_dimension(request);
   if (ranks().first())
     {

@@ -217,6 +217,14 @@ class MPIRanks(ColumnTest):
         self.assertEqual(result.returncode, 2)
         self.assertIn("cannot unpack the state", result.stderr)
 
+    def test_more_ranks_than_cells(self):
+        few = settings(mesh__dimension=2, mesh__distributed="true", layer__0__cells=1, layer__1__cells=1)
+        result = self.run_on_ranks(3, self.scene, "-o", "out", *few)
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stderr.count("2 cells on 3 ranks"), 1)
+        self.assertIn("mpirun -n 2", result.stderr)
+        self.assert_done(self.run_on_ranks(2, self.scene, "-o", "out", *few, *settings(analysis__duration="0.05 s")))
+
     def test_failure_on_all_ranks(self):
         shutil.copy(self.scene, self.folder / "out")  # a file
         result = self.run_on_ranks(2, self.scene, "-o", "out")
