@@ -52,7 +52,11 @@ TEST_F(CheckpointTest, KeepsTwoAndFallsBackWhenTheNewestIsDamaged)
   EXPECT_EQ(read_checkpoint(folder).specimen["mark"], 2e-3);
   const auto last = folder / "last.h5";
   std::filesystem::resize_file(last, std::filesystem::file_size(last) / 2);
+  testing::internal::CaptureStderr();
   EXPECT_EQ(read_checkpoint(folder).specimen["mark"], 1e-3);
+  const std::string warning = testing::internal::GetCapturedStderr();
+  for (const char *part : {"warning:", "last.h5: damaged", "goes on from the checkpoint before", "previous.h5"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
 }
 
 TEST_F(CheckpointTest, SaysWhatIsWrongWithEach)
@@ -67,6 +71,7 @@ TEST_F(CheckpointTest, SaysWhatIsWrongWithEach)
   catch (const InputError &error)
     {
       EXPECT_NE(std::string(error.what()).find("last.h5"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("Or start anew with --overwrite"), std::string::npos) << error.what();
     }
   std::filesystem::remove(folder / "last.h5");
   EXPECT_THROW(read_checkpoint(folder), InputError);
