@@ -12,8 +12,8 @@ namespace isostat
 /// @throws RunFailure  disk full, not writable: the older ones survive
 void write_newest(const std::filesystem::path &folder, const std::function<void(hdf5::Group root)> &fill);
 
-/// Reads the newest checkpoint of a folder that can be read: a damaged last.h5 gives way to previous.h5, with a warning on
-/// stderr.
+/// Reads the newest checkpoint of a folder that can be read: a damaged last.h5 gives way to previous.h5, with a
+/// warning on stderr.
 /// @param read  takes one file, throws InputError if it is damaged or not one of its own
 /// @throws InputError when there is none, naming what is wrong with each
 /// tested: tests/dem/io/checkpoint_test.cpp
