@@ -58,9 +58,8 @@ FieldWriter::FieldWriter(std::uint64_t step, const Material &material, const Fin
   if (space.shared_out() && on_any_rank(space, as_a_whole))
     throw InputError("checkpoint: a material that keeps its points as a whole cannot be saved from a mesh that is "
                      "shared out over ranks");
-  if (points.empty())
-    return;
-  state.material.points = order_.point_bytes(std::move(state.material.points));
+  if (!points.empty() || space.shared_out())
+    state.material.points = order_.point_bytes(std::move(state.material.points));
 }
 
 void FieldWriter::operator()(const char *name, const Vector &values)
