@@ -25,7 +25,6 @@ void write_newest(const fs::path &folder, const std::function<void(hdf5::Group r
 void read_newest(const fs::path &folder, const std::function<void(const fs::path &)> &read)
 {
   std::string problems;
-  bool damaged_last = false;
   for (const char *name : {"fresh.h5", "last.h5", "previous.h5"})
     {
       const fs::path path = folder / name;
@@ -34,7 +33,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
       try
         {
           read(path);
-          if (damaged_last)
+          if (path.filename() == "previous.h5" && fs::exists(folder / "last.h5"))
             fmt::print(stderr, "warning:{}\n  This run goes on from the checkpoint before, {}.\n", problems,
                        path.string());
           return;
@@ -42,7 +41,6 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
       catch (const InputError &error)
         {
           problems += std::string("\n  ") + error.what();
-          damaged_last |= path.filename() == "last.h5"; // a write that was cut off leaves a part of fresh.h5
         }
     }
   throw InputError(fmt::format("{}: no checkpoint to resume from{}", folder.string(),

@@ -75,7 +75,7 @@ std::vector<double> MeshOrder::rows(const std::vector<std::size_t> &numbers, std
     }
   ByteWriter out;
   out.row(numbers);
-  out.row(std::vector(mine.begin(), mine.end()));
+  out.numbers(mine);
   for (const Bytes &bytes : on_first_rank(out.take(), space_.communicator()))
     {
       ByteReader in(bytes, "mesh");
@@ -93,11 +93,12 @@ const std::vector<unsigned> &MeshOrder::table_of(const Vector &values) const
   return values.belongs_to(space_.displacement_partition()) ? space_.cell_dofs : space_.cell_pressures;
 }
 
-std::size_t MeshOrder::n_numbers(const Vector &values) const
+std::size_t MeshOrder::per_cell(const Vector &values) const
 {
-  const bool displacements = values.belongs_to(space_.displacement_partition());
-  return n_cells_ * (displacements ? 3 * space_.n_nodes : space_.pressure_nodes_per_cell());
+  return values.belongs_to(space_.displacement_partition()) ? 3 * space_.n_nodes : space_.pressure_nodes_per_cell();
 }
+
+std::size_t MeshOrder::n_numbers(const Vector &values) const { return n_cells_ * per_cell(values); }
 
 std::vector<double> MeshOrder::unknowns(const Vector &values) const
 {
@@ -113,7 +114,7 @@ std::vector<double> MeshOrder::unknowns(const Vector &values) const
 void MeshOrder::set_unknowns(std::span<const double> of_cells, Vector &values) const
 {
   const std::vector<unsigned> &table = table_of(values);
-  const std::size_t width = cell_number_.empty() ? 0 : table.size() / cell_number_.size();
+  const std::size_t width = per_cell(values);
   values = 0.0;
   for (std::size_t k = 0; k < table.size(); ++k)
     if (table[k] < values.locally_owned_size())

@@ -15,10 +15,9 @@ class MeshOrder
 public:
   explicit MeshOrder(const FiniteElementSpace &space);
 
-  std::size_t n_cells() const { return n_cells_; }   ///< of the whole mesh
   std::size_t n_points() const { return n_points_; } ///< of the whole mesh
 
-  /// Displacements (n_cells() x n_nodes x 3) or pressures (n_cells() x corners).
+  /// Displacements (cells of the whole mesh x n_nodes x 3) or pressures (cells x corners).
   std::vector<double> unknowns(const Vector &values) const;
   /// The owned values of `values` from such a row; what no cell has becomes 0.   Not collective.
   void set_unknowns(std::span<const double> of_cells, Vector &values) const;
@@ -34,10 +33,11 @@ public:
 
 private:
   const std::vector<unsigned> &table_of(const Vector &values) const;
+  std::size_t per_cell(const Vector &values) const; ///< entries of that table for each cell
   std::vector<double> rows(const std::vector<std::size_t> &numbers, std::size_t n, std::span<const double> mine) const;
 
   const FiniteElementSpace &space_;
-  std::vector<std::size_t> cell_number_; ///< of this rank's cells, in the whole mesh
-  std::size_t n_cells_ = 0, n_points_ = 0;
+  std::vector<std::size_t> cell_number_;   ///< of this rank's cells, in the whole mesh
+  std::size_t n_cells_ = 0, n_points_ = 0; ///< of the whole mesh
 };
 } // namespace isostat
