@@ -7,6 +7,7 @@
 //
 // The packing is copies of the stored one of 1,000 grains in a row (tests/reference/n1000/medium, dense, 200 kPa), as
 // it stands: only touching pairs are listed, all lanes work. Time stands still (dt = 0), so every pass does the same.
+#include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/contact/loop.hpp"
 #include "dem/io/text_tables.hpp"
@@ -28,13 +29,23 @@ struct Variant
   const char *name;
   LawFeatures on;
   bool energy;
+  bool hertz = false;
 };
 constexpr Variant variants[] = {{"frictionless", {false, false, false}, false},
                                 {"sliding", {true, false, false}, false},
                                 {"rolling", {true, true, false}, false},
                                 {"twisting", {true, false, true}, false},
                                 {"full", {true, true, true}, false},
-                                {"full+energy", {true, true, true}, true}};
+                                {"full+energy", {true, true, true}, true},
+                                {"hertz-mindlin", {true, true, true}, false, true},
+                                {"hertz-mindlin+energy", {true, true, true}, true, true}};
+
+Law law_of(const Variant &variant)
+{
+  if (variant.hertz)
+    return HertzMindlin().with(variant.on);
+  return test::paper_law().with(variant.on);
+}
 
 Packing moving_packing(std::size_t copies)
 {
@@ -53,9 +64,9 @@ Packing moving_packing(std::size_t copies)
 void run(benchmark::State &state, const Variant &variant, std::int64_t target, std::size_t copies)
 {
   hwy::SetSupportedTargetsForTest(target);
-  const LinearRolling law = test::paper_law().with(variant.on);
+  const Law law = law_of(variant);
   const Packing packing = moving_packing(copies);
-  ContactList list(law.history());
+  ContactList list(law->history());
   list.replace_pairs(find_pairs(packing, 0), static_cast<std::uint32_t>(packing.n_grains()));
   AlignedVector<double> action(8 * list.n_slots(), 0.0);
   DissipationPerPair losses;

@@ -50,6 +50,10 @@ INNER = {
         "contact/dashpot": set(),
         "contact/law": {"contact/history"},
         "contact/law_parameters": LAW,
+        # what laws with resistance to rolling share: scalar form, keys, lanes
+        "contact/rolling_resistance": LAW,
+        "contact/rolling_resistance_keys": BY_NAME | {"contact/rolling_resistance"},
+        "contact/rolling_resistance-inl": LAW | {"contact", "contact/rolling_resistance"},
         "state": LAW | {"domain"},
         "contact": GRAINS,
         "contact/laws": LAW,  # and every law: with_laws
@@ -97,7 +101,7 @@ INNER = {
 }
 
 # Any folder below dem/contact is a law, which knows the interface, the loop that runs it and no other law.
-A_LAW = BY_NAME | GRAINS | {"contact"}
+A_LAW = BY_NAME | GRAINS | {"contact"} | {f"contact/rolling_resistance{part}" for part in ("", "_keys", "-inl")}
 
 # What coupling sees of dem: the RVE; scene has the keys of its motion, io stores and reads its state.
 COUPLING_SEES = {"rve", "scene", "io"}

@@ -70,13 +70,25 @@ double away_from_walls(const Snapshot &state)
   return void_ratio_inside(state.grains, inside);
 }
 
+/// Lowers young until the modulus of contacts is `soft_enough` times the pressure. It goes with a power of young.
+void soften(Law &law, double pressure)
+{
+  const double modulus = law->modulus(pressure), aim = soft_enough * pressure;
+  if (modulus <= aim)
+    return;
+  Law half = law;
+  half->young *= 0.5;
+  const double exponent = std::log2(modulus / half->modulus(pressure));
+  law->young *= std::pow(aim / modulus, 1 / exponent);
+}
+
 Dense densest(const Cloud &cloud, const Scene &scene, RunObserver &observer)
 {
   const Stopwatch watch;
   Dense dense;
   const Preparation how{scene.specimen, observer};
   Law law = scene.contact;
-  law->young = std::min(law->young, soft_enough * scene.specimen.pressure);
+  soften(law, scene.specimen.pressure);
   const Snapshot compressed = compact(cloud, law, 0, how);
   dense.state = rebalance(compressed, compressed.law, how);
   dense.void_ratio = void_ratio(dense.state.volume(), dense.state.grains.solid_volume());

@@ -60,7 +60,7 @@ struct ContactEnergy
 struct ContactLaw
 {
   // What every law has, since stages and preparation change it.
-  double young = 1e10; ///< contact modulus E, Pa: forces are of the order E u R
+  double young = 1e10; ///< E, Pa: all stiffness is in proportion to it, and forces are at most of the order E u R
   double friction = 0; ///< mu = tan(phi) between grains [-]; 0: no tangential force, no torque. Walls have none
 
   virtual ~ContactLaw() = default;
@@ -82,6 +82,9 @@ struct ContactLaw
   virtual ContactStiffness stiffness(double r1, double r2, double overlap) const = 0;
   virtual YieldState yield(const ClosedContact &contact) const = 0;
   virtual ContactEnergy energy(const ClosedContact &contact) const = 0;
+
+  /// kn/R of two equal grains of radius R in a packing under this pressure, Pa; of the order of its elastic moduli.
+  virtual double modulus(double /*pressure*/) const { return young; }
 
   // A grain against a rigid wall without friction.
   virtual WallResponse wall(double radius, double overlap) const = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contact laws of this library. The first is the default.
 #include "base/error.hpp"
+#include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@ namespace
 {
 std::vector<Law> &laws()
 {
-  static std::vector<Law> known{LinearRolling{}};
+  static std::vector<Law> known{LinearRolling{}, HertzMindlin{}};
   return known;
 }
 } // namespace

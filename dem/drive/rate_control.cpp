@@ -41,7 +41,7 @@ double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assem
 void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace)
 {
   pace.rate = strain_rate(motion, stage, assembly, p0);
-  pace.load_rate = rate_in_force(motion, stage).fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly);
+  pace.load_rate = rate_in_force(motion, stage).fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly, p0);
 }
 
 double bounded_rate(const Pace &pace, const Loading &loading)
@@ -73,10 +73,10 @@ double next_rate(const Loading &loading, double rate, double load, double limit,
   return direction * std::min(std::abs(next), braked);
 }
 
-double wave_time(const Assembly &assembly)
+double wave_time(const Assembly &assembly, double p0)
 {
   const double edge = assembly.walls() ? assembly.box().edges().maxCoeff() : std::cbrt(assembly.volume());
-  return edge * std::sqrt(assembly.packing().density / assembly.law()->young);
+  return edge * std::sqrt(assembly.packing().density / assembly.law()->modulus(p0));
 }
 
 void start_loading(Loading &loading, double load, double slope)

@@ -49,8 +49,9 @@ double bounded_rate(const Pace &pace, const Loading &loading);
 double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step);
 
 /// L sqrt(rho/E), s, the nominal time of a wave through the packing (shear waves in sand take some 3.5 times it): L the
-/// longest edge of a box or V^(1/3) of a cell, E the contact modulus, rho the density of the grains.
-double wave_time(const Assembly &assembly);
+/// longest edge of a box or V^(1/3) of a cell, E the modulus of its contacts under the pressure `p0`, rho the density
+/// of the grains.
+double wave_time(const Assembly &assembly, double p0);
 
 /// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal (docs/results/free_grains.md).
 constexpr double ramp_waves = 4;

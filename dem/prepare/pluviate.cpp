@@ -125,10 +125,11 @@ void check_pluviation(const Pluviation &how)
         "overlap_allowed = {:g}; must be > 0 because it chooses the contact modulus. Try 1e-3.", how.overlap_allowed));
 }
 
-double deposition_modulus(double density, double speed, double diameter, double overlap)
+double deposition_modulus(const ContactLaw &law, double density, double speed, double diameter, double overlap)
 {
-  const double ratio = speed * diameter / overlap;
-  return std::numbers::pi / 3 * density * ratio * ratio;
+  const double radius = 0.5 * diameter, mass = std::numbers::pi / 6 * density * std::pow(diameter, 3);
+  const double stored = law.wall_energy(radius, overlap, law.wall(radius, overlap).force);
+  return law.young * (0.5 * mass * speed * speed / stored);
 }
 
 double surface_height(const Packing &packing, const RigidBox &box)
@@ -169,7 +170,7 @@ Deposit pluviate(const Cloud &cloud, const Law &law, const Pluviation &how, RunO
   Law falling = law;
   if (how.soften)
     falling->young =
-        std::min(law->young, deposition_modulus(density, deposit.fall_speed, d50, how.overlap_allowed * d50));
+        std::min(law->young, deposition_modulus(law, density, deposit.fall_speed, d50, how.overlap_allowed * d50));
   deposit.young = falling->young;
   observer.event(fmt::format("deposition: fall {:g}, fastest impact {:.3f} m/s, contact modulus {:.3g} Pa", how.fall,
                              deposit.fall_speed, deposit.young));

@@ -38,17 +38,17 @@ struct Deposit
 /// inside, away from the loose layer at the walls.
 ///
 /// Under its own weight (some 50 Pa) a packing is rigid at any modulus in question, so contacts need only be stiff
-/// enough for the impacts: E = deposition_modulus(...), never more than the law's own. The time step gains E^-1/2.
+/// enough for the impacts: E = deposition_modulus(...), never more than the law's own. The time step gains by it.
 /// @param law   friction and rolling resistance of shearing
 /// @throws InputError   as check_pluviation
 /// @throws RunFailure   grains do not come to rest
 /// tested: tests/dem/prepare/pluviate_test.cpp
 Deposit pluviate(const Cloud &cloud, const Law &law, const Pluviation &how, RunObserver &observer);
 
-/// Contact modulus at which a sphere of diameter d that meets a wall, or its like at rest, with speed v overlaps by
-/// u: half an oscillation of mass m = pi/6 rho d^3 on a spring k = E d/2,
-///     u/d = v sqrt(m/k)/d = v sqrt(pi rho/(3 E)),      so   E = pi/3 rho (v d/u)^2      [Pa]
-double deposition_modulus(double density, double speed, double diameter, double overlap);
+/// Modulus E at which a sphere of diameter d that meets a wall with speed v overlaps by u at most: the energy of the
+/// law's contact with the wall, in proportion to E, is then m v^2/2 with m = pi/6 rho d^3. Linear springs, k = E d/2:
+/// E = pi/3 rho (v d/u)^2.      [Pa]
+double deposition_modulus(const ContactLaw &law, double density, double speed, double diameter, double overlap);
 
 /// Void ratio inside a sub-box: lengths of the grains along vertical lines on a square grid of spacing d50/10 [-].
 /// 0 where the sub-box has no volume or no solid.

@@ -62,15 +62,18 @@ void check_contact(const SceneDocument &document, const Scene &scene)
                       "has no effect because [contact] leaves friction out. Give contact.friction an angle > 0 deg.");
 }
 
-/// Pressure over contact modulus is about the overlap of a contact over its radius.
+/// Pressure over the modulus of contacts is about a quarter of the overlap of a contact over its radius.
 void check_pressure(const SceneDocument &document, const Scene &scene)
 {
-  const double young = scene.contact->young, most = 0.05 * young;
+  double most = scene.specimen.pressure;
+  for (int i = 0; i < 50; ++i) // converges at once where the modulus is constant, else by its small exponent
+    most = 0.05 * scene.contact->modulus(most);
   if (scene.specimen.pressure > most)
     document.refuse("specimen.pressure",
-                    fmt::format("must be at most {:g} kPa, a twentieth of contact.young = {:g} GPa, because "
-                                "spheres that overlap by more are no contacts. Lower it, or give stiffer contacts.",
-                                most / 1e3, young / 1e9));
+                    fmt::format("must be at most {:g} kPa, a twentieth of the modulus of contacts with contact.young = "
+                                "{:g} GPa, because spheres that overlap by more are no contacts. Lower it, or give "
+                                "stiffer contacts.",
+                                most / 1e3, scene.contact->young / 1e9));
 }
 
 void check_stages(const SceneDocument &document, const Scene &scene)

@@ -76,7 +76,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
     state.pace.indicator =
         quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
   Loading &loading = state.loading;
-  const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly);
+  const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly, state.path.p0());
   update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));
   const double rate = bounded_rate(state.pace, loading);
   loading.signed_rate = next_rate(loading, rate, present, load_limit(state), ramp_waves * wave, dt);

@@ -55,6 +55,7 @@ inline ContactHistory random_history(Random &random, const Cloud &cloud, const C
   h.shear_force = 0.4 * fn * n.cross(random.vector()) + 1e-3 * fn * random.vector();
   h.bending_moment = 1.2 * length * fn * n.cross(random.vector());
   h.twisting_moment = length * fn * random() * n;
+  h.own = {3e-7 * (1 + 0.8 * random())}; // 1/kn of quartz that overlaps by some 1e-5 m; grown or shrunk
   return h;
 }
 

@@ -90,7 +90,7 @@ TEST(DepositionModulus, GivesTheOverlapOfAFallingGrain)
   how.fall = 1;
   how.soften = false;
   const double speed = std::sqrt(2 * g * (height - radius)), target = 1e-3 * 2 * radius;
-  law.young = deposition_modulus(2650, speed, 2 * radius, target);
+  law.young = deposition_modulus(law, 2650, speed, 2 * radius, target);
   how.damping = 0;
   struct Once : Follower // the grain would bounce on: stop at its first return
   {

@@ -55,6 +55,8 @@ TEST(SceneError, PressureThatNoContactCarries)
   expect_complaint(smallest + "pressure = \"200 MPa\"\n[contact]\nyoung = \"1 GPa\"",
                    {"scene.toml:3: specimen.pressure", "must be at most 50000 kPa", "contact.young = 1 GPa"});
   expect_complaint(smallest + "[contact]\nyoung = \"1 MPa\"", {"specimen.pressure", "must be at most 50 kPa"});
+  expect_complaint(smallest + "[contact]\nlaw = \"hertz-mindlin\"\nyoung = \"1 MPa\"",
+                   {"specimen.pressure", "must be at most 19.", "contact.young = 0.001 GPa"});
 }
 
 TEST(SceneError, UnitsAndForms)

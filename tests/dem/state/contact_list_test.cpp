@@ -11,6 +11,8 @@ namespace
 {
 using Pair = ContactList::Pair;
 
+HistoryLayout layout_of(LawFeatures on) { return LinearRolling().with(on).history(); }
+
 /// A history that tells from which pair it is.
 ContactHistory marked(const Pair &p)
 {
@@ -30,7 +32,7 @@ Pair pair_at(const ContactList &list, std::size_t p) { return {list.first()[p], 
 
 ContactList marked_list(LawFeatures on, const std::vector<Pair> &pairs, std::uint32_t n_grains)
 {
-  ContactList list(history_of(on));
+  ContactList list(layout_of(on));
   list.replace_pairs(pairs, n_grains);
   for (std::size_t p = 0; p < pairs.size(); ++p)
     list.set_history(p, marked(pairs[p]));
@@ -121,8 +123,8 @@ TEST(ContactList, SwitchingPartsOfTheLawKeepsWhatStays)
     for (const LawFeatures to : {full, sliding, rolling, twisting, frictionless})
       {
         ContactList list = marked_list(from, pairs, 6);
-        list.set_layout(history_of(to));
-        EXPECT_EQ(list.layout(), history_of(to));
+        list.set_layout(layout_of(to));
+        EXPECT_EQ(list.layout(), layout_of(to));
         for (std::size_t p = 0; p < pairs.size(); ++p)
           {
             ContactHistory expected;
@@ -148,7 +150,7 @@ TEST(ContactList, ChunksHaveBlocksAndGhostsOfTheirOwn)
     for (std::uint32_t j : {i + 1, i + 1000})
       if (j < n)
         pairs.emplace_back(i, j);
-  ContactList list(history_of(full));
+  ContactList list(layout_of(full));
   list.replace_pairs(pairs, n);
   const Partition &partition = list.partition();
   ASSERT_GE(partition.n_chunks, 4u);
@@ -186,7 +188,7 @@ TEST(ContactList, HistoryGoesOverInEveryChunkOnAnyNumberOfThreads)
     }
   for (int threads : {1, 2, 3})
     {
-      ContactList list(history_of(full));
+      ContactList list(layout_of(full));
       list.replace_pairs(old_pairs, n);
       for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
         if (list.first()[lane] < n)
@@ -216,13 +218,13 @@ TEST(ContactList, ImagesStayWithTheirPairsInEveryChunk)
   const Packing packing = make_packing(std::vector<Vec3>(n, Vec3(1, 2, 3)), std::vector<double>(n, 0.1), 2650);
   Mat3 edges;
   edges << 2, 0.5, 0.25, 0, 3, -0.5, 0, 0.125, 4;
-  ContactList list(history_of(full));
+  ContactList list(layout_of(full));
   list.replace_pairs(pairs, n, 1, images);
   ASSERT_GE(list.partition().n_chunks, 4u);
   for (const LawFeatures on : {full, sliding})
     for (const double factor : {1.0, 2.0}) // the cell deforms, the pairs stay
       {
-        list.set_layout(history_of(on));
+        list.set_layout(layout_of(on));
         list.set_cell(factor * edges);
         for (std::size_t lane = 0; lane < list.n_lanes(); ++lane)
           {
@@ -246,7 +248,7 @@ TEST(ContactList, SavedHistoryComesBackAndAllOtherPairsForget)
              all = pairs_of(12, [](auto, auto) { return true; });
   for (const LawFeatures on : {full, sliding, rolling, twisting})
     {
-      ContactList list(history_of(on));
+      ContactList list(layout_of(on));
       list.replace_pairs(few, 12);
       for (std::size_t p = 0; p < few.size(); p += 2)
         list.set_history(p, marked(few[p]));

@@ -37,7 +37,7 @@ public:
         EXPECT_NEAR_BECAUSE(state.loading.slope / affine, 0.5, 0.02, "one contact in 25 may change in so few steps");
       }
     loads_.push_back(seen.q);
-    const auto window = static_cast<std::size_t>(wave_time(assembly) / assembly.settings.time_step);
+    const auto window = static_cast<std::size_t>(wave_time(assembly, state.path.p0()) / assembly.settings.time_step);
     if (loads_.size() > window)
       max_change = std::max(max_change, std::abs(seen.q - loads_[loads_.size() - 1 - window]));
     if (since_ == 1 && state.place.steps % 50 == 1)

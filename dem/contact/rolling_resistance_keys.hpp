@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keys that all laws with rolling resistance have, and a table of them behind a law's own.
+// tested: tests/dem/scene/scene_test.cpp
+#pragma once
+#include "base/scene/ranges.hpp"
+#include "dem/contact/law_parameters.hpp"
+#include "dem/contact/rolling_resistance.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace isostat
+{
+// clang-format off
+inline constexpr std::array keys_of_rolling_resistance{
+  Key{.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .presence = Presence::experiment, .value = "18 deg", .range = ranges::right_angle,
+   .reason = ranges::because_tan,
+   .text = "Angle of friction between grains while the specimen is tested; left out or 0 deg: frictionless, and "
+           "then without rolling and twisting resistance too. Walls are always frictionless.",
+   .field = law_field<&RollingResistance::friction>},
+  Key{.path = "rolling", .kind = Kind::table, .presence = Presence::experiment,
+   .value = "{ stiffness = 0.3, limit = 0.5 }", .text = "Rolling resistance; left out: none.",
+   .field = law_field<&RollingResistance::rolling>},
+  Key{.path = "rolling.stiffness", .value = "0.3", .range = ranges::positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "alpha_r: rolling stiffness over R1 R2 ks.",
+   .field = law_field<&RollingResistance::rolling_stiffness>},
+  Key{.path = "rolling.limit", .value = "0.5", .range = ranges::positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "eta_r: the rolling moment stays below eta_r min(R1,R2) times the normal force.",
+   .field = law_field<&RollingResistance::rolling_limit>},
+  Key{.path = "twisting", .kind = Kind::table, .presence = Presence::experiment, .value = "{ stiffness = 0.3 }",
+   .text = "Twisting resistance, elastic without limit; left out: none.",
+   .field = law_field<&RollingResistance::twisting>},
+  Key{.path = "twisting.stiffness", .value = "0.3", .range = ranges::positive,
+   .reason = "because zero means no resistance (leave the table out instead)",
+   .text = "alpha_t: twisting stiffness over R1 R2 ks; not given in the paper.",
+   .field = law_field<&RollingResistance::twisting_stiffness>},
+};
+// clang-format on
+
+/// A law's own keys, then those above.
+template <std::size_t n>
+constexpr auto with_rolling_resistance(const std::array<Key, n> &own)
+{
+  std::array<Key, n + keys_of_rolling_resistance.size()> all{};
+  std::ranges::copy(own, all.begin());
+  std::ranges::copy(keys_of_rolling_resistance, all.begin() + n);
+  return all;
+}
+} // namespace isostat
