@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is run: laws, pressures, seeds, amplitudes."""
+import dataclasses
+
+LAWS = {
+    "linear-rolling": {"young": "10 GPa"},
+    "hertz-mindlin": {"law": "hertz-mindlin"},
+}
+DEGREES = (2, 6, 10)  # of preparation friction, in `stiffness`: dense to loose
+REDUCTION_DEGREES = 8
+PRESSURES = (20, 50, 100, 200, 400, 800)  # kPa, of `stiffness`
+REDUCTION_PRESSURES = (25, 100, 400)
+AMPLITUDES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
+DAMPING = 0.2  # local, of packings that answer to a strain; halved as well up to SMALL
+SMALL = 1e-5
+CYCLES = 3
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """One packing under one loading."""
+    kind: str
+    law: str
+    degrees: int
+    seed: int
+    pressure: int = 20          # kPa; of `stiffness` the first one
+    amplitude: float = 0        # of gamma
+    drained: bool = False
+    damping: float = DAMPING
+
+    @property
+    def name(self):
+        """Of its file."""
+        name = f"{self.kind}_{self.law}_{self.degrees}deg_seed{self.seed}"
+        if self.kind == "reduction":
+            name += f"_{self.pressure}kPa_{self.amplitude:.0e}_{'drained' if self.drained else 'undrained'}"
+            name += "" if self.damping == DAMPING else f"_damping{self.damping:g}"
+        return name
+
+    def record(self):
+        """What its file says of it."""
+        return dataclasses.asdict(self)
+
+
+def runs(kind, seeds):
+    """All runs of a kind, the cheap ones first."""
+    if kind == "stiffness":
+        return [Run(kind, law, degrees, seed) for seed in range(1, seeds + 1) for degrees in DEGREES for law in LAWS]
+    every = [Run(kind, law, REDUCTION_DEGREES, seed, pressure, amplitude, drained, damping)
+             for amplitude in AMPLITUDES for seed in range(1, seeds + 1) for pressure in REDUCTION_PRESSURES
+             for law in LAWS for drained in (False, True) for damping in (DAMPING, DAMPING / 2)]
+    return [run for run in every if run.damping == DAMPING or run.amplitude <= SMALL]

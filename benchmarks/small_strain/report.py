@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures and tables of what has been run."""
+import json
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+
+from . import plan, published  # noqa: E402
+
+COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red"}
+NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Mindlin, quartz"}
+
+
+def read(folder, kind):
+    """All results of a kind, as dictionaries."""
+    return [json.loads(path.read_text()) for path in sorted((folder / "runs").glob(f"{kind}_*.json"))]
+
+
+def mean(values):
+    """Mean and its standard error; the error of one value is not known."""
+    values = np.asarray(values, dtype=float)
+    error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+    return values.mean(), error
+
+
+def text(values, digits, factor=1.0):
+    """"184 ± 3"."""
+    if len(values) == 0:
+        return "not run"
+    middle, error = mean(np.asarray(values) * factor)
+    return f"{middle:.{digits}f}" + ("" if np.isnan(error) else f" ± {error:.{digits}f}")
+
+
+# ---- stiffness against pressure
+def exponent(states, low, high):
+    """n of G ~ p^n by least squares in logarithms between two pressures, Pa."""
+    points = [(s["pressure"], s["shear_modulus"]) for s in states if low <= s["pressure"] <= high]
+    p, g = np.log(np.array(points)).T
+    return np.polyfit(p, g, 1)[0]
+
+
+def stiffness_table(results):
+    """Rows of moduli, exponent and void ratio for each law and preparation."""
+    lines = ["| law | prepared at | e at 100 kPa | Z at 100 kPa | G at 100 kPa, MPa | correlation, MPa | n, 20 to 800 kPa |",
+             "|---|---|---|---|---|---|---|"]
+    for law in plan.LAWS:
+        for degrees in plan.DEGREES:
+            states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
+            if not states:
+                continue
+            at = [next(s for s in one if abs(s["pressure"] / 100e3 - 1) < 0.02) for one in states]
+            published_g = [published.small_strain_modulus(s["void_ratio"], 100e3) for s in at]
+            lines.append(f"| {NAMES[law]} | {degrees}° | {text([s['void_ratio'] for s in at], 3)} | "
+                         f"{text([s['coordination'] for s in at], 2)} | "
+                         f"{text([s['shear_modulus'] for s in at], 0, 1e-6)} | {text(published_g, 0, 1e-6)} | "
+                         f"{text([exponent(one, 15e3, 900e3) for one in states], 3)} |")
+    return "\n".join(lines)
+
+
+def draw_stiffness(results, path):
+    """G against p' for each law and density, beside the correlation at the same void ratios."""
+    figure, axes = plt.subplots(1, len(plan.LAWS), figsize=(9, 3.6), layout="constrained", sharey=True)
+    for axis, law in zip(axes, plan.LAWS, strict=True):
+        for degrees, shade in zip(plan.DEGREES, (1.0, 0.65, 0.35), strict=True):
+            states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
+            if not states:
+                continue
+            p = np.array([[s["pressure"] for s in one] for one in states]).mean(axis=0)
+            g = np.array([[s["shear_modulus"] for s in one] for one in states])
+            e = np.array([[s["void_ratio"] for s in one] for one in states]).mean(axis=0)
+            error = g.std(axis=0, ddof=1) / np.sqrt(len(g)) if len(g) > 1 else None
+            axis.errorbar(p / 1e3, g.mean(axis=0) / 1e6, None if error is None else error / 1e6, fmt="o-", ms=3.5,
+                          color=COLOURS[law], alpha=shade, label=f"e = {e[0]:.2f}")
+            axis.plot(p / 1e3, published.small_strain_modulus(e, p) / 1e6, "--", color="black", lw=0.9, alpha=shade)
+        axis.set(xscale="log", yscale="log", xlabel="p' (kPa)", title=NAMES[law])
+        axis.legend(frameon=False, fontsize=8, title="dashed: resonant column", title_fontsize=8)
+        axis.grid(alpha=0.3, which="both", lw=0.4)
+    axes[0].set_ylabel("shear modulus G (MPa)")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+# ---- modulus reduction and damping
+def chosen(results, law, pressure, drained, amplitude, damping=plan.DAMPING):
+    """Results of all seeds of one point."""
+    return [r for r in results if r["law"] == law and r["pressure"] == pressure and r["drained"] == drained
+            and r["damping"] == damping and abs(r["amplitude"] / amplitude - 1) < 1e-6]
+
+
+def reduction_table(results, drained):
+    """G/G_max and damping ratio, one row for each amplitude."""
+    columns = [(law, pressure) for law in plan.LAWS for pressure in plan.REDUCTION_PRESSURES]
+    lines = ["| γ | " + " | ".join(f"{'linear' if law == 'linear-rolling' else 'Hertz'}, {pressure} kPa"
+                                   for law, pressure in columns) + " |", "|---|" + "---|" * len(columns)]
+    for amplitude in plan.AMPLITUDES:
+        cells = []
+        for law, pressure in columns:
+            runs = chosen(results, law, pressure, drained, amplitude)
+            cells.append("" if not runs else text([r["secant"] / r["shear_modulus"] for r in runs], 3) + "; " +
+                         text([r["damping_ratio"] for r in runs], 2, 100) + " %")
+        if any(cells):
+            lines.append(f"| {amplitude:.0e} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def halved_table(results):
+    """Damping ratio below 1e-5 with the local damping and with half of it."""
+    lines = ["| law | p', kPa | γ | | damping ratio, % | with half the damping of grains | G/G_max | with half |",
+             "|---|---|---|---|---|---|---|---|"]
+    for law in plan.LAWS:
+        for pressure in plan.REDUCTION_PRESSURES:
+            for amplitude in [a for a in plan.AMPLITUDES if a <= plan.SMALL]:
+                for drained in (True, False):
+                    full, half = (chosen(results, law, pressure, drained, amplitude, d)
+                                  for d in (plan.DAMPING, plan.DAMPING / 2))
+                    if full and half:
+                        lines.append(
+                            f"| {law} | {pressure} | {amplitude:.0e} | {'drained' if drained else 'undrained'} | "
+                            f"{text([r['damping_ratio'] for r in full], 4, 100)} | "
+                            f"{text([r['damping_ratio'] for r in half], 4, 100)} | "
+                            f"{text([r['secant'] / r['shear_modulus'] for r in full], 4)} | "
+                            f"{text([r['secant'] / r['shear_modulus'] for r in half], 4)} |")
+    return "\n".join(lines)
+
+
+def curve(results, law, pressure, drained):
+    """Amplitudes that were run, G/G_max and damping with their standard errors."""
+    points = []
+    for amplitude in plan.AMPLITUDES:
+        if runs := chosen(results, law, pressure, drained, amplitude):
+            points.append((amplitude, *mean([r["secant"] / r["shear_modulus"] for r in runs]),
+                           *mean([100 * r["damping_ratio"] for r in runs])))
+    return np.array(points).T
+
+
+def draw_reduction(results, drained, path):
+    """G/G_max above, damping ratio below, one column for each pressure."""
+    figure, axes = plt.subplots(2, len(plan.REDUCTION_PRESSURES), figsize=(10, 5.6), layout="constrained", sharex=True,
+                                sharey="row")
+    gamma = np.logspace(-6, -2, 200)
+    for column, pressure in enumerate(plan.REDUCTION_PRESSURES):
+        for name, curves, style in (("Darendeli (2001)", published.darendeli, "-"), ("Menq (2003)", published.menq, "--")):
+            reduction, damping = curves(gamma, 1e3 * pressure)
+            axes[0, column].semilogx(gamma, reduction, style, color="0.4", lw=1.2, label=name)
+            axes[1, column].semilogx(gamma, 100 * damping, style, color="0.4", lw=1.2)
+        for law in plan.LAWS:
+            points = curve(results, law, pressure, drained)
+            if points.size:
+                for row, at in ((0, 1), (1, 3)):
+                    axes[row, column].errorbar(points[0], points[at], points[at + 1], fmt="o-", ms=3.5, lw=1,
+                                               color=COLOURS[law], label=NAMES[law])
+        axes[0, column].set(title=f"p' = {pressure} kPa", ylim=(0, 1.08))
+        axes[1, column].set(xlabel="amplitude of shear strain", ylim=(0, None))
+        for row in (0, 1):
+            axes[row, column].grid(alpha=0.3, lw=0.4)
+    axes[0, 0].set_ylabel("G/G_max")
+    axes[1, 0].set_ylabel("damping ratio (%)")
+    axes[0, 0].legend(frameon=False, fontsize=8)
+    figure.suptitle("drained" if drained else "undrained", fontsize=10)
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def write(folder, docs):
+    """Figures beside the pages of `docs`, tables to the terminal."""
+    for page in ("hertz_mindlin", "modulus_reduction"):
+        (docs / page).mkdir(parents=True, exist_ok=True)
+    if stiffness := read(folder, "stiffness"):
+        draw_stiffness(stiffness, docs / "hertz_mindlin" / "stiffness.png")
+        print(stiffness_table(stiffness))
+    if reduction := read(folder, "reduction"):
+        for drained in (True, False):
+            draw_reduction(reduction, drained,
+                           docs / "modulus_reduction" / f"{'drained' if drained else 'undrained'}.png")
+            print(f"\n{'drained' if drained else 'undrained'}: G/G_max; damping ratio\n")
+            print(reduction_table(reduction, drained))
+        print("\n" + halved_table(reduction))
