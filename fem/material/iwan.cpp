@@ -48,9 +48,12 @@ std::string at_point(std::size_t i) { return "iwan: point " + std::to_string(i) 
 
 Backbone fit_hyperbola(unsigned n)
 {
-  require(n >= 4 && n <= 32, "elements", n, "4 to 32");
-  // lift, first and last node: those of the minimax error, found by search for n = 8 ... 20
-  const double lift = 0.018 * std::pow(12.0 / n, 1.35), ratio = std::pow(1.2 / (lift * lift), 1.0 / (n - 1));
+  require(n >= 4 && n <= 128, "elements", n, "4 to 128");
+  // Lift and last node: those of the minimax error, found by search for n = 8 ... 20; of many elements the last node is
+  // where the lifted hyperbola reaches the strength, and 1.2/lift would be beyond it.
+  const bool many = n > 32;
+  const double lift = 0.018 * std::pow(12.0 / n, many ? 1.53 : 1.35), last = many ? 1.0 : 1.2;
+  const double ratio = std::pow(last / (lift * lift), 1.0 / (n - 1));
   std::vector<double> x(n + 1, 0.0), f(n + 1, 0.0);
   for (unsigned k = 1; k <= n; ++k)
     {

@@ -24,7 +24,7 @@ struct IwanParameters
   double min_pressure = 200;               ///< nor below this. Pa
   double loosening_limit = 0.01;           ///< volumetric strain kept at most as loosening (see Iwan) [-]
   double substep = 2e-5;                   ///< strain of one sub-step at most [-]
-  unsigned elements = 12;                  ///< 4 ... 32; the error of the backbone is 1.8 % with 12, 1.2 % with 16
+  unsigned elements = 12;                  ///< 4 ... 128; backbone within 1.8 % with 12, 0.05 % with 128
 
   bool operator==(const IwanParameters &) const = default;
 };
@@ -37,7 +37,7 @@ struct Backbone
 };
 
 /// Weights that bring the sum to x/(1 + x) (Hardin and Drnevich 1972): its nodes lie a little above the hyperbola, so
-/// that the error is the same in both directions.   @throws InputError unless 4 <= elements <= 32
+/// that the error is the same in both directions.   @throws InputError unless 4 <= elements <= 128
 Backbone fit_hyperbola(unsigned elements);
 
 /// Sand under cyclic shear, of which a column of soil can liquefy without a grain: elements side by side, each elastic
@@ -96,7 +96,7 @@ public:
   double reference_strain(double pressure) const;
 
 private:
-  static constexpr std::size_t max_elements = 32, lanes = 4;
+  static constexpr std::size_t max_elements = 128, lanes = 4;
   enum : std::size_t // one point: its numbers, then its elements' deviators component by component
   {
     pressure,

@@ -41,7 +41,7 @@ constexpr Key in_scenes[] = {
   {.path = "critical_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "1000 kPa", .range = positive, .text = "Mean effective stress at which dilation ends.",
    .field = [](IwanParameters &p) -> Field { return &p.critical_pressure; }},
-  {.path = "elements", .kind = Kind::integer, .value = "12", .range = {4, 32},
+  {.path = "elements", .kind = Kind::integer, .value = "12", .range = {4, 128},
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
    .field = [](IwanParameters &p) -> Field { return &p.elements; }},
 };

@@ -69,7 +69,7 @@ TEST(ColumnSceneError, Materials)
   expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
                    {"layer.1.phase_transformation_ratio=0.6"});
   expect_complaint(sand + undrained + dynamic, {"must be in [0, 1]", "plastic work"}, {"layer.0.dilation=1.5"});
-  expect_complaint(sand + undrained + dynamic, {"must be in [4, 32]"}, {"layer.0.elements=40"});
+  expect_complaint(sand + undrained + dynamic, {"must be in [4, 128]"}, {"layer.0.elements=140"});
   expect_complaint(sand + "dilatoin = 3\n" + undrained + dynamic,
                    {"column.toml:6: layer.0.dilatoin", "mean layer.dilation?"});
 }

@@ -27,13 +27,13 @@ Gradient turned(const Gradient &h) // x -> y -> z -> x
 
 TEST(Iwan, ElementsFitTheHyperbola)
 {
-  for (unsigned n = 4; n <= 32; ++n)
+  for (unsigned n = 4; n <= 128; ++n)
     {
       const Backbone b = fit_hyperbola(n);
       EXPECT_NEAR_BECAUSE(std::accumulate(b.weights.begin(), b.weights.end(), 0.0), 1, 1e-12,
-                          "round-off of a linear system of up to 32 unknowns");
+                          "round-off of a linear system of up to 128 unknowns");
       EXPECT_NEAR_BECAUSE(std::inner_product(b.weights.begin(), b.weights.end(), b.yield_strains.begin(), 0.0), 1,
-                          1e-12, "round-off of a linear system of up to 32 unknowns");
+                          1e-12, "round-off of a linear system of up to 128 unknowns");
       EXPECT_GT(*std::min_element(b.weights.begin(), b.weights.end()), 0);
       double worst = 0;
       for (double x = 1e-4; x < 1e3; x *= 1.01)
@@ -43,7 +43,7 @@ TEST(Iwan, ElementsFitTheHyperbola)
             tau += b.weights[k] * std::min(x, b.yield_strains[k]);
           worst = std::max(worst, std::abs(tau * (1 + x) / x - 1));
         }
-      if (n % 4 == 0)
+      if (n % 4 == 0 && (n <= 32 || n % 32 == 0))
         std::printf("%u elements: backbone within %.2f %% of the hyperbola\n", n, 100 * worst);
       if (n >= 8)
         {
@@ -52,7 +52,7 @@ TEST(Iwan, ElementsFitTheHyperbola)
         }
     }
   EXPECT_THROW(fit_hyperbola(3), InputError);
-  EXPECT_THROW(fit_hyperbola(33), InputError);
+  EXPECT_THROW(fit_hyperbola(129), InputError);
 }
 
 TEST(Iwan, BackboneAtConstantPressure)
