@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/scene.hpp"
 
+#include "apps/deposit/layer_tables.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
 
@@ -134,12 +135,15 @@ std::array<Motion, 3> column_motions(const ColumnScene &scene)
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides)
 {
-  return checked_scene(SceneDocument(column_schema(), text, name, overrides));
+  SceneDocument document(column_schema(), text, name, overrides);
+  expand_layer_tables(document, name);
+  return checked_scene(document);
 }
 
 ColumnScene read_column_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
-  const SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
+  SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
+  expand_layer_tables(document, path);
   ColumnScene scene = checked_scene(document);
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);

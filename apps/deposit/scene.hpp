@@ -58,6 +58,7 @@ struct ColumnLayer : Layer
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
   IwanParameters iwan;    ///< of no meaning to other materials; its stiffness is the layer's, see sand()
   SpecimenRequest grains; ///< of no meaning to other materials
+  std::string table;      ///< only in files: when a scene has been read, its rows have become layers
 
   bool from_formula() const { return shear_modulus || shear_velocity; }
   double small_strain_modulus() const; ///< G, Pa, whichever of the two was given (rho V_s^2)
@@ -207,8 +208,8 @@ std::array<Motion, 3> column_motions(const ColumnScene &scene);
 /// tested: tests/apps/deposit/scene_test.cpp, tests/apps/deposit/scene_error_test.cpp
 ColumnScene read_column_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
-/// The same from text; `name` stands for the file in messages. Does not touch the disk: motion files are not looked for
-/// and keep their path, an output folder left out stays empty.
+/// The same from text; `name` stands for the file in messages. Motion files are not looked for and keep their path, an
+/// output folder left out stays empty; a `layer.table` is read, as read_column_scene() reads it.
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides = {});
 

@@ -106,6 +106,11 @@ constexpr Key ground_keys[] = {
    .presence = Presence::required, .value = "5 m", .range = positive, .reason = "because a layer without height has no cells",
    .text = "Thickness of the layer.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.thickness; }},
+  {.path = "layer.table", .kind = Kind::text, .presence = Presence::optional, .value = "profile.csv", .kinds = formula,
+   .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become layers "
+           "that share all other keys of this one. Its first line names the columns `thickness (m)`, `shear_velocity "
+           "(m/s)` and `density (kg/m3)`, among others if need be; found as `motion.file` is.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.table; }},
   {.path = "layer.cells", .kind = Kind::integer, .presence = Presence::experiment, .value = "10", .range = counts,
    .group = "cells", .text = "Elements through the thickness.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cells; }},

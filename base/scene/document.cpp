@@ -212,6 +212,30 @@ const toml::node *SceneDocument::find(std::string_view path) const
   return node;
 }
 
+void SceneDocument::repeat(const std::string &array, std::size_t i, const std::string &instead,
+                           const std::vector<toml::table> &rows)
+{
+  toml::array &items = *root_.get(array)->as_array();
+  items.get(i)->as_table()->erase(instead);
+  const toml::table pattern = *items.get(i)->as_table();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    {
+      if (k > 0)
+        items.insert(items.cbegin() + static_cast<std::ptrdiff_t>(i + k), pattern);
+      for (const auto &[key, value] : rows[k])
+        items.get(i + k)->as_table()->insert(key, value);
+    }
+  for (std::string &set : overridden_)
+    {
+      std::vector<std::string> words = split(set);
+      const auto number = words[0] == array && words.size() > 1 ? as_index(words[1]) : std::nullopt;
+      if (!number || *number <= i)
+        continue;
+      words[1] = std::to_string(*number + rows.size() - 1);
+      set = fmt::format("{}", fmt::join(words, "."));
+    }
+}
+
 std::string SceneDocument::where(std::string_view path) const
 {
   for (const std::string &set : overridden_)

@@ -45,6 +45,12 @@ public:
   /// "scene.toml:14", or "--set motion.damping"; of a path that is not there, the line of the table it belongs to.
   std::string where(std::string_view path) const;
 
+  /// In the place of entry i of an array of tables as many of it as there are rows, each without the key `instead` and
+  /// with the values of its row. The first keeps its lines in the file; --set of later entries follows them.
+  /// @pre the entry is there, rows are not empty and have no key that it has
+  void repeat(const std::string &array, std::size_t i, const std::string &instead,
+              const std::vector<toml::table> &rows);
+
   /// Throws InputError "where: path = value; problem".
   [[noreturn]] void refuse(std::string_view path, std::string_view problem) const;
 

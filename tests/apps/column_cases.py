@@ -1,25 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Columns that are solved by Isostat and by others, and how far apart two motions are. For column_others_test.py and
-benchmarks/column_others.py."""
+"""Columns that are solved by Isostat and by others, and how far apart two motions are. For column_others_test.py,
+column_published_test.py and benchmarks/column_others.py."""
 import pathlib
 
 import numpy as np
 from scipy import signal
 
+from column_layers import Layers
 from column_masing import ShearBeam
 
-RECORD = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/motions/simulated_m6.5_20km_x.at2"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RECORD = ROOT / "apps/scenes/motions/simulated_m6.5_20km_x.at2"
 HEIGHT, DENSITY, VELOCITY, STRENGTH_RATIO, SURCHARGE, GRAVITY, REFERENCE = 20.0, 1900.0, 200.0, 0.55, 20e3, 9.81, 100e3
 DEPTHS = (10.1, 19.9)
 HARMONIC = 'kind = "harmonic"\namplitude = "{} m/s2"\nfrequency = "2 Hz"\nduration = "4 s"\nramp = "1 s"'
+RICKER = 'kind = "ricker"\namplitude = "0.001 m/s2"\nfrequency = "4 Hz"'
+ROCK = {"velocity": 800.0, "density": 2300.0}
 RECORDED = f'kind = "record"\nfile = "{RECORD}"\npeak = "{{}} m/s2"'
 
 
-def sand_scene(motion, *, cells=80, elements=128, step=2e-4, duration=5.0, rows=1):
+def sand_scene(motion, *, cells=80, elements=128, step=2e-4, duration=5.0, rows=1, rock=None):
     """20 m of sand whose stiffness and strength follow the mean stress and which shear neither contracts nor dilates.
 
-    motion   text of [[motion]]      step   s      rows   time steps between rows of the histories
+    motion   text of [[motion]]      step   s      rows   time steps between rows of the histories      rock   as ROCK
     """
+    base = f'density = "{rock["density"]} kg/m3"\nshear_velocity = "{rock["velocity"]} m/s"' if rock else ""
     return f"""title = "sand that neither contracts nor dilates"
 [mesh]
 degree = 1
@@ -36,6 +41,9 @@ strength_ratio = {STRENGTH_RATIO}
 contraction = 0
 dilation = 0
 elements = {elements}
+[base]
+kind = "{"compliant" if rock else "rigid"}"
+{base}
 [[motion]]
 {motion}
 [load]
@@ -57,6 +65,58 @@ def sand(depth):
 
 def sand_beam(n):
     return ShearBeam(HEIGHT, n, DENSITY, sand)
+
+
+def sand_layers(n, rock=None):
+    """The sand at small strain in n layers, and the reference strains in the middle of them."""
+    depth = (np.arange(n) + 0.5) * HEIGHT / n
+    modulus, strength = sand(depth)
+    layers = Layers(np.full(n, HEIGHT / n), np.sqrt(modulus / DENSITY), DENSITY,
+                    rock=(rock["velocity"], rock["density"]) if rock else None)
+    return layers, strength / modulus
+
+
+def published():
+    """The example of nrattle (tests/reference/nrattle): rows of the profile, frequencies, amplification."""
+    profile, table = (np.loadtxt(ROOT / f"tests/reference/nrattle/{name}.csv", delimiter=",", skiprows=1)
+                      for name in ("profile", "amplification"))
+    return profile, *table.T
+
+
+def published_scene(folder, corner, per_wave, duration):
+    """The same profile as a scene of soil_column, in a folder that gets its tables and the motion: a smooth pulse of
+    acceleration, whose spectrum falls from 1 at 0 Hz to 0.64 at `corner`. Neighbours that are equal are one layer, and
+    those that are equal to the half-space belong to it.
+
+    corner   highest frequency, Hz      per_wave   elements for the shortest wave, at least      duration   s
+    """
+    profile, *_ = published()
+    rock, layers = profile[-1, 1:], []
+    for thickness, *soil in profile:
+        if layers and layers[-1][1:] == soil:
+            layers[-1][0] += thickness
+        else:
+            layers.append([thickness, *soil])
+    layers = np.array(layers[:-1])
+    scene = f'[base]\nkind = "compliant"\ndensity = "{rock[1]} kg/m3"\nshear_velocity = "{rock[0]} m/s"\n'
+    edges = [0, 1100, 1400, 1900, 2600, np.inf]
+    for k, (slow, fast) in enumerate(zip(edges, edges[1:])):
+        rows = layers[(layers[:, 1] >= slow) & (layers[:, 1] < fast)]
+        np.savetxt(folder / f"layers_{k}.csv", rows, fmt="%.10g", delimiter=",", comments="",
+                   header="thickness (m),shear_velocity (m/s),density (kg/m3)")
+        scene += (f'[[layer]]\ntable = "layers_{k}.csv"\ncell_size = "{rows[:, 1].min() / corner / per_wave} m"\n'
+                  'material = "elastic"\npoisson_ratio = 0.0\n')
+    width = 0.15 / corner
+    time = np.arange(0, 16 * width, 1e-4)
+    np.savetxt(folder / "pulse.txt", np.column_stack([time, np.exp(-((time / width - 8) ** 2) / 2)]))
+    return scene + ('[water]\ndrainage = "dry"\n[[motion]]\nkind = "record"\nfile = "pulse.txt"\nunit = "m/s2"\n'
+                    f'[analysis]\nduration = "{duration} s"\n[output]\nhistory_interval = "1 ms"\n')
+
+
+def amplification(rows, frequency):
+    """Fourier spectrum of the surface over that of the motion that was given."""
+    turn = np.exp(-2j * np.pi * np.outer(frequency, rows["time"]))
+    return np.abs(turn @ rows["surface_ax"]) / np.abs(turn @ rows["input_ax"])
 
 
 def low_passed(motion, interval, corner):

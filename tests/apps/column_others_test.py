@@ -1,25 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The soil column against solutions that owe nothing to Isostat (column_masing.py)."""
-import json
-
+"""The soil column against solutions that owe nothing to Isostat: column_masing.py, column_layers.py."""
 import numpy as np
 
 import column_cases as cases
+from column_layers import equivalent_linear, hyperbola
 from column_masing import Masing
-from column_support import ColumnTest, history
+from column_support import ColumnTest
 from support import main
 
 
-class OthersTest(ColumnTest):
-    def rows_of(self, text, name="run"):
-        result = self.run_column(self.write(f"{name}.toml", text), "-o", name, "--quiet")
-        self.assert_done(result)
-        folder = self.folder / name
-        return history(folder), json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-
-
-class Sand(OthersTest):
+class Sand(ColumnTest):
     def test_rules_of_masing_by_hand(self):
         """The reference itself: a loop inside a loop inside the backbone."""
         law, f = Masing(1.0, 1.0), lambda x: x / (1 + abs(x))
@@ -59,6 +50,37 @@ class Sand(OthersTest):
         for mine, other in pairs:
             mine, other = (cases.low_passed(a, interval, 10) for a in (mine, np.interp(time, at, other)))
             self.assert_close(mine, other, 0.01, numerics)
+
+    def test_hyperbola_of_equivalent_linear_soil(self):
+        """Secant and damping against the loop that Masing's rules draw."""
+        for strain in (1e-4, 0.02, 1.0, 30.0):
+            law, path = Masing(1.0, 1.0), strain * np.cos(np.linspace(0, 2 * np.pi, 4001))
+            stress = np.array([law.to(np.array([x]))[0] for x in path])
+            work = np.sum((stress[1:] + stress[:-1]) / 2 * np.diff(path))
+            secant, damping = hyperbola(strain)
+            self.assert_close(secant, stress[0] / strain, 1e-12, "round-off")
+            self.assert_close(damping, work / (2 * np.pi * strain * stress[0]), 1e-3, "a loop of 4,000 pieces")
+
+    def test_small_strain(self):
+        rows, _ = self.rows_of(cases.sand_scene(cases.RICKER, cells=40, elements=64, step=4e-4, rock=cases.ROCK))
+        frequency = np.linspace(0.5, 10, 100)
+        linear = np.abs(cases.sand_layers(40, cases.ROCK)[0].surface(frequency))
+        self.assert_close(cases.amplification(rows, frequency), linear, 0.006, "dispersion in 40 linear elements")
+
+    def test_equivalent_linear_limits(self):
+        """Weak motion: the same. Strong motion: they part."""
+        layers, reference = cases.sand_layers(40, cases.ROCK)
+        periods, off = np.geomspace(0.1, 2, 30), []
+        for peak in (0.001, 0.1, 3):
+            rows, _ = self.rows_of(cases.sand_scene(cases.RECORDED.format(peak), cells=40, elements=64, step=4e-4,
+                                                    rows=10, duration=15, rock=cases.ROCK), f"peak_{peak}")
+            interval = rows["time"][1]
+            surface, _, _ = equivalent_linear(layers, reference, rows["input_ax"], interval)
+            mine, other = (cases.response_spectrum(a, interval, periods) for a in (rows["surface_ax"], surface))
+            off.append(np.abs(mine / other - 1).max())
+        self.assert_below(off[0], 0.006, "dispersion in 40 linear elements")
+        self.assert_below(off[1], 0.03, "strains of 3 % of the reference strain")
+        self.assertGreater(off[2], 0.2, "one stiffness for all of a strong motion is another soil")
 
 
 if __name__ == "__main__":

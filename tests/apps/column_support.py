@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of soil_column share: a small scene, running the program, comparing what it leaves behind."""
+import json
 import os
 import pathlib
 import subprocess
@@ -66,6 +67,13 @@ class ColumnTest(AppTest):
 
     def run_column(self, *arguments):
         return self.run_app("soil_column", *arguments, "--no-figures")
+
+    def rows_of(self, text, name="run"):
+        """History and summary of a scene."""
+        result = self.run_column(self.write(f"{name}.toml", text), "-o", name, "--quiet")
+        self.assert_done(result)
+        folder = self.folder / name
+        return history(folder), json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
     def run_on_ranks(self, n, *arguments):
         command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
