@@ -221,6 +221,20 @@ std::string density_text(const TestSummary &s)
   return fmt::format("D_r = {:.3f}{}", *s.relative_density, limits);
 }
 
+Json control_json(const std::vector<ControlLoss> &losses)
+{
+  Json list = Json::array();
+  for (const auto &[stage, quantity, deviation, share] : losses)
+    list.push_back({{"stage", stage},
+                    {"quantity", name_of(quantity)},
+                    {"target", deviation.target},
+                    {"worst", deviation.value},
+                    {"strain", deviation.began},
+                    {"step", deviation.step},
+                    {"share", share}});
+  return list;
+}
+
 Json liquefaction_json(const TestSummary &s)
 {
   if (!s.liquefied)
@@ -258,6 +272,7 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.axial = std::any_of(scene.stages.begin(), scene.stages.end(), is_axial);
   summary.shear = shear_extremes(folder, scene);
   summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
+  summary.losses = state.control.losses;
   summary.strain_before = state.undrained.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
   add_path(history, scene, summary);
@@ -300,6 +315,8 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   text += s.shear ? shear_text(s) : axial_text(s);
   if (s.energy_residual >= 0)
     text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
+  for (const ControlLoss &loss : s.losses)
+    text += "\n  " + to_text(loss, scene.control);
   return text + "\n";
 }
 
@@ -322,6 +339,7 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   if (s.shear)
     json.update(shear_json(*s.shear));
   json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
+  json["control_lost"] = control_json(s.losses);
   json["liquefaction"] = liquefaction_json(s);
   write_json(path, json);
 }

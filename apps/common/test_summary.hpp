@@ -43,6 +43,7 @@ struct TestSummary
   std::size_t first_row = 0, onset_row = 0;
   bool axial = false;                 ///< has a triaxial shear stage
   std::optional<ShearExtremes> shear; ///< has a simple shear stage
+  std::vector<ControlLoss> losses;    ///< of control, in all stages (dem/drive/control.hpp)
 };
 
 /// @param specimen  its figures (Specimen::numbers)

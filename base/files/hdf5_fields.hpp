@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 namespace isostat::hdf5
 {
@@ -16,8 +17,8 @@ inline constexpr const char *axis_names[] = {"_x", "_y", "_z"};
 } // namespace detail
 
 /// Stores a field in a group under its name: numbers as attributes of their own type (truth values and enumerations as
-/// whole numbers), vectors as three, a struct that lists its fields (for_each) as a group. An optional one is left out
-/// when it is empty.
+/// whole numbers), vectors as three, a struct that lists its fields (for_each) as a group, a list of them as a group of
+/// such. An optional one is left out when it is empty.
 /// tested: tests/dem/io/checkpoint_test.cpp
 template <class T>
 void write_field(Group &group, const std::string &name, const T &value)
@@ -40,6 +41,14 @@ void write_field(Group &group, const std::string &name, const std::optional<T> &
 {
   if (value)
     write_field(group, name, *value);
+}
+/// A list of structs as a group of groups "0", "1" ...; an empty one is an empty group.
+template <class T>
+void write_field(Group &group, const std::string &name, const std::vector<T> &values)
+{
+  Group below = group.create_group(name);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    write_field(below, std::to_string(i), values[i]);
 }
 /// A map as a group of attributes.
 template <class T>
@@ -73,6 +82,18 @@ void read_field(const Group &group, const std::string &name, std::optional<T> &v
   value.reset();
   if (group.has(name) || group.has_attribute(name))
     read_field(group, name, value.emplace());
+}
+template <class T>
+void read_field(const Group &group, const std::string &name, std::vector<T> &values)
+{
+  const Group below = group.group(name);
+  values.clear();
+  while (below.has(std::to_string(values.size())))
+    {
+      T value;
+      read_field(below, std::to_string(values.size()), value);
+      values.push_back(std::move(value));
+    }
 }
 template <class T>
 void read_field(const Group &group, const std::string &name, std::map<std::string, T> &values)

@@ -11,6 +11,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace isostat
 {
@@ -134,6 +136,65 @@ struct RecordedState
   ISOSTAT_FIELDS(p, load, strain, step, snapshot_strain)
 };
 
+/// What a stage is to have under control (dem/drive/control.hpp).
+enum class ControlledQuantity
+{
+  sigma_x,
+  sigma_y,
+  sigma_z,
+  tau_xy,
+  indicator
+};
+inline constexpr std::size_t n_controlled = 5;
+
+/// How far a controlled quantity went from where it should be, in one stage.
+struct Deviation
+{
+  double strain = 0;            ///< driven while it was outside of its tolerance, amount [-]
+  double worst = 0;             ///< relative, or the indicator [-]
+  double value = 0, target = 0; ///< then, Pa; of the indicator [-]
+  double began = 0;             ///< driven strain of the stage when it was outside for the first time, amount [-]
+  std::uint64_t step = 0;       ///< of the stage, then
+  bool told = false;            ///< it counts as lost, and the log says so
+
+  ISOSTAT_FIELDS(strain, worst, value, target, began, step, told)
+};
+
+/// Control that a stage lost.
+struct ControlLoss
+{
+  std::uint64_t stage = 0;
+  ControlledQuantity quantity = ControlledQuantity::sigma_x;
+  Deviation deviation;
+  double share = 0; ///< of the stage's strain that was driven meanwhile [-]
+
+  ISOSTAT_FIELDS(stage, quantity, deviation, share)
+};
+
+/// Control in the present stage, and what was lost in those before.
+struct ControlState
+{
+  double strain = 0;      ///< driven so far, amounts added up [-]
+  double last_strain = 0; ///< Loading::strain at the last check
+  Deviation sigma_x, sigma_y, sigma_z, tau_xy, indicator;
+  std::vector<ControlLoss> losses;
+
+  Deviation &of(ControlledQuantity quantity)
+  {
+    Deviation *const all[n_controlled] = {&sigma_x, &sigma_y, &sigma_z, &tau_xy, &indicator};
+    return *all[static_cast<std::size_t>(quantity)];
+  }
+  /// Of a new stage; the losses stay.
+  void restart()
+  {
+    ControlState fresh;
+    fresh.losses = std::move(losses);
+    *this = std::move(fresh);
+  }
+
+  ISOSTAT_FIELDS(strain, last_strain, sigma_x, sigma_y, sigma_z, tau_xy, indicator, losses)
+};
+
 /// All of it: a resumed run goes on from here to the same bits.
 struct DriveState
 {
@@ -144,7 +205,8 @@ struct DriveState
   ServoState servo;
   UndrainedRecord undrained;
   RecordedState recorded;
+  ControlState control;
 
-  ISOSTAT_FIELDS(place, pace, loading, path, servo, undrained, recorded)
+  ISOSTAT_FIELDS(place, pace, loading, path, servo, undrained, recorded, control)
 };
 } // namespace isostat

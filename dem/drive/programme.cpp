@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/programme.hpp"
 
+#include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
+
+#include <fmt/format.h>
 
 namespace isostat
 {
 namespace
 {
+constexpr std::uint64_t control_interval = 50;
+
 /// One stage at work.
 class StageRun
 {
@@ -34,6 +39,8 @@ public:
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.finished;
         record_if_due(seen, verdict);
+        if (stage_.shears())
+          look_at_control(seen, finished);
         move(seen, finished);
         state_.place.steps += 1;
         if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
@@ -49,6 +56,7 @@ private:
     state_.loading = {};
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
+    state_.control.restart();
     state_.pace.rate = 0; // of a shear stage: when it begins to shear
     stage_.begin(context_);
   }
@@ -59,8 +67,8 @@ private:
     if (stage_.shears() && state_.place.steps == 0)
       stage_.begin_shear(context_, stress);
     const StressInvariants now = invariants(stress);
-    const double axial = -strain_since_start(assembly_, state_.path)[1];
-    return {now.p, now.q, axial, assembly_.step(), stress(0, 1), state_.path.gamma};
+    const Vec3 strain = -strain_since_start(assembly_, state_.path);
+    return {now.p, now.q, strain[1], assembly_.step(), stress(0, 1), state_.path.gamma, -stress.diagonal(), strain};
   }
 
   void record_if_due(const Observation &seen, const Verdict &verdict)
@@ -80,6 +88,23 @@ private:
     const bool snapshot = stage_.shears() && spec.snapshots != "none" && (always || by_strain);
     last = {seen.p, load, strain, seen.step, snapshot ? strain : last.snapshot_strain};
     observer_.record(assembly_, state_, seen, snapshot);
+  }
+
+  void look_at_control(const Observation &seen, bool finished)
+  {
+    std::vector<std::string> lost;
+    if (state_.place.steps % control_interval == 1) // the indicator is of the step before
+      lost = check_control(programme_.control, stage_.kept_stresses(context_),
+                           {seen.stress[0], seen.stress[1], seen.stress[2], seen.tau}, stage_.planned_strain(), state_);
+    if (finished)
+      for (std::string &line : close_control(programme_.control, state_))
+        lost.push_back(std::move(line));
+    for (const std::string &line : lost)
+      observer_.event(line);
+    if (programme_.control.stop && !lost.empty())
+      throw RunFailure(fmt::format("step {}: {}. Lower motion.inertial_number, prepare a specimen that can carry the "
+                                   "stresses, or give control.on_loss = \"report\".",
+                                   seen.step, lost.front()));
   }
 
   void move(const Observation &seen, bool finished)

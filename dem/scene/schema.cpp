@@ -30,6 +30,12 @@ constexpr Section fixed_sections[] = {
     {.name = "motion",
      .text =
          "Equations of motion and their time step. The rate of loading follows from an inertial number, or is fixed."},
+    {.name = "control",
+     .text = "When a stage that shears counts as out of control: stresses that it is to keep (drained and constant-p: "
+             "the lateral "
+             "ones; path: all that are prescribed) off their targets, or too much inertia. Stage, quantity, target and "
+             "worst "
+             "value are told in the summary and on the terminal."},
     {.name = "stage",
      .text =
          "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "
@@ -202,14 +208,15 @@ A scene is one TOML file that says all about a run. This page is generated from 
 )";
 // clang-format on
 
-/// A rigid box is always consolidated isotropically, and the default law needs no name. Not writing them keeps the
+/// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
+/// controlled. Not writing them keeps the
 /// recipes of specimens that are in caches.
 bool is_implied(const Key &key, const void *scene)
 {
   const Scene &s = *static_cast<const Scene *>(scene);
   const std::string_view path = key.path;
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
-         (path == "contact.law" && is_default(s.contact));
+         (path == "contact.law" && is_default(s.contact)) || (path.starts_with("control.") && s.stages.empty());
 }
 
 /// The word of contact.law is a number of registered_laws().
@@ -259,6 +266,7 @@ struct WholeSchema
                  .field = [](Scene &, Stage &stage) -> Field { return EnumField(&stage); }}};
     runs.emplace_back(specimen_keys);
     runs.push_back(splice("motion", motion_keys(), 0, [](Scene &s) -> MotionSpec & { return s.motion; }));
+    runs.push_back(splice("control", control_keys(), 0, [](Scene &s) -> ControlSpec & { return s.control; }));
     runs.push_back({kind_key, "", 0, {}});
     runs.push_back(
         splice("stage", stage_keys(), 0, [](Scene &, Stage &stage) -> StageBehaviour & { return behaviour(stage); }));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "dem/assembly/assembly.hpp"
+#include "dem/drive/control.hpp"
 #include "dem/drive/drive_state.hpp"
 #include "dem/drive/motion_spec.hpp"
 
@@ -14,7 +15,9 @@ struct Observation
   double p, q;  ///< of the walls or of the cell, Pa
   double axial; ///< logarithmic strain since the start of shearing [-]
   std::uint64_t step;
-  double tau = 0, gamma = 0; ///< sigma_xy (Pa) and shear strain gamma_xy since then [-], positive together; cell only
+  double tau = 0, gamma = 0;  ///< sigma_xy (Pa) and shear strain gamma_xy since then [-], positive together; cell only
+  Vec3 stress = Vec3::Zero(); ///< sigma_x, sigma_y, sigma_z, Pa
+  Vec3 strain = Vec3::Zero(); ///< logarithmic along x, y, z since then [-]
 };
 
 /// What came of an observation.
@@ -83,6 +86,11 @@ public:
   /// The stress that it drives (Pa), and the strain since the start of shearing [-]: what rows are recorded by.
   virtual double load(const Observation &seen) const { return seen.q; }
   virtual double strain(const Observation &seen) const { return seen.axial; }
+
+  /// Stresses that it is to keep at this moment, and the amount of driven strain at which it ends, 0 if that is not
+  /// known: for the control (dem/drive/control.hpp) of a stage that shears.
+  virtual KeptStresses kept_stresses(const StageContext &) const { return {}; }
+  virtual double planned_strain() const { return 0; }
 
   /// How much of it is done, 0..1; nothing if that cannot be told.
   virtual std::optional<double> fraction_done(const DriveState &) const { return std::nullopt; }

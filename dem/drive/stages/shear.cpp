@@ -114,6 +114,12 @@ Mat3 ServoedShear::next_gradient(const StageContext &c, const Observation &seen)
   return gradient;
 }
 
+KeptStresses ServoedShear::kept_stresses(const StageContext &c) const
+{
+  const Vec3 lateral = lateral_stresses(c);
+  return {lateral[0], {}, lateral[2], {}};
+}
+
 Vec3 ConstantP::lateral_stresses(const StageContext &c) const
 {
   const double minus_axial = c.assembly.stress()(1, 1), p = c.state.path.lateral_target.mean();

@@ -38,6 +38,7 @@ public:
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
   double load(const Observation &seen) const final { return seen.*mode().load; }
   double strain(const Observation &seen) const final { return seen.*mode().strain; }
+  double planned_strain() const override { return strain_end; }
   std::optional<double> fraction_done(const DriveState &state) const override;
 
 protected:
@@ -58,6 +59,7 @@ class ServoedShear : public ShearStage
 public:
   RigidBox next_box(const StageContext &c, const Observation &seen) const final;
   Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;
+  KeptStresses kept_stresses(const StageContext &c) const final;
 
 protected:
   /// Along x, y, z; that along y is not looked at. Pa, compression positive.

@@ -99,6 +99,12 @@ struct Fill
   {
     (*this)(name, field.emplace());
   }
+  template <class T>
+  void operator()(const char *name, std::vector<T> &field)
+  {
+    for (int k = 0; k < 2; ++k)
+      (*this)(name, field.emplace_back());
+  }
 };
 
 /// All fields as text; what is missing is named as such.
@@ -124,6 +130,13 @@ struct Text
       (*this)(name, *field);
     else
       all += fmt::format("no {}; ", name);
+  }
+  template <class T>
+  void operator()(const char *name, const std::vector<T> &field)
+  {
+    all += fmt::format("{} of {}; ", field.size(), name);
+    for (const T &value : field)
+      (*this)(name, value);
   }
 };
 
