@@ -5,6 +5,7 @@
 #include "base/files/json.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/drive/rate_control.hpp"
+#include "dem/drive/stages/cyclic_response.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -209,6 +210,37 @@ Json shear_json(const ShearExtremes &shear)
           {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};
 }
 
+/// "limited flow (load 12.1 to 81.0 kPa, no stress reversal); softened from ... "
+std::string response_text(const TestSummary &s)
+{
+  std::string text = fmt::format("\n  cyclic response          {} ({}, loads from {:.2f} to {:.2f} kPa)", s.response,
+                                 reverses_stress(s.cycles) ? "with stress reversal" : "without stress reversal",
+                                 s.cycles.least_load / 1e3, s.cycles.largest_load / 1e3);
+  if (const std::optional<Softening> &flow = s.cycles.flow)
+    text += fmt::format("\n  it softened              after {} reversals from {:.2f} kPa at a strain of {:.4f} %",
+                        flow->reversals, flow->peak / 1e3, 100 * flow->strain);
+  return text;
+}
+
+/// Members of summary.json that only cyclic tests have.
+Json response_json(const TestSummary &s)
+{
+  const CyclicResponse &cycles = s.cycles;
+  Json json{{"name", s.response},
+            {"stress_reversal", reverses_stress(cycles)},
+            {"load_min", cycles.least_load},
+            {"load_max", cycles.largest_load},
+            {"strain_min", cycles.least_strain},
+            {"strain_max", cycles.most_strain},
+            {"softening", nullptr}};
+  if (cycles.flow)
+    json["softening"] = {{"reversals", cycles.flow->reversals},
+                         {"strain", cycles.flow->strain},
+                         {"peak", cycles.flow->peak},
+                         {"recovered", cycles.flow->recovered}};
+  return json;
+}
+
 Json or_null(std::optional<double> value) { return value ? Json(*value) : Json(); }
 
 /// "D_r = 0.640 (e_min 0.568, e_max 0.841)"
@@ -273,6 +305,10 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.shear = shear_extremes(folder, scene);
   summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
   summary.losses = state.control.losses;
+  for (const Stage &stage : scene.stages)
+    if (const auto *cyclic = as<CyclicConstantVolume>(stage))
+      summary.response = response_name(state.undrained, cyclic->mode());
+  summary.cycles = state.undrained.response;
   summary.strain_before = state.undrained.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
   add_path(history, scene, summary);
@@ -312,6 +348,8 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   if (s.cyclic)
     text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals,
                         s.worst_overshoot / 1e3);
+  if (!s.response.empty())
+    text += response_text(s);
   text += s.shear ? shear_text(s) : axial_text(s);
   if (s.energy_residual >= 0)
     text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
@@ -339,6 +377,8 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   if (s.shear)
     json.update(shear_json(*s.shear));
   json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
+  if (!s.response.empty())
+    json["cyclic_response"] = response_json(s);
   json["control_lost"] = control_json(s.losses);
   json["liquefaction"] = liquefaction_json(s);
   write_json(path, json);

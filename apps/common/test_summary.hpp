@@ -43,6 +43,8 @@ struct TestSummary
   std::size_t first_row = 0, onset_row = 0;
   bool axial = false;                 ///< has a triaxial shear stage
   std::optional<ShearExtremes> shear; ///< has a simple shear stage
+  std::string response;               ///< of the last cyclic stage (dem/drive/stages/cyclic_response.hpp); none: empty
+  CyclicResponse cycles;              ///< its figures
   std::vector<ControlLoss> losses;    ///< of control, in all stages (dem/drive/control.hpp)
 };
 

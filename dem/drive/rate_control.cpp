@@ -60,14 +60,14 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
   return std::max({inertia, difference / p_r, assembly.unbalanced_force_ratio() * mean_stress / p_r});
 }
 
-double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step)
+double next_rate(const Loading &loading, double rate, double load, double turning, double ramp_time, double time_step)
 {
   const double direction = sign(loading.direction), acceleration = rate / ramp_time;
   const double change = std::max(rate, std::abs(loading.signed_rate)) / ramp_time * time_step;
   const double next = loading.signed_rate + std::clamp(direction * rate - loading.signed_rate, -change, change);
-  if (limit <= 0 || loading.slope <= 0 || next * direction <= 0)
+  if (loading.slope <= 0 || next * direction <= 0)
     return next;
-  const double strain_left = std::max(0.0, (limit - direction * load) / loading.slope);
+  const double strain_left = std::max(0.0, (direction * turning - direction * load) / loading.slope);
   const double slowest = 0.1 * rate;
   const double braked = std::sqrt(slowest * slowest + 2 * acceleration * strain_left);
   return direction * std::min(std::abs(next), braked);

@@ -44,9 +44,10 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
 double bounded_rate(const Pace &pace, const Loading &loading);
 
 /// Driven rate for the next step, 1/s: goes towards sign(direction) * rate within `ramp_time`, and brakes with the same
-/// deceleration so that the load arrives at +-limit at a tenth of the rate: a load reversal is no jump either.
-/// @param rate  1/s   @param load  q or tau, Pa   @param limit  Pa; 0: no braking   @param ramp_time, time_step  s
-double next_rate(const Loading &loading, double rate, double load, double limit, double ramp_time, double time_step);
+/// deceleration so that the load arrives at its turning load at a tenth of the rate: a load reversal is no jump either.
+/// @param rate  1/s   @param load  q or tau, Pa   @param turning  load at which the direction will turn, Pa; of
+///        infinite amount: no braking   @param ramp_time, time_step  s
+double next_rate(const Loading &loading, double rate, double load, double turning, double ramp_time, double time_step);
 
 /// L sqrt(rho/E), s, the nominal time of a wave through the packing (shear waves in sand take some 3.5 times it): L the
 /// longest edge of a box or V^(1/3) of a cell, E the modulus of its contacts under the pressure `p0`, rho the density

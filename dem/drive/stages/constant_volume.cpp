@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/constant_volume.hpp"
 
+#include "base/error.hpp"
+#include "dem/drive/stages/cyclic_response.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -35,11 +38,34 @@ Verdict ConstantVolume::reached(const StageContext &c, const Observation &seen) 
   return verdict;
 }
 
+double CyclicConstantVolume::turning_load(const DriveState &state) const
+{
+  const double sigma_v = state.path.lateral_target[1];
+  return average(sigma_v) + sign(state.loading.direction) * amplitude(sigma_v);
+}
+
+void CyclicConstantVolume::begin_shear(const StageContext &c, const Mat3 &stress) const
+{
+  ConstantVolume::begin_shear(c, stress);
+  const double sigma_v = c.state.path.lateral_target[1], load = c.state.loading.window_load;
+  const double lower = average(sigma_v) - amplitude(sigma_v), upper = average(sigma_v) + amplitude(sigma_v);
+  if (load < lower || load > upper)
+    throw InputError(fmt::format(
+        "stage {} ({}): {} = {:.4g} kPa when it begins, outside of the loads {} = {:.4g} and {:.4g} kPa between which "
+        "it is "
+        "to turn. Bring the specimen between them first (docs/user_guide.md, \"Static bias\"), or change the loads.",
+        c.state.place.stage, kind(), mode().load_name, load / 1e3, limits_text(), lower / 1e3, upper / 1e3));
+  begin_response(load, c.state);
+}
+
 Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &seen) const
 {
   Verdict verdict = ConstantVolume::reached(c, seen);
   const UndrainedRecord &record = c.state.undrained;
-  if (sign(c.state.loading.direction) * load(seen) >= load_limit(c.state))
+  const double direction = sign(c.state.loading.direction);
+  follow_response(load(seen), strain(seen), amplitude(c.state.path.lateral_target[1]), mode(), seen.step, c.state,
+                  verdict);
+  if (direction * load(seen) >= direction * turning_load(c.state))
     turn(c, seen, verdict);
   const bool enough_after =
       record.liquefaction && record.reversals >= record.liquefaction->reversals + reversals_after_liquefaction;
@@ -52,9 +78,11 @@ void CyclicConstantVolume::turn(const StageContext &c, const Observation &seen, 
   const double now = load(seen);
   DriveState &state = c.state;
   UndrainedRecord &record = state.undrained;
-  record.worst_overshoot = std::max(record.worst_overshoot, std::abs(now) - load_limit(state));
+  record.worst_overshoot =
+      std::max(record.worst_overshoot, sign(state.loading.direction) * (now - turning_load(state)));
   record.reversals += 1;
   state.loading.direction = opposite(state.loading.direction);
+  turn_response(now, state);
   load_from_rest(c, now);
   verdict.notable = true;
   verdict.event =

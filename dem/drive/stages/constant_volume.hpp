@@ -38,9 +38,10 @@ public:
   const ShearMode &mode() const override { return simple_shear_mode; }
 };
 
-/// ... between two equal and opposite loads. The direction turns when |load| reaches the limit of the kind; because the
-/// walls brake before it (rate_control.hpp) and turn in the step that crosses, the overshoot is what one step at a
-/// tenth of the rate adds. The stage ends at whichever of its conditions comes first.
+/// ... between two loads, average - amplitude and average + amplitude. The direction turns when the load reaches the
+/// one ahead; because the walls brake before it (rate_control.hpp) and turn in the step that crosses, the overshoot is
+/// what one step at a tenth of the rate adds. The stage ends at whichever of its conditions comes first. What the
+/// specimen does under them is noted (cyclic_response.hpp).
 class CyclicConstantVolume : public ConstantVolume
 {
 public:
@@ -51,6 +52,14 @@ public:
   bool operator==(const CyclicConstantVolume &) const = default;
   double inertial_number() const final { return 7e-4; }
   std::optional<double> fraction_done(const DriveState &state) const final;
+  /// @throws InputError  the specimen stands outside of the two loads when the stage begins
+  void begin_shear(const StageContext &c, const Mat3 &stress) const final;
+
+  /// The loads between which it turns, Pa.   @param sigma_v  vertical stress when the stage begins, Pa
+  virtual double average(double sigma_v) const = 0;
+  virtual double amplitude(double sigma_v) const = 0;
+  /// The keys that say so, for messages: "deviator_average -+ deviator_amplitude".
+  virtual const char *limits_text() const = 0;
 
   /// The cyclic stress ratio (CSR) of this kind, in words: "q_amp / (2 p0')".
   virtual const char *stress_ratio_text() const = 0;
@@ -61,32 +70,36 @@ public:
 
 protected:
   Verdict reached(const StageContext &c, const Observation &seen) const final;
+  double turning_load(const DriveState &state) const final;
 
 private:
   void turn(const StageContext &c, const Observation &seen, Verdict &verdict) const;
 };
 
-/// Axial loading between +-q_amp.
+/// Axial loading between q_av - q_amp and q_av + q_amp.
 class UndrainedCyclic : public CyclicConstantVolume
 {
 public:
   double deviator_amplitude = 60e3; ///< q_amp, Pa
+  double deviator_average = 0;      ///< q_av, Pa: the static bias
 
   bool operator==(const UndrainedCyclic &) const = default;
   const char *kind() const override { return "undrained-cyclic"; }
   const char *stress_ratio_text() const override { return "q_amp / (2 p0')"; }
   void set_stress_ratio(double ratio, double p0) override { deviator_amplitude = 2 * ratio * p0; }
   void forget_stress_ratio() override { deviator_amplitude = UndrainedCyclic{}.deviator_amplitude; }
-
-protected:
-  double load_limit(const DriveState &) const override { return deviator_amplitude; }
+  double average(double) const override { return deviator_average; }
+  double amplitude(double) const override { return deviator_amplitude; }
+  const char *limits_text() const override { return "deviator_average -+ deviator_amplitude"; }
 };
 
-/// Simple shear between +-CSR sigma'_v0, sigma'_v0 the vertical stress when the stage begins; in a periodic cell only.
+/// Simple shear between (alpha - CSR) sigma'_v0 and (alpha + CSR) sigma'_v0, sigma'_v0 the vertical stress when the
+/// stage begins, alpha = tau_av / sigma'_v0 the static shear stress ratio; in a periodic cell only.
 class UndrainedCyclicSimpleShear : public CyclicConstantVolume
 {
 public:
-  double stress_ratio = 0.15; ///< CSR = tau_amp / sigma'_v0 [-]
+  double stress_ratio = 0.15;     ///< CSR = tau_amp / sigma'_v0 [-]
+  double static_stress_ratio = 0; ///< alpha = tau_av / sigma'_v0 [-]
 
   bool operator==(const UndrainedCyclicSimpleShear &) const = default;
   const char *kind() const override { return "undrained-cyclic-simple-shear"; }
@@ -94,8 +107,8 @@ public:
   const char *stress_ratio_text() const override { return "tau_amp / sigma'_v0"; }
   void set_stress_ratio(double ratio, double) override { stress_ratio = ratio; }
   void forget_stress_ratio() override { stress_ratio = UndrainedCyclicSimpleShear{}.stress_ratio; }
-
-protected:
-  double load_limit(const DriveState &state) const override { return stress_ratio * state.path.lateral_target[1]; }
+  double average(double sigma_v) const override { return static_stress_ratio * sigma_v; }
+  double amplitude(double sigma_v) const override { return stress_ratio * sigma_v; }
+  const char *limits_text() const override { return "(static_stress_ratio -+ stress_ratio) sigma'_v0"; }
 };
 } // namespace isostat

@@ -79,7 +79,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
   const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly, state.path.p0());
   update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));
   const double rate = bounded_rate(state.pace, loading);
-  loading.signed_rate = next_rate(loading, rate, present, load_limit(state), ramp_waves * wave, dt);
+  loading.signed_rate = next_rate(loading, rate, present, turning_load(state), ramp_waves * wave, dt);
   loading.strain += loading.signed_rate * dt;
   return loading.signed_rate * dt;
 }

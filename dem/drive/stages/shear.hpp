@@ -2,6 +2,8 @@
 #pragma once
 #include "dem/drive/stages/behaviour.hpp"
 
+#include <limits>
+
 namespace isostat
 {
 /// How a specimen is sheared: what is driven, how it is called, and what else must move to keep the volume.
@@ -47,8 +49,11 @@ protected:
   void load_from_rest(const StageContext &c, double present) const;
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
-  /// |load| at which the stage turns, Pa; 0: it does not.
-  virtual double load_limit(const DriveState &) const { return 0; }
+  /// Load at which the present direction turns, Pa; of infinite amount: it does not.
+  virtual double turning_load(const DriveState &state) const
+  {
+    return sign(state.loading.direction) * std::numeric_limits<double>::infinity();
+  }
   Verdict reached(const StageContext &c, const Observation &) const override;
 };
 

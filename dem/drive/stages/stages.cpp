@@ -66,12 +66,22 @@ constexpr Key keys[] = {
      .text = "Shear strain gamma_xy (its amount) at which the stage ends."}),
   of<&UndrainedCyclic::deviator_amplitude>(
     {.path = "deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-     .value = "60 kPa", .range = ranges::positive, .text = "q_amp: loading turns when |q| reaches it."}),
+     .value = "60 kPa", .range = ranges::positive, .text = "q_amp: loading turns at deviator_average + q_amp and at deviator_average - q_amp."}),
+  of<&UndrainedCyclic::deviator_average>(
+    {.path = "deviator_average", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+     .value = "0 kPa",
+     .text = "q_av, the static bias: the middle of the two deviators between which the stage turns. q must lie between "
+             "them when it begins, which takes anisotropic consolidation where 0 does not."}),
   of<&UndrainedCyclicSimpleShear::stress_ratio>(
     {.path = "stress_ratio", .value = "0.15", .range = ranges::to_one,
      .reason = "because this is a ratio of stresses that friction has to carry",
-     .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns when |tau| "
-             "reaches tau_amp."}),
+     .text = "tau_amp over the vertical effective stress at the start of the stage (CSR): loading turns at tau_av + tau_amp "
+             "and at tau_av - tau_amp."}),
+  of<&UndrainedCyclicSimpleShear::static_stress_ratio>(
+    {.path = "static_stress_ratio", .value = "0", .range = {-1, 1},
+     .reason = "because this is a ratio of stresses that friction has to carry",
+     .text = "tau_av over the vertical effective stress at the start of the stage (alpha, the static bias). tau must lie "
+             "between the two turning stresses when the stage begins."}),
   of<&ConstantVolume::liquefaction_ratio>(
     {.path = "liquefaction_ratio", .value = "0.01", .range = ranges::fraction,
      .text = "p'/p0' below which the specimen counts as liquefied."}),

@@ -45,7 +45,7 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
       for (int k = 0; sign(direction) * q < limit && k < 100000; ++k)
         {
           update_slope(loading, q, 20);
-          loading.signed_rate = next_rate(loading, rate, q, limit, ramp_time, dt);
+          loading.signed_rate = next_rate(loading, rate, q, sign(direction) * limit, ramp_time, dt);
           loading.strain += loading.signed_rate * dt;
           q = modulus * loading.strain;
         }
@@ -54,6 +54,25 @@ TEST(NextRate, ArrivesAtTheLimitAtATenthOfTheRate)
       EXPECT_BELOW_BECAUSE(std::abs(loading.signed_rate), 0.25 * rate,
                            "a tenth of the rate is aimed at; the slope is known as a mean of 20 steps");
     }
+}
+
+TEST(NextRate, BrakesBeforeATurningLoadOnTheOtherSideOfZero)
+{
+  // unloading from 90 to 30 kPa, as under a static bias
+  const double modulus = 1e9, rate = 2;
+  Loading loading{.direction = LoadDirection::extension};
+  start_loading(loading, 90e3, 0.5 * modulus);
+  double q = 90e3;
+  for (int k = 0; q > 30e3 && k < 100000; ++k)
+    {
+      update_slope(loading, q, 20);
+      loading.signed_rate = next_rate(loading, rate, q, 30e3, ramp_time, dt);
+      loading.strain += loading.signed_rate * dt;
+      q = 90e3 + modulus * loading.strain;
+    }
+  EXPECT_LT(30e3 - q, 50); // Pa
+  EXPECT_BELOW_BECAUSE(-loading.signed_rate, 0.25 * rate,
+                       "a tenth of the rate is aimed at; the slope is known as a mean of 20 steps");
 }
 
 TEST(NextRate, SlowsDownAsFastAsItIs)
