@@ -96,7 +96,7 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
   write_json(folder / "summary.json", summary);
   for (const ControlLoss &loss : summary.losses)
-    fmt::print(stderr, "warning: {}\n", to_text(loss, scene.control));
+    fmt::print(stderr, "warning: control lost: {}\n", to_text(loss, scene.control));
   return summary;
 }
 } // namespace isostat

@@ -308,6 +308,7 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   for (const Stage &stage : scene.stages)
     if (const auto *cyclic = as<CyclicConstantVolume>(stage))
       summary.response = response_name(state.undrained, cyclic->mode());
+  summary.drained = drained_stages(folder, scene);
   summary.cycles = state.undrained.response;
   summary.strain_before = state.undrained.max_strain_before;
   const CsvTable history = read_history(folder, scene.output.energy);
@@ -353,8 +354,9 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   text += s.shear ? shear_text(s) : axial_text(s);
   if (s.energy_residual >= 0)
     text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
+  text += to_text(s.drained);
   for (const ControlLoss &loss : s.losses)
-    text += "\n  " + to_text(loss, scene.control);
+    text += "\n  control lost             " + to_text(loss, scene.control);
   return text + "\n";
 }
 
@@ -379,6 +381,8 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
   if (!s.response.empty())
     json["cyclic_response"] = response_json(s);
+  if (!s.drained.empty())
+    json["drained"] = to_json(s.drained);
   json["control_lost"] = control_json(s.losses);
   json["liquefaction"] = liquefaction_json(s);
   write_json(path, json);

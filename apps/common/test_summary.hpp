@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/apps/liquefaction_resistance_test.py
 #pragma once
+#include "apps/common/drained_report.hpp"
 #include "dem/drive/drive_state.hpp"
 #include "dem/scene/scene.hpp"
 
@@ -45,6 +46,7 @@ struct TestSummary
   std::optional<ShearExtremes> shear; ///< has a simple shear stage
   std::string response;               ///< of the last cyclic stage (dem/drive/stages/cyclic_response.hpp); none: empty
   CyclicResponse cycles;              ///< its figures
+  std::vector<DrainedStage> drained;  ///< stages that a servo drains
   std::vector<ControlLoss> losses;    ///< of control, in all stages (dem/drive/control.hpp)
 };
 

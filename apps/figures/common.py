@@ -115,6 +115,7 @@ class Run:
         for name in ("p", "tau_xy", "sigma_y") if self.shear else ("p", "q", "eps_y"):
             if not self.has(name):
                 raise BadInput(f"history.csv: column `{name}` is missing or empty")
+        self.drained_stages = summary.get("drained") or []
         self.title = summary.get("title") or folder.resolve().name
         self.p0 = float(summary.get("p0") or self["p"][0])
         self.p_ratio = self["p"] / self.p0

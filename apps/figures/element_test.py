@@ -5,6 +5,8 @@
 
 fig_stress_path.png        triaxial: (a) q against p', (b) q against axial strain; drained triaxial: (c) volumetric
                            strain against axial strain; simple shear: tau against (a) sigma'_v, (b) p', (c) gamma
+fig_dilatancy.png          drained triaxial: of the last drained stage (a) q/p' and (b) the rate of dilatancy
+                           D = -d eps_v/d eps against axial strain, (c) q/p' against D
 fig_redundancy.png         (a) redundancy index I_R, (b) p'/p0'
 fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
 fig_fabric.png             (a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]
@@ -23,6 +25,7 @@ from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, cu
                           explain_median, legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt,
                           two_rows)
 from .drawing import Drawing
+from .dilatancy import dilatancy
 from .simple_shear import rotation, shear_path
 
 NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
@@ -129,6 +132,7 @@ def fabric(run):
 
 FIGURES = {
     "fig_stress_path": stress_path,
+    "fig_dilatancy": dilatancy,
     "fig_redundancy": redundancy,
     "fig_contact_fractions": contact_fractions,
     "fig_fabric": fabric,
@@ -137,7 +141,8 @@ FIGURES = {
 
 
 def undrawn(name, run):
-    if name != "fig_principal_stress" or run.shear:  # only simple shear turns the stresses
+    meant = {"fig_principal_stress": run.shear, "fig_dilatancy": False}  # of simple shear, of drained stages alone
+    if meant.get(name, True):
         note(f"{name}: none of its columns is there; not drawn")
 
 

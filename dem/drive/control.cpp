@@ -70,7 +70,7 @@ std::vector<std::string> lost_now(const ControlSpec &spec, double strain, DriveS
       if (deviation.told || !(deviation.strain > spec.strain_share * strain))
         continue;
       deviation.told = true;
-      lines.push_back(to_text(loss_of(state, quantity), spec));
+      lines.push_back("control lost: " + to_text(loss_of(state, quantity), spec));
     }
   return lines;
 }
@@ -121,11 +121,11 @@ std::string to_text(const ControlLoss &loss, const ControlSpec &spec)
       fmt::format("for {:.3g} % of the strain so far, first at a strain of {:.3g} % (step {} of the stage)",
                   100 * loss.share, 100 * d.began, d.step);
   if (loss.quantity == ControlledQuantity::indicator)
-    return fmt::format("stage {}: control lost: quasi-static indicator above {:g}, {:.3g} at worst, {}", loss.stage,
+    return fmt::format("stage {}: quasi-static indicator above {:g}, {:.3g} at worst, {}", loss.stage,
                        spec.indicator_tolerance, d.worst, where);
-  return fmt::format(
-      "stage {}: control lost: {} off its target by more than {:g} %, {:.4g} kPa instead of {:.4g} kPa at "
-      "worst, {}",
-      loss.stage, name_of(loss.quantity), 100 * spec.stress_tolerance, d.value / 1e3, d.target / 1e3, where);
+  return fmt::format("stage {}: {} off its target by more than {:g} %, {:.4g} kPa instead of {:.4g} kPa at "
+                     "worst, {}",
+                     loss.stage, name_of(loss.quantity), 100 * spec.stress_tolerance, d.value / 1e3, d.target / 1e3,
+                     where);
 }
 } // namespace isostat

@@ -41,7 +41,7 @@ std::vector<std::string> check_control(const ControlSpec &spec, const KeptStress
 /// At the end of a stage: what was lost joins DriveState::control.losses.   @return a line for each loss not yet told
 std::vector<std::string> close_control(const ControlSpec &spec, DriveState &state);
 
-/// "stage 0: control lost: sigma_x off its target of 200 kPa, 0.12 kPa at worst, for 71 % of the strain, from a strain
+/// "stage 0: sigma_x off its target of 200 kPa, 0.12 kPa at worst, for 71 % of the strain, from a strain
 /// of 0.31 % (step 8123) on"
 std::string to_text(const ControlLoss &loss, const ControlSpec &spec);
 /// Its name in messages and files: "sigma_x", "tau_xy", "indicator".

@@ -133,7 +133,7 @@ TEST(ControlOfARun, IsToldAndMayEndIt)
   catch (const RunFailure &failure)
     {
       const std::string text = failure.what();
-      for (const char *part : {"step ", "stage 0: control lost", "motion.inertial_number"})
+      for (const char *part : {"step ", "control lost: stage 0", "motion.inertial_number"})
         EXPECT_NE(text.find(part), std::string::npos) << text;
     }
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strength and dilatancy of the drained triaxial stages of a test, for its summary.
+// tested: tests/apps/drained_report_test.py
+#pragma once
+#include "base/files/json.hpp"
+#include "dem/measure/strength.hpp"
+#include "dem/scene/scene.hpp"
+
+#include <filesystem>
+
+namespace isostat
+{
+struct DrainedStage
+{
+  std::size_t stage = 0; ///< of the scene
+  DrainedStrength strength;
+};
+
+/// Of each stage that drives the axial strain while a servo keeps stresses, from history.csv.
+std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, const Scene &scene);
+
+/// Lines for the terminal, each after a line break.
+std::string to_text(const std::vector<DrainedStage> &stages);
+/// The member "drained" of summary.json.
+Json to_json(const std::vector<DrainedStage> &stages);
+} // namespace isostat

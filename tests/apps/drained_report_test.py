@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the summary of a drained test says of strength and dilatancy, against its history."""
+import csv
+import json
+
+import numpy as np
+
+from support import AppTest, main, tiny_scene
+
+STAGES = ('[[stage]]\nkind = "drained"\nstrain = 0.02\nstrain_rate = "1 1/s"\n'
+          '[[stage]]\nkind = "constant-p"\ndirection = "extension"\nstrain = 0.01\nstrain_rate = "1 1/s"\n')
+
+
+class DrainedReport(AppTest):
+    def setUp(self):
+        super().setUp()
+        self.result = self.run_app("element_test", self.write("scene.toml", tiny_scene(stages=STAGES)), "-o", "run")
+        self.assert_done(self.result)
+        self.numbers = json.loads((self.folder / "run/summary.json").read_text())
+        with open(self.folder / "run/history.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.history = {name.split(" ")[0]: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+    def test_strength_is_that_of_the_history(self):
+        h = self.history
+        self.assertEqual([stage["stage"] for stage in self.numbers["drained"]], [0, 1])
+        for stage in self.numbers["drained"]:
+            rows = h["stage"] == stage["stage"]
+            ratio = (h["q"] / h["p"])[rows]
+            volume = (h["eps_x"] + h["eps_y"] + h["eps_z"])[rows]
+            peak = ratio[np.argmax(abs(ratio))]
+            self.assert_close(stage["q_over_p_peak"], peak, 0.05, "a mean over 1 % of the strain, a row scatters more")
+            sine = 3 * abs(stage["q_over_p_peak"]) / (6 + stage["q_over_p_peak"])
+            self.assert_close(stage["friction_peak_deg"], np.degrees(np.arcsin(sine)), 1e-6, "digits of the file")
+            self.assert_near(stage["eps_v_end"], volume[-1], 1e-12, "digits of the file")
+            self.assert_near(stage["eps_v_max"], volume.max(), 1e-12, "digits of the file")
+        self.assertIsNotNone(self.numbers["drained"][0]["dilatancy_deg"])
+        self.assertIsNone(self.numbers["drained"][1]["dilatancy_deg"], "of compression alone")
+
+    def test_summary_and_figure_are_there(self):
+        for name in ("peak friction", "end friction", "largest dilatancy", "volumetric strain"):
+            self.assertIn(f"  {name:<25}", self.result.stdout)
+        self.assertTrue((self.folder / "run/figures/fig_dilatancy.png").stat().st_size > 10000)
+        report = (self.folder / "run/report.html").read_text(encoding="utf-8")
+        for part in ("peak friction", "fig_dilatancy"):
+            self.assertIn(part, report)
+
+
+if __name__ == "__main__":
+    main()
