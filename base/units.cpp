@@ -36,6 +36,9 @@ constexpr std::array units{
     Unit{"kPa", Dimension::pressure, 3},
     Unit{"MPa", Dimension::pressure, 6},
     Unit{"GPa", Dimension::pressure, 9},
+    Unit{"Pa/s", Dimension::stress_rate, 0},
+    Unit{"kPa/s", Dimension::stress_rate, 3},
+    Unit{"MPa/s", Dimension::stress_rate, 6},
     Unit{"deg", Dimension::angle, 0},
     Unit{"rad", Dimension::angle, 0},
     Unit{"tan", Dimension::angle, 0},
@@ -172,9 +175,9 @@ std::string format_angle(double tangent)
 
 std::string_view dimension_name(Dimension dimension)
 {
-  constexpr std::array<std::string_view, 11> names{"a length",        "a pressure",  "an angle",        "a rate",
-                                                   "a time",          "a density",   "a time interval", "a velocity",
-                                                   "an acceleration", "a frequency", "a duration"};
+  constexpr std::array<std::string_view, 12> names{
+      "a length",        "a pressure", "an angle",        "a rate",      "a time",     "a density",
+      "a time interval", "a velocity", "an acceleration", "a frequency", "a duration", "a stress rate"};
   return names[static_cast<std::size_t>(dimension)];
 }
 

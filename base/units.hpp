@@ -18,7 +18,8 @@ enum class Dimension
   velocity,     ///< m/s, cm/s, mm/s          kept in m/s; of waves, and of water in soil (permeability)
   acceleration, ///< m/s2, cm/s2 (gal), g     kept in m/s2; g is 9.80665 m/s2
   frequency,    ///< Hz, kHz                  kept in Hz
-  duration      ///< s, ms, min, h, d         kept in s; times from a time step to the years of consolidation
+  duration,     ///< s, ms, min, h, d         kept in s; times from a time step to the years of consolidation
+  stress_rate   ///< Pa/s, kPa/s, MPa/s       kept in Pa/s
 };
 
 /// A quantity read from text.

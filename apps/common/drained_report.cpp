@@ -10,7 +10,11 @@ namespace isostat
 {
 namespace
 {
-bool is_drained(const Stage &stage) { return as<ServoedShear>(stage); }
+bool is_drained(const Stage &stage)
+{
+  const auto *path = as<Path>(stage);
+  return as<ServoedShear>(stage) || (path && path->is_drained_triaxial());
+}
 } // namespace
 
 std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, const Scene &scene)

@@ -19,6 +19,12 @@ double major_angle(const Mat3 &stress)
 {
   return 0.5 * std::atan2(2 * stress(0, 1), stress(0, 0) - stress(1, 1)) * 180 / std::numbers::pi;
 }
+
+/// It has a stage whose three normal stresses p and q do not tell.
+bool has_path(const Scene &scene)
+{
+  return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &stage) { return as<Path>(stage); });
+}
 } // namespace
 
 std::vector<RecordColumn> history_columns(const Scene &scene)
@@ -36,6 +42,8 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
                                    {"sigma_y", "Pa"},
                                    {"sigma_z", "Pa"},
                                    {"sigma1_angle", "deg"}});
+  else if (has_path(scene))
+    columns.insert(columns.end(), {{"sigma_x", "Pa"}, {"sigma_y", "Pa"}, {"sigma_z", "Pa"}});
   if (scene.output.energy)
     for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "D_contact_damping",
                              "D_free_grains", "created", "residual"})
@@ -68,6 +76,8 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
       const Mat3 stress = assembly.stress();
       row.insert(row.end(), {seen.gamma, seen.tau, -stress(0, 0), -stress(1, 1), -stress(2, 2), major_angle(stress)});
     }
+  else if (has_path(scene))
+    row.insert(row.end(), seen.stress.begin(), seen.stress.end());
   if (scene.output.energy)
     {
       const EnergyBalance e = assembly.energy();

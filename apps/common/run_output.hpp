@@ -27,7 +27,7 @@ private:
 };
 
 /// Columns of history.csv: where the run stands, the micromechanics, of a periodic cell its stress tensor and shear
-/// strain, and the energy balance where it is measured.
+/// strain, of a box the normal stresses where a stage is a path, and the energy balance where it is measured.
 std::vector<RecordColumn> history_columns(const Scene &scene);
 
 /// One row of them.

@@ -46,7 +46,7 @@ double liquefaction_ratio(const Scene &scene)
   for (const Stage &stage : scene.stages)
     if (behaviour(stage).shears())
       {
-        const auto *undrained = as<ConstantVolume>(stage);
+        const auto *undrained = as<LiquefactionLimit>(stage);
         return undrained ? undrained->liquefaction_ratio : UndrainedMonotonic{}.liquefaction_ratio;
       }
   return UndrainedMonotonic{}.liquefaction_ratio;
@@ -129,7 +129,11 @@ std::string rate_text(const Scene &scene)
   return text;
 }
 
-bool is_cyclic(const Stage &stage) { return as<CyclicConstantVolume>(stage); }
+bool is_cyclic(const Stage &stage)
+{
+  const auto *path = as<Path>(stage);
+  return as<CyclicConstantVolume>(stage) || (path && path->turns());
+}
 
 bool shears_in(const Stage &stage, const ShearMode &mode)
 {

@@ -27,7 +27,7 @@ def steps_of(run, rows):
 
 def strain_of(stage, run, rows):
     """The strain that ends the stage, as an amount."""
-    name = "gamma_xy" if stage["kind"].endswith("simple-shear") else "eps_y"
+    name = "gamma_xy" if stage["kind"].endswith("simple-shear") or stage.get("drive") == "xy" else "eps_y"
     return abs(run.whole[name][rows.stop - 1]), "gamma" if name == "gamma_xy" else "axial strain"
 
 
@@ -44,8 +44,18 @@ def cyclic_end(stage, run, rows):
     return f"{name} of {100 * until['strain']:g} %" if strain >= REACHED * until["strain"] else None
 
 
+def path_end(stage, run, rows):
+    """By which of its conditions a path ended, as far as columns tell; it has no other end but its limit of steps."""
+    if stage["drive"] == "none":
+        return "its path and balance"
+    until = stage.get("until", {})
+    return f"the first of {', '.join(until)}" if until else None
+
+
 def shear_end(stage, run, rows):
     """What a stage that shears reached, or None if that was not its target."""
+    if stage["kind"] == "path":
+        return None if limit_reached(stage, run, rows) else path_end(stage, run, rows)
     if "until" in stage:
         return cyclic_end(stage, run, rows)
     strain, name = strain_of(stage, run, rows)
@@ -78,6 +88,8 @@ def endings(scene, run):
 
 def liquefaction(results, run):
     undrained = [stage for stage in results.scene.get("stage", []) if stage["kind"].startswith("undrained")]
+    if not undrained and results.numbers.get("liquefaction"):
+        undrained = [stage for stage in results.scene["stage"] if stage["kind"] == "path"]
     if not undrained:
         return
     event, ratio = results.numbers.get("liquefaction"), undrained[0].get("liquefaction_ratio", LIQUEFIED)

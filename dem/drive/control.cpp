@@ -83,13 +83,14 @@ std::vector<std::string> check_control(const ControlSpec &spec, const KeptStress
 {
   ControlState &control = state.control;
   const double driven = std::abs(state.loading.strain - control.last_strain),
-               least = least_share_of_p0 * state.path.p0();
+               p = std::max(state.path.p0(), state.path.lateral_target.mean());
   control.last_strain = state.loading.strain;
   control.strain += driven;
   for (std::size_t k = 0; k < targets.size(); ++k)
     if (targets[k])
       {
-        const double off = std::abs(stress[k] - *targets[k]) / std::max(std::abs(*targets[k]), least);
+        const double off =
+            std::abs(stress[k] - *targets[k]) / std::max(std::abs(*targets[k]), k < 3 ? least_share_of_p0 * p : p);
         add(control.of(all_quantities[k]), off, spec.stress_tolerance, stress[k], *targets[k], driven, state);
       }
   if (!state.undrained.liquefaction)

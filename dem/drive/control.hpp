@@ -14,7 +14,7 @@ namespace isostat
 /// From where on control counts as lost, and what follows.
 struct ControlSpec
 {
-  double stress_tolerance = 0.01;   ///< on |stress - target| / max(|target|, 0.05 p0') [-]
+  double stress_tolerance = 0.01;   ///< on |stress - target| / max(|target|, 0.05 p0'), of tau / max(|target|, p0') [-]
   double indicator_tolerance = 0.2; ///< on the quasi-static indicator (rate_control.hpp) [-]
   double strain_share = 0.05;       ///< lost: outside of a tolerance for more than this share of the stage's strain
   bool stop = false;                ///< a loss ends the run with an error

@@ -19,10 +19,11 @@ namespace isostat
 /// Where in the programme.
 struct ProgrammePlace
 {
-  std::uint64_t stage = 0;
+  std::uint64_t stage = 0; ///< its number in the programme
   std::uint64_t steps = 0; ///< of this stage so far
+  std::uint64_t done = 0;  ///< stages that are over, each as often as it was repeated
 
-  ISOSTAT_FIELDS(stage, steps)
+  ISOSTAT_FIELDS(stage, steps, done)
 };
 
 /// How fast a packing is strained.
@@ -89,6 +90,21 @@ struct PathState
     f("reference_lower", reference_.lower), f("reference_upper", reference_.upper);
     f("lateral_target", lateral_target_), f("start", start_), f("cell_strain", cell_strain_), f("gamma", gamma_);
   }
+};
+
+/// How far the present stage has come, if it is a path (dem/drive/stages/path.hpp). Compression positive.
+struct PathProgress
+{
+  Vec3 stress = Vec3::Zero();  ///< sigma_x, sigma_y, sigma_z when it began, Pa
+  double tau = 0;              ///< sigma_xy then, Pa
+  double volume = 0;           ///< then, m3
+  std::uint64_t reversals = 0; ///< before it
+  std::uint64_t table = 0;     ///< PathTable::hash() of its course
+  double place = 0;            ///< on its course, s or [-]
+  Vec3 strain = Vec3::Zero();  ///< so far, along x, y, z [-]
+  double gamma = 0;            ///< so far [-]
+
+  ISOSTAT_FIELDS(stress, tau, volume, reversals, table, place, strain, gamma)
 };
 
 /// What a stress servo goes on from.
@@ -226,11 +242,12 @@ struct DriveState
   Pace pace;
   Loading loading;
   PathState path;
+  PathProgress progress;
   ServoState servo;
   UndrainedRecord undrained;
   RecordedState recorded;
   ControlState control;
 
-  ISOSTAT_FIELDS(place, pace, loading, path, servo, undrained, recorded, control)
+  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control)
 };
 } // namespace isostat

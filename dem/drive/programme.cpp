@@ -39,7 +39,7 @@ public:
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.finished;
         record_if_due(seen, verdict);
-        if (stage_.shears())
+        if (stage_.drives())
           look_at_control(seen, finished);
         move(seen, finished);
         state_.place.steps += 1;
@@ -64,7 +64,7 @@ private:
   Observation look()
   {
     const Mat3 stress = assembly_.stress();
-    if (stage_.shears() && state_.place.steps == 0)
+    if (stage_.drives() && state_.place.steps == 0)
       stage_.begin_shear(context_, stress);
     const StressInvariants now = invariants(stress);
     const Vec3 strain = -strain_since_start(assembly_, state_.path);
@@ -131,15 +131,17 @@ private:
 
 RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveState &state, RunObserver &observer)
 {
-  while (state.place.stage < programme.stages.size())
+  const std::vector<std::size_t> order = order_of(programme.stages);
+  while (state.place.done < order.size())
     {
+      state.place.stage = order[state.place.done];
       set_damping(programme.motion, assembly.settings);
       const StageBehaviour &stage = behaviour(programme.stages[state.place.stage]);
       assembly.settings.carry_grains = programme.motion.carry_grains && stage.may_carry_grains();
       StageRun run(programme, stage, assembly, state, observer);
       if (run.run() == RunOutcome::interrupted)
         return RunOutcome::interrupted;
-      state.place = {state.place.stage + 1, 0};
+      state.place = {state.place.stage + 1, 0, state.place.done + 1};
     }
   return RunOutcome::finished;
 }

@@ -62,15 +62,22 @@ double quasi_static_indicator(const Assembly &assembly, double mean_stress, doub
 
 double next_rate(const Loading &loading, double rate, double load, double turning, double ramp_time, double time_step)
 {
-  const double direction = sign(loading.direction), acceleration = rate / ramp_time;
+  const double direction = sign(loading.direction);
   const double change = std::max(rate, std::abs(loading.signed_rate)) / ramp_time * time_step;
   const double next = loading.signed_rate + std::clamp(direction * rate - loading.signed_rate, -change, change);
   if (loading.slope <= 0 || next * direction <= 0)
     return next;
   const double strain_left = std::max(0.0, (direction * turning - direction * load) / loading.slope);
-  const double slowest = 0.1 * rate;
-  const double braked = std::sqrt(slowest * slowest + 2 * acceleration * strain_left);
-  return direction * std::min(std::abs(next), braked);
+  return braked_before(next, direction * strain_left, rate, ramp_time);
+}
+
+double braked_before(double next, double strain_left, double rate, double ramp_time)
+{
+  if (next * strain_left < 0) // still on the way back from the other direction
+    return next;
+  const double slowest = 0.1 * rate, acceleration = rate / ramp_time;
+  const double braked = std::sqrt(slowest * slowest + 2 * acceleration * std::abs(strain_left));
+  return std::copysign(std::min(std::abs(next), braked), next);
 }
 
 double wave_time(const Assembly &assembly, double p0)

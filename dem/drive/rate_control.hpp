@@ -49,6 +49,10 @@ double bounded_rate(const Pace &pace, const Loading &loading);
 ///        infinite amount: no braking   @param ramp_time, time_step  s
 double next_rate(const Loading &loading, double rate, double load, double turning, double ramp_time, double time_step);
 
+/// A rate that arrives after a strain at a tenth of the full one, with its deceleration rate/ramp_time, 1/s.
+/// @param next  1/s   @param strain_left  until the direction turns, signed as it [-]; of infinite amount: no braking
+double braked_before(double next, double strain_left, double rate, double ramp_time);
+
 /// L sqrt(rho/E), s, the nominal time of a wave through the packing (shear waves in sand take some 3.5 times it): L the
 /// longest edge of a box or V^(1/3) of a cell, E the modulus of its contacts under the pressure `p0`, rho the density
 /// of the grains.

@@ -79,8 +79,17 @@ void check_pressure(const SceneDocument &document, const Scene &scene)
 void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    if (behaviour(scene.stages[i]).needs_cell())
-      need_cell(document, scene.specimen, fmt::format("stage.{}.kind", i), "change the kind");
+    {
+      const std::string kind = fmt::format("stage.{}.kind", i);
+      if (const auto *path = as<Path>(scene.stages[i]))
+        if (const std::string problem = path->contradiction(); !problem.empty())
+          document.refuse(kind, problem + ".");
+      if (const auto *repeat = as<Repeat>(scene.stages[i]); repeat && repeat->stages > i)
+        document.refuse(fmt::format("stage.{}.stages", i),
+                        fmt::format("there are {} stages before this one. Give as many or fewer.", i));
+      if (behaviour(scene.stages[i]).needs_cell())
+        need_cell(document, scene.specimen, kind, "change the kind");
+    }
 }
 
 } // namespace

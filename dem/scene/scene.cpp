@@ -6,6 +6,7 @@
 #include "dem/scene/schema.hpp"
 
 #include <filesystem>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -54,6 +55,16 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
   if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
     scene.specimen.file =
         found_file(document, "specimen.file", path, place.path, true) + (place.entry.empty() ? "" : "#" + place.entry);
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (auto *stage = as<Path>(scene.stages[i]); stage && !stage->file.empty())
+      {
+        const std::string key = fmt::format("stage.{}.table", i);
+        stage->file = found_file(document, key, path, stage->file);
+        static_cast<void>(stage->table()); // what is wrong with it is told before any work
+        if (stage->needs_cell() && scene.specimen.domain != "periodic-cell")
+          document.refuse(
+              key, "prescribes shear, which needs the periodic cell. Give domain = \"periodic-cell\" in [specimen].");
+      }
   if (scene.output.folder.empty())
     scene.output.folder = "results/" + std::filesystem::path(path).stem().string();
   return scene;

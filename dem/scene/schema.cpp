@@ -181,8 +181,9 @@ constexpr Key output_keys[] = {
 
 constexpr KeyGroup groups[] = {{"size_curve"}, {"grain_size"}, {"preparation", "relative_density = 0.64"}, {"rate"}};
 
-constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::angle,   Dimension::rate,
-                                    Dimension::time,   Dimension::density,  Dimension::interval};
+constexpr Dimension dimensions[] = {Dimension::length,   Dimension::pressure,   Dimension::angle,
+                                    Dimension::rate,     Dimension::time,       Dimension::density,
+                                    Dimension::interval, Dimension::stress_rate};
 
 // clang-format off
 constexpr const char *defaults_head =

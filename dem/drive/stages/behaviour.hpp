@@ -69,12 +69,14 @@ public:
   virtual bool takes_steps() const { return true; } ///< false: done with begin()
   /// It shears: strains, p0' and liquefaction count from the first such stage, and snapshots are taken.
   virtual bool shears() const { return false; }
+  /// It drives strains or stresses at the pace of the rate control, whether strains count or not.
+  virtual bool drives() const { return shears(); }
   /// Grains of a box may share the homogeneous motion of its walls (motion.carry_grains). Not where all walls follow a
   /// stress: a servo that moves the grains whose forces it answers to feeds their oscillation.
   virtual bool may_carry_grains() const { return true; }
 
   virtual void begin(const StageContext &) const {}
-  /// At the first look of a stage that shears.    @param stress  Pa, tension positive
+  /// At the first look of a stage that drives.    @param stress  Pa, tension positive
   virtual void begin_shear(const StageContext &, const Mat3 & /*stress*/) const {}
   virtual Verdict judge(const StageContext &, const Observation &) const = 0;
 

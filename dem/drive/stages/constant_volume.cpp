@@ -21,20 +21,25 @@ Mat3 ConstantVolume::next_gradient(const StageContext &c, const Observation &see
   return mode().constant_volume(driven_step(c, seen));
 }
 
+void note_liquefaction(const LiquefactionLimit &limit, const ShearMode &mode, double strain, const Observation &seen,
+                       DriveState &state, Verdict &verdict)
+{
+  UndrainedRecord &record = state.undrained;
+  if (record.liquefaction)
+    return;
+  record.max_strain_before = std::max(record.max_strain_before, std::abs(strain));
+  if (seen.p >= limit.liquefaction_ratio * state.path.p0())
+    return;
+  record.liquefaction = Liquefaction{seen.step, record.reversals, strain};
+  verdict.notable = true;
+  verdict.event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {} reversals, {} {:.4g} %",
+                              limit.liquefaction_ratio, seen.step, record.reversals, mode.strain_name, 100 * strain);
+}
+
 Verdict ConstantVolume::reached(const StageContext &c, const Observation &seen) const
 {
   Verdict verdict = ShearStage::reached(c, seen);
-  UndrainedRecord &record = c.state.undrained;
-  if (record.liquefaction)
-    return verdict;
-  const double now = strain(seen);
-  record.max_strain_before = std::max(record.max_strain_before, std::abs(now));
-  if (seen.p >= liquefaction_ratio * c.state.path.p0())
-    return verdict;
-  record.liquefaction = Liquefaction{seen.step, record.reversals, now};
-  verdict.notable = true;
-  verdict.event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {} reversals, {} {:.4g} %",
-                              liquefaction_ratio, seen.step, record.reversals, mode().strain_name, 100 * now);
+  note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);
   return verdict;
 }
 

@@ -5,15 +5,28 @@
 
 namespace isostat
 {
-/// Constant-volume shear: an undrained test on saturated sand by the constant-volume method. In triaxial shear the
-/// axial rate is r, the lateral one -r/2; in simple shear the rate is that of gamma_xy and nothing else moves.
-/// Liquefaction is p'/p0 below `liquefaction_ratio`; the state notes step, reversals and largest strain before it.
-/// tested: tests/dem/drive/stages/constant_volume_test.cpp, tests/regression/
-class ConstantVolume : public ShearStage
+/// From where on a specimen counts as liquefied; of stages that keep the volume.
+class LiquefactionLimit
 {
 public:
   double liquefaction_ratio = 0.01; ///< p'/p0 below which the specimen counts as liquefied [-]
 
+  virtual ~LiquefactionLimit() = default;
+  bool operator==(const LiquefactionLimit &) const = default;
+};
+
+/// Notes the largest driven strain before initial liquefaction, and liquefaction with an event.
+/// @param strain  driven, since the start of shearing [-]
+void note_liquefaction(const LiquefactionLimit &limit, const ShearMode &mode, double strain, const Observation &seen,
+                       DriveState &state, Verdict &verdict);
+
+/// Constant-volume shear: an undrained test on saturated sand by the constant-volume method. In triaxial shear the
+/// axial rate is r, the lateral one -r/2; in simple shear the rate is that of gamma_xy and nothing else moves.
+/// Liquefaction is p'/p0 below `liquefaction_ratio`; the state notes step, reversals and largest strain before it.
+/// tested: tests/dem/drive/stages/constant_volume_test.cpp, tests/regression/
+class ConstantVolume : public ShearStage, public LiquefactionLimit
+{
+public:
   bool operator==(const ConstantVolume &) const = default;
   RigidBox next_box(const StageContext &c, const Observation &seen) const final;
   Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;

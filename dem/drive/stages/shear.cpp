@@ -14,7 +14,6 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t indicator_interval = 50;
-constexpr double servo_rate_factor = 4;     ///< the sides may move so much faster than the top
 constexpr double modulus_over_affine = 0.5; ///< after a reversal grains give way: 0.55 to 0.7 was seen
 } // namespace
 
@@ -52,13 +51,13 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
 {
   PathState &path = c.state.path;
   const StressInvariants now = invariants(stress);
-  if (!path.start)
+  if (!path.start && shears())
     {
       path.start = ShearStart{c.assembly.box().edges(), now.p};
       path.cell_strain.setZero();
       path.gamma = 0;
     }
-  set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.p0(), c.state.pace);
+  set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
   load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
 }
@@ -69,17 +68,27 @@ void ShearStage::load_from_rest(const StageContext &c, double present) const
   start_loading(c.state.loading, present, modulus_over_affine * affine);
 }
 
-double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
+void ShearStage::note_inertia(const StageContext &c, const Observation &seen)
 {
   DriveState &state = c.state;
   if (state.place.steps % indicator_interval == 0)
     state.pace.indicator =
         quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
+}
+
+double ShearStage::ramp_time(const Assembly &assembly) { return ramp_waves * wave_time(assembly); }
+
+double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
+{
+  DriveState &state = c.state;
+  note_inertia(c, seen);
   Loading &loading = state.loading;
   const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly, state.path.p0());
   update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));
   const double rate = bounded_rate(state.pace, loading);
   loading.signed_rate = next_rate(loading, rate, present, turning_load(state), ramp_waves * wave, dt);
+  loading.signed_rate =
+      braked_before(loading.signed_rate, turning_strain(state) - loading.strain, rate, ramp_waves * wave);
   loading.strain += loading.signed_rate * dt;
   return loading.signed_rate * dt;
 }

@@ -35,11 +35,11 @@ public:
   /// (docs/results/free_grains.md) [-].
   virtual double inertial_number() const { return 4e-5; }
   bool needs_cell() const override { return mode().needs_cell; }
-  bool shears() const final { return true; }
+  bool shears() const override { return true; }
   void begin(const StageContext &c) const override;
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
-  double load(const Observation &seen) const final { return seen.*mode().load; }
-  double strain(const Observation &seen) const final { return seen.*mode().strain; }
+  double load(const Observation &seen) const override { return seen.*mode().load; }
+  double strain(const Observation &seen) const override { return seen.*mode().strain; }
   double planned_strain() const override { return strain_end; }
   std::optional<double> fraction_done(const DriveState &state) const override;
 
@@ -54,6 +54,17 @@ protected:
   {
     return sign(state.loading.direction) * std::numeric_limits<double>::infinity();
   }
+  /// Driven strain of the stage at which the present direction turns [-]; of infinite amount: it does not.
+  virtual double turning_strain(const DriveState &state) const
+  {
+    return sign(state.loading.direction) * std::numeric_limits<double>::infinity();
+  }
+  /// Notes the quasi-static indicator at the present rate, every 50 steps.
+  static void note_inertia(const StageContext &c, const Observation &seen);
+  /// How long loads ramp, s.
+  static double ramp_time(const Assembly &assembly);
+  static constexpr double servo_rate_factor =
+      4; ///< axes that follow a stress may move so much faster than the driven one
   Verdict reached(const StageContext &c, const Observation &) const override;
 };
 

@@ -1,44 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/stages.hpp"
 
+#include "base/error.hpp"
+#include "dem/drive/stages/path_keys.hpp"
+#include "dem/drive/stages/stage_key.hpp"
+
 #include "base/scene/ranges.hpp"
+
+#include <fmt/format.h>
 
 namespace isostat
 {
 namespace
 {
-/// The bits of the kinds that are of a family, for Key::kinds.
-template <class Family, class... Kinds>
-constexpr unsigned kinds_of(const std::variant<Kinds...> *)
-{
-  unsigned kinds = 0, bit = 1;
-  ((kinds |= std::is_base_of_v<Family, Kinds> ? bit : 0, bit <<= 1), ...);
-  return kinds;
-}
-template <class... Family>
-constexpr unsigned kinds_in = (kinds_of<Family>(static_cast<const Stage *>(nullptr)) | ...);
-
-template <auto setting>
-struct InStage;
-template <class Part, class T, T Part::*setting>
-struct InStage<setting>
-{
-  static constexpr unsigned kinds = kinds_in<Part>;
-  Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }
-};
-
-/// The key of a setting. It belongs to the kinds given, or else to all that inherit the setting.
-template <auto setting, class... Kinds>
-constexpr Key of(Key key)
-{
-  if constexpr (sizeof...(Kinds) > 0)
-    key.kinds = kinds_in<Kinds...>;
-  else
-    key.kinds = InStage<setting>::kinds;
-  key.field = InStage<setting>{};
-  return key;
-}
-
 using Cyclic = CyclicConstantVolume;
 constexpr const char *directions[] = {"compression", "extension"};
 
@@ -82,7 +56,7 @@ constexpr Key keys[] = {
      .reason = "because this is a ratio of stresses that friction has to carry",
      .text = "tau_av over the vertical effective stress at the start of the stage (alpha, the static bias). tau must lie "
              "between the two turning stresses when the stage begins."}),
-  of<&ConstantVolume::liquefaction_ratio>(
+  of<&LiquefactionLimit::liquefaction_ratio>(
     {.path = "liquefaction_ratio", .value = "0.01", .range = ranges::fraction,
      .text = "p'/p0' below which the specimen counts as liquefied."}),
   {.path = "until", .kind = Kind::table, .presence = Presence::optional,
@@ -111,6 +85,12 @@ constexpr Key keys[] = {
   of<&SteppedStage::max_steps>(
     {.path = "max_steps", .kind = Kind::integer, .value = "0",
      .text = "Ends the stage after so many time steps; 0: no limit."}),
+  of<&Repeat::stages>(
+    {.path = "stages", .kind = Kind::integer, .value = "1", .range = {1, 1e3},
+     .text = "So many stages before this one are done again, in their order; a repeat among them counts as one."}),
+  of<&Repeat::times>(
+    {.path = "times", .kind = Kind::integer, .presence = Presence::required, .value = "10", .range = {1, 1e6},
+     .text = "How often they are done in all, the first time included."}),
   of<&Friction::friction>(
     {.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
      .presence = Presence::required, .value = "18 deg", .range = ranges::right_angle, .reason = ranges::because_tan,
@@ -138,5 +118,32 @@ std::span<const char *const> stage_kind_names()
   return names;
 }
 
-SceneFragment<StageBehaviour> stage_keys() { return {keys}; }
+SceneFragment<StageBehaviour> stage_keys()
+{
+  static const KeyTable table{keys, {path_keys().keys, "", 0, {}}};
+  return {table.keys()};
+}
+
+std::vector<std::size_t> order_of(const std::vector<Stage> &stages)
+{
+  std::vector<std::vector<std::size_t>> entries; // what each entry of the programme does, repeats what they add
+  for (std::size_t i = 0; i < stages.size(); ++i)
+    {
+      const auto *repeat = as<Repeat>(stages[i]);
+      entries.emplace_back();
+      if (!repeat)
+        entries[i] = {i};
+      else if (repeat->stages > i)
+        throw InputError(fmt::format("stage {} repeats the {} stages before it, but there are {}. Lower `stages`.", i,
+                                     repeat->stages, i));
+      else
+        for (std::uint64_t time = 1; time < repeat->times; ++time)
+          for (std::size_t k = i - repeat->stages; k < i; ++k)
+            entries[i].insert(entries[i].end(), entries[k].begin(), entries[k].end());
+    }
+  std::vector<std::size_t> order;
+  for (const std::vector<std::size_t> &entry : entries)
+    order.insert(order.end(), entry.begin(), entry.end());
+  return order;
+}
 } // namespace isostat

@@ -4,6 +4,8 @@
 #include "base/scene/fragment.hpp"
 #include "dem/drive/stages/consolidation.hpp"
 #include "dem/drive/stages/constant_volume.hpp"
+#include "dem/drive/stages/path.hpp"
+#include "dem/drive/stages/repeat.hpp"
 
 #include <variant>
 
@@ -11,7 +13,7 @@ namespace isostat
 {
 /// One stage of a programme, in the order of the words in messages and manual.
 using Stage = std::variant<Compress, Friction, Rebalance, UndrainedMonotonic, UndrainedCyclic, Drained, ConstantP, Hold,
-                           K0Compress, UndrainedSimpleShear, UndrainedCyclicSimpleShear>;
+                           K0Compress, UndrainedSimpleShear, UndrainedCyclicSimpleShear, Path, Repeat>;
 
 StageBehaviour &behaviour(Stage &stage);
 const StageBehaviour &behaviour(const Stage &stage);
@@ -27,6 +29,11 @@ Family *as(Stage &stage)
 {
   return dynamic_cast<Family *>(&behaviour(stage));
 }
+
+/// The stages of a programme in the order in which they are done, each as often as it is repeated: their numbers.
+/// @throws InputError  a repeat of more stages than there are before it
+/// tested: tests/dem/drive/stages/repeat_test.cpp
+std::vector<std::size_t> order_of(const std::vector<Stage> &stages);
 
 /// Words of the kinds in a scene, in the order of `Stage`.
 std::span<const char *const> stage_kind_names();
