@@ -96,6 +96,33 @@ class RunTest(ToleranceTest):
         with self.assertRaisesRegex(ZeroDivisionError, "mine"):
             self.run_scene(on_record=fail)
 
+    def test_a_path_keeps_its_stresses_and_is_repeated(self):
+        scene = isostat.Scene(SCENE[:SCENE.index("[[stage]]")] + """
+[[stage]]
+kind = "path"
+b = 0.5
+x = { keep = "p" }
+z = { keep = "b" }
+until = { strain = 1e-4 }
+[[stage]]
+kind = "path"
+direction = "extension"
+x = { keep = "stress" }
+z = { keep = "stress" }
+until = { q = "2 kPa", strain = 1e-2 }
+[[stage]]
+kind = "repeat"
+stages = 2
+times = 2
+""")
+        history = isostat.run(scene, specimen=self.specimen).history
+        stages = history["stage"].astype(int)
+        self.assertEqual(stages[np.flatnonzero(np.diff(stages, prepend=-1))].tolist(), [0, 1, 0, 1])
+        first = np.flatnonzero(np.diff(stages))[0] + 1
+        self.assert_close(history["p"][:first], history["p"][0], 0.005, "the servo follows a load that grows")
+        x, y, z = (history[f"sigma_{axis}"][:first][-1] for axis in "xyz")
+        self.assert_near((z - x) / (y - x), 0.5, 0.02, "the same, of a difference of stresses")
+
     def test_starts_from_a_packing(self):
         given = isostat.run(self.scene, specimen=self.specimen)
         np.testing.assert_array_equal(given.snapshot.positions, self.run_scene().snapshot.positions)

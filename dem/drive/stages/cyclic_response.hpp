@@ -13,8 +13,8 @@
 //     plastic strain accumulation  neither; strain grows in one direction, mostly without stress reversal
 //
 // These authors name no number at which a load "falls off". Here it counts as softening when the load has fallen by
-// more than a tenth of its amplitude below the peak of its half cycle and has not come back to that peak within 1 % of
-// axial strain (shear strain gamma 1.5 %). After a turn the load goes through zero on its way to the other side and
+// more than a tenth of its amplitude below the peak of its half cycle and has not come back to that peak within 0.1 %
+// of axial strain (shear strain gamma 0.15 %). After a turn the load goes through zero on its way to the other side and
 // rises from there: p' near zero at small loads, as in cyclic mobility, is no softening.
 // tested: tests/dem/drive/stages/cyclic_response_test.cpp
 #pragma once
@@ -23,7 +23,7 @@
 namespace isostat
 {
 constexpr double softening_load = 0.1;      ///< share of the load amplitude [-]
-constexpr double softening_gamma = 0.015;   ///< engineering shear strain, of axial strain 1.5 times as much [-]
+constexpr double softening_gamma = 0.0015;  ///< engineering shear strain, of axial strain 1.5 times as much [-]
 constexpr double accumulated_gamma = 0.075; ///< at which tests without liquefaction count as failed: 5 % axially [-]
 
 /// At the start of a cyclic stage.   @param load  driven, Pa
