@@ -196,7 +196,7 @@ void Path::walk(const StageContext &c) const
         const double way = std::abs(knots.value(q, knots.at[next], start) - knots.value(q, begin, start));
         seconds = std::max(seconds, way / (is_strain(q) ? pace.rate : stress_rate.value_or(stress_bound)));
       }
-  const double ramp = std::min(1.0, static_cast<double>(c.state.place.steps + 1) * dt / ramp_time(c.assembly));
+  const double ramp = std::min(1.0, static_cast<double>(c.state.place.steps + 1) * dt / ramp_time(c));
   progress.place =
       seconds > 0 ? std::min(progress.place + ramp * dt * width / seconds, knots.at.back()) : knots.at[next];
 }

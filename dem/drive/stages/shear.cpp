@@ -76,7 +76,7 @@ void ShearStage::note_inertia(const StageContext &c, const Observation &seen)
         quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
 }
 
-double ShearStage::ramp_time(const Assembly &assembly) { return ramp_waves * wave_time(assembly); }
+double ShearStage::ramp_time(const StageContext &c) { return ramp_waves * wave_time(c.assembly, c.state.path.p0()); }
 
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {

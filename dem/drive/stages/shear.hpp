@@ -62,7 +62,7 @@ protected:
   /// Notes the quasi-static indicator at the present rate, every 50 steps.
   static void note_inertia(const StageContext &c, const Observation &seen);
   /// How long loads ramp, s.
-  static double ramp_time(const Assembly &assembly);
+  static double ramp_time(const StageContext &c);
   static constexpr double servo_rate_factor =
       4; ///< axes that follow a stress may move so much faster than the driven one
   Verdict reached(const StageContext &c, const Observation &) const override;
