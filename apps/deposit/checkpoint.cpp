@@ -13,7 +13,8 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-column-checkpoint";
-constexpr std::uint64_t schema_version = 3; // 2: unknowns in the order of their numbers, the soil as one row of bytes
+// 2: unknowns in the order of their numbers, the soil as one row of bytes; 3: without viscosity
+constexpr std::uint64_t schema_version = 4;
 
 /// Numbers and vectors of a checkpoint or of the solver's state in it.
 template <class Part>

@@ -87,19 +87,20 @@ def smoothed_transfer(of_surface, of_input, dt, centres):
     return np.where(strong, smoothed(f[kept], np.abs(upper[kept]), centres) / np.where(below > 0, below, 1), np.nan)
 
 
-def exact_transfer(f, layer, base, mass_damping):
+def exact_transfer(f, layer, base, mass_damping=0.0, viscosity=0.0, viscous_above=25.0):
     """|F| of a uniform elastic layer, surface over the motion of a rigid base or the outcrop of an elastic one.
 
     rigid:     F = 1 + (w/w*)^2 (1/cos(k* H) - 1)                          damping of the motion relative to the base
-    compliant: F = 1 / (cos k* H + i G k* / (w rho_r V_r) sin k* H)
-    w*^2 = w^2 - i w a_M, k* = w*/V_s
+    compliant: F = 1 / (cos k* H + i G* k* / (w rho_r V_r) sin k* H)
+    w*^2 = w^2 - i w a_M, k* = w*/V*, V*^2 = V_s^2 (1 + i w beta i w/(i w + w_c)), G* = rho V*^2
     """
     w = 2 * np.pi * f
     complex_w = np.sqrt(w**2 - 1j * w * mass_damping)
-    k = complex_w / layer["velocity"]
+    velocity = layer["velocity"] * np.sqrt(1 - viscosity * w**2 / (1j * w + 2 * np.pi * viscous_above))
+    k = complex_w / velocity
     if base is None:
         return np.abs(1 + (w / complex_w) ** 2 * (1 / np.cos(k * layer["height"]) - 1))
-    impedance = layer["density"] * layer["velocity"] ** 2 * k / (w * base["density"] * base["velocity"])
+    impedance = layer["density"] * velocity**2 * k / (w * base["density"] * base["velocity"])
     return np.abs(1 / (np.cos(k * layer["height"]) + 1j * impedance * np.sin(k * layer["height"])))
 
 

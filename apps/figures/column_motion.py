@@ -135,9 +135,9 @@ def draw_transfer(column, axes, axis):
     if layer:
         fine = np.linspace(f_max / 4000, f_max, 4000)
         axes.plot(f, shown, color=COLOURS[axis], linewidth=2.2, alpha=0.75, label="computed")
-        axes.plot(fine, exact_transfer(fine, layer, column.base, column.mass_damping), color=BLACK, linewidth=0.9,
+        axes.plot(fine, exact_transfer(fine, layer, column.base, **column.damping), color=BLACK, linewidth=0.9,
                   linestyle=(0, (4, 2)), label="exact, elastic layer")
-        report_difference(f, ratio, exact_transfer(f, layer, column.base, column.mass_damping), strong, axis, column)
+        report_difference(f, ratio, exact_transfer(f, layer, column.base, **column.damping), strong, axis, column)
         top = 1.12 * np.nanmax(shown)
     else:
         centres = np.geomspace(max(0.1, 4 * f[0]), f_max, 600)

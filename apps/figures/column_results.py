@@ -118,7 +118,10 @@ class Column:
         scene = self.scene
         self.layers = [of_layer(table) for table in scene.get("layer", [])]
         self.consolidation = scene.get("analysis", {}).get("kind") == "consolidation"
-        self.mass_damping = quantity(scene.get("analysis", {}).get("mass_damping"), 0.0)
+        analysis = scene.get("analysis", {})
+        self.damping = {"mass_damping": quantity(analysis.get("mass_damping"), 0.0),
+                        "viscosity": quantity(analysis.get("viscosity"), 0.0),
+                        "viscous_above": quantity(analysis.get("highest_frequency"), 25.0)}
         self.spectrum_damping = float(scene.get("output", {}).get("spectrum_damping", 0.05))
         base = scene.get("base", {})
         self.base = None

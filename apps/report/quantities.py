@@ -15,7 +15,8 @@ SHOWN = {
         "liquefaction.row": "-", "liquefaction.cycle": "-", "liquefaction.strain_before": "%",
         "liquefaction.IR_at_onset": "-", "liquefaction.IR_min": "-", "liquefaction.IR_recovered": "-"},
     "soil_column": {
-        "dimension": "-", "height": "m", "mass_damping": "1/s", "spectrum_damping": "%", "elements": "-", "points": "-",
+        "dimension": "-", "height": "m", "mass_damping": "1/s", "viscosity": "ms",
+        "highest_frequency": "Hz", "spectrum_damping": "%", "elements": "-", "points": "-",
         "steps": "-", "time_step": "ms", "end": "s", "peak_input": "m/s2", "peak_surface": "m/s2",
         "amplification": "-", "peak_gamma": "%", "peak_gamma_depth": "m", "max_ru": "-", "max_ru_depth": "m",
         "max_ru_time": "s", "settlement": "mm", "immediate_settlement": "mm", "final_settlement": "mm",

@@ -16,6 +16,8 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
   settings.time_step = scene.analysis.time_step.value_or(0);
   settings.safety = scene.analysis.safety;
   settings.mass_damping = scene.analysis.mass_damping;
+  settings.viscosity = scene.analysis.viscosity;
+  settings.viscous_above = scene.analysis.highest_frequency;
   settings.drainage = scene.water.drainage;
   settings.lagged_compressibility = scene.water.lagged_compressibility;
   settings.base = scene.base;

@@ -121,6 +121,8 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"dimension", scene.mesh.dimension},
             {"height", scene.height()},
             {"mass_damping", scene.analysis.mass_damping},
+            {"viscosity", shaken(scene) ? Json(scene.analysis.viscosity) : Json()},
+            {"highest_frequency", shaken(scene) ? Json(scene.analysis.highest_frequency) : Json()},
             {"spectrum_damping", scene.output.spectrum_damping},
             {"requested_depths", scene.output.depths},
             {"depths", s.point_depths},

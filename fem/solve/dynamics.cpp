@@ -34,6 +34,11 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
   initial_stresses_ = stresses_;
   space_.add_internal_force(stresses_, minus_reference_);
   minus_reference_ *= -1;
+  if (settings_.viscosity > 0)
+    {
+      viscosity_.emplace(settings_.viscosity, settings_.viscous_above, space_.n_points());
+      total_ = stresses_;
+    }
   const double stable = stable_step();
   time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
   if (time_step_ > stable)
@@ -65,12 +70,16 @@ void Dynamics::check_settings() const
         fmt::format("time step = {} s; must be > 0, or 0 for one from the stable step", settings_.time_step));
   if (!(settings_.mass_damping >= 0))
     throw InputError(fmt::format("mass damping = {} 1/s; must be >= 0", settings_.mass_damping));
+  if (!(settings_.viscosity >= 0))
+    throw InputError(fmt::format("viscosity = {} s; must be >= 0", settings_.viscosity));
 }
 
 /// What the time step decides.
 void Dynamics::prepare_steps()
 {
   make_coefficients();
+  if (viscosity_)
+    viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
     pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
 }
@@ -141,6 +150,8 @@ template <typename Self, typename Visit>
 void Dynamics::for_each_field(Self &self, Visit &&visit)
 {
   visit.constant("time_step", self.time_step_);
+  visit.constant("viscosity", self.settings_.viscosity);
+  visit.constant("viscous_above", self.settings_.viscous_above);
   visit("displacement", self.u_);
   visit("velocity", self.v_);
   visit("velocity_before", self.next_);
@@ -150,6 +161,8 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit("initial_stress", self.initial_stresses_);
   visit("minus_reference_force", self.minus_reference_);
   visit("lagged_pressure", self.lagged_pressure_);
+  if (self.viscosity_)
+    SkeletonViscosity::for_each_field(*self.viscosity_, visit);
   visit.sum("kinetic", self.energy_.kinetic);
   visit.sum("internal", self.energy_.internal);
   visit.sum("external", self.energy_.external);
@@ -176,6 +189,8 @@ void Dynamics::restore(const SolverState &state)
   for_each_field(*this, reader);
   if (time_step_ != found_anew)
     prepare_steps();
+  if (viscosity_)
+    material_.wave_moduli(moduli_); // for the next step
   step_ = state.step;
 }
 } // namespace isostat

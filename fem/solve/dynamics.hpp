@@ -2,10 +2,12 @@
 #pragma once
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
+#include "fem/solve/skeleton_viscosity.hpp"
 #include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace isostat
 {
@@ -16,9 +18,11 @@ using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
 
 struct DynamicsSettings
 {
-  double time_step = 0;    ///< s; 0: safety times the stable step at the start
-  double safety = 0.8;     ///< of the stable step that may be used
-  double mass_damping = 0; ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
+  double time_step = 0;      ///< s; 0: safety times the stable step at the start
+  double safety = 0.8;       ///< of the stable step that may be used
+  double mass_damping = 0;   ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
+  double viscosity = 0;      ///< beta of SkeletonViscosity, s; 0: none
+  double viscous_above = 25; ///< f_c, Hz
   Drainage drainage = Drainage::dry;
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
   Base base = {};
@@ -30,7 +34,7 @@ struct DynamicsSettings
 struct DynamicsEnergy
 {
   double kinetic = 0;  ///< v(n-1/2) M v(n+1/2) / 2: with it the balance of central differences is exact
-  double internal = 0; ///< work of effective and pore stress on strains
+  double internal = 0; ///< work of effective, viscous and pore stress on strains
   double external = 0; ///< of inertia of the moving base, tractions, dashpot and mass damping
 
   double residual() const { return kinetic + internal - external; }
@@ -43,6 +47,7 @@ struct DynamicsEnergy
 ///     G (v+ + v-)/2 + S (3p - 4p' + p'')/(2 dt) + H p + L ((v+ - v-)/dt + a_base) = 0        water, backward (BDF2)
 ///     u_next = u + dt v+
 ///
+/// sigma' has the viscous stress of SkeletonViscosity in it, if there is one.
 /// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is that of the
 /// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
@@ -113,9 +118,10 @@ private:
   Vector p_, p_before_, p_next_; ///< p_next_ is scratch
   std::vector<Stress> stresses_;
   std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
-  DynamicsEnergy half_way_;             ///< of this rank, at time() - dt/2
-  DynamicsEnergy energy_;               ///< of this rank at time() - dt
-  double exchanged_ = 0;                ///< sum of |external work|, what an explosion is measured by
+  std::optional<SkeletonViscosity> viscosity_;
+  DynamicsEnergy half_way_; ///< of this rank, at time() - dt/2
+  DynamicsEnergy energy_;   ///< of this rank at time() - dt
+  double exchanged_ = 0;    ///< sum of |external work|, what an explosion is measured by
 
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
@@ -129,6 +135,7 @@ private:
   // of one step
   std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base
   Vector load_, force_, pore_force_;
+  std::vector<Stress> total_; ///< with the viscous stress; empty without
   std::vector<Gradient> increments_;
   mutable std::vector<WaveModuli> moduli_;
 };

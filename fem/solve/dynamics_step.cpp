@@ -32,7 +32,9 @@ void Dynamics::find_loads()
         load_.local_element(i) += surface_.local_element(i) * traction[i % 3];
     }
   force_ = 0; // F(sigma') - F(sigma'_0) of (4), (7)
-  space_.add_internal_force(stresses_, force_);
+  if (viscosity_)
+    viscosity_->add(stresses_, total_);
+  space_.add_internal_force(viscosity_ ? total_ : stresses_, force_);
   // the difference of two whole sums: zero to the bit as long as the stresses are those of the start
   const std::size_t n = force_.locally_owned_size();
   for (std::size_t i = 0; i < n; ++i)
@@ -107,11 +109,12 @@ void Dynamics::move()
   exchanged_ += half * (std::abs(sum(outer_before)) + std::abs(sum(outer_after)));
 }
 
-/// (10): the stable step of the present moduli.
+/// (10), with a viscosity (28): the stable step of the present moduli.
 double Dynamics::stable_step() const
 {
   material_.wave_moduli(moduli_);
-  return 2 / std::sqrt(space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained));
+  const double largest = space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained);
+  return viscosity_ ? SkeletonViscosity::stable_step(largest, settings_.viscosity) : 2 / std::sqrt(largest);
 }
 
 /// A motion that grows without anything that drives it, or that is no number.
@@ -153,6 +156,8 @@ void Dynamics::strain_points()
   space_.gradients(v_, increments_, time_step_);
   if (space_.shared_out())
     v_.zero_out_ghost_values();
+  if (viscosity_)
+    viscosity_->follow(increments_, moduli_); // those that check_motion() has asked for
   if (!lagged_pressure_.empty())
     add_lagged_compression();
   material_.trial(increments_, stresses_);

@@ -71,7 +71,7 @@ class TransferFunction(ToleranceTest):
         column = Column(fixture.elastic(self.folder / "run", rock))
         surface, dt = column.motion("surface_ax")
         f, ratio, strong = transfer_function(surface, column.motion("input_ax")[0], dt, 20.0)
-        exact = exact_transfer(f, column.uniform_elastic(), column.base, column.mass_damping)
+        exact = exact_transfer(f, column.uniform_elastic(), column.base, **column.damping)
         self.assertLess(f[strong][0], 1.0)
         self.assertGreater(f[strong][-1], 10.0)
         return np.abs(ratio / exact - 1)[strong].max()

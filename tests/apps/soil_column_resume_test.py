@@ -77,7 +77,7 @@ class Resume(ColumnTest):
 
     def test_an_older_schema_is_refused(self):
         self.refuse(lambda file: file.attrs.modify("schema_version", np.uint64(2)), "out/checkpoint/last.h5",
-                    "schema 2 was written by another version; this one reads 3", "Finish the run with the version")
+                    "schema 2 was written by another version; this one reads 4", "Finish the run with the version")
 
     def test_a_number_or_vector_that_is_missing(self):
         self.refuse(lambda file: file["vectors"].move("peak_gamma", "peak_strain"), "out/checkpoint/last.h5",

@@ -23,21 +23,27 @@ inline Complex fourier(const std::vector<double> &signal, double dt, double freq
   return sum;
 }
 
-/// A uniform layer of undamped shear stiffness with damping force a_M rho v.
+/// A uniform layer with damping force a_M rho v and the complex shear modulus G (1 + i w beta i w/(i w + w_c)) of a
+/// SkeletonViscosity.
 struct ShearLayer
 {
-  double height = 20, density = 1900, velocity = 200, mass_damping = 0;
+  double height = 20, density = 1900, velocity = 200, mass_damping = 0, viscosity = 0, viscous_above = 25;
 
+  Complex wave_velocity(double omega) const
+  {
+    const Complex rate(0, omega);
+    return velocity * std::sqrt(1.0 + viscosity * rate * rate / (rate + 2 * std::numbers::pi * viscous_above));
+  }
   Complex wave_number(double omega) const
   {
-    return std::sqrt(Complex(omega * omega, -omega * mass_damping)) / velocity;
+    return std::sqrt(Complex(omega * omega, -omega * mass_damping)) / wave_velocity(omega);
   }
   /// Surface over base motion, rigid base, damping of the motion relative to it:
   /// 1 + (w/w*)^2 (1/cos k*H - 1), w*^2 = w^2 - i w a_M. Without damping 1/cos kH (Kramer 1996, ch. 7).
   Complex over_rigid_base(double frequency) const
   {
     const double omega = 2 * std::numbers::pi * frequency;
-    const Complex k = wave_number(omega), ratio = omega * omega / (k * k * velocity * velocity);
+    const Complex k = wave_number(omega), ratio = omega * omega / std::pow(k * wave_velocity(omega), 2);
     return 1.0 + ratio * (1.0 / std::cos(k * height) - 1.0);
   }
   /// Surface over outcrop motion of an elastic base: 1/(cos k*H + i (G k*/(w rho_r V_r)) sin k*H).
@@ -45,7 +51,7 @@ struct ShearLayer
   {
     const double omega = 2 * std::numbers::pi * frequency;
     const Complex k = wave_number(omega);
-    const Complex impedance = density * velocity * velocity * k / (omega * base_density * base_velocity);
+    const Complex impedance = density * std::pow(wave_velocity(omega), 2) * k / (omega * base_density * base_velocity);
     return 1.0 / (std::cos(k * height) + Complex(0, 1) * impedance * std::sin(k * height));
   }
 };

@@ -25,7 +25,10 @@ double transfer_error(const ShearLayer &layer, const Setting &setting)
   SoilProfile soil = one_layer(layer.height, layer.density, setting.cells);
   const Discretisation<1> space({.soil = soil, .degree = setting.degree}, shaken_supports(setting.compliant));
   Elastic material = elastic_of(space.n_points(), layer.density, layer.velocity, 0.25);
-  DynamicsSettings settings{.time_step = setting.time_step, .mass_damping = layer.mass_damping};
+  DynamicsSettings settings{.time_step = setting.time_step,
+                            .mass_damping = layer.mass_damping,
+                            .viscosity = layer.viscosity,
+                            .viscous_above = layer.viscous_above};
   settings.base.kind = setting.compliant ? BaseKind::compliant : BaseKind::rigid;
   settings.motion[0] = ricker_motion(1, 4, 0.5, 1e-3);
   Dynamics run(space, material, settings);
@@ -88,6 +91,28 @@ TEST(ShearLayer, SecondOrderInTheTimeStep)
         }
       before = error;
     }
+}
+
+TEST(ShearLayer, ViscosityIsFirstOrderInTheTimeStep)
+{
+  double before = 0;
+  for (double dt : {5e-4, 2.5e-4, 1.25e-4})
+    {
+      const double error =
+          transfer_error({.viscosity = 5e-4}, {.cells = 20, .time_step = dt, .duration = 20, .compliant = true});
+      std::printf("  beta = 0.5 ms, dt = %.2e s: %.3e, order %.2f\n", dt, error,
+                  before > 0 ? order(before, error) : 0.0);
+      if (before > 0)
+        {
+          EXPECT_NEAR_BECAUSE(order(before, error), 1, 0.3,
+                              "the rate of half a step before; central differences, second order, add to it");
+        }
+      before = error;
+    }
+  EXPECT_BELOW_BECAUSE(before, 2e-3, "beta omega times half of omega dt, at 10 Hz and over the travel time");
+  const double usual = transfer_error({.viscosity = 1e-4}, {.duration = 20, .compliant = true});
+  std::printf("  beta = 0.1 ms, dt = 0.25 ms: %.2e\n", usual);
+  EXPECT_BELOW_BECAUSE(usual, 1e-3, "as without viscosity: the default one is smaller than the step");
 }
 
 TEST(ShearLayer, SecondOrderInTheMeshOrBetter)

@@ -148,6 +148,9 @@ TEST(ColumnSceneError, AnalysisAndLoad)
                    {"column.toml:14: motion; has no effect in a consolidation"});
   expect_complaint(smallest, {"must be in (0, 1] because beyond the stable step"}, {"analysis.safety=1.1"});
   expect_complaint(smallest, {"analysis.mass_damping = -1 1/s; must be >= 0 1/s"}, {"analysis.mass_damping=-1 1/s"});
+  expect_complaint(smallest, {"analysis.viscosity = -1 ms; must be >= 0 ms"}, {"analysis.viscosity=-1 ms"});
+  expect_complaint(smallest, {"analysis.highest_frequency = 0 Hz; must be > 0 Hz"},
+                   {"analysis.highest_frequency=0 Hz"});
   expect_complaint(smallest, {"analysis.time_step = 0 s; must be > 0 ms"}, {"analysis.time_step=0 s"});
   expect_complaint(smallest, {"load.amplitude; is missing"}, {"load.kind=step"});
   expect_complaint(smallest, {"must be key=value. Give for example --set analysis.safety=0.5"}, {"safety"});

@@ -251,7 +251,12 @@ TEST(ColumnScene, RoundTripToTheBit)
         if (scene.base.kind == BaseKind::rigid)
           scene.base = {};
         if (scene.analysis.kind == AnalysisKind::consolidation)
-          scene.analysis.safety = ColumnAnalysis{}.safety;
+          {
+            const ColumnAnalysis none;
+            scene.analysis.safety = none.safety;
+            scene.analysis.viscosity = none.viscosity;
+            scene.analysis.highest_frequency = none.highest_frequency;
+          }
         scene.analysis.last_time = 7 * scene.analysis.first_time;
         for (double &depth : scene.output.depths)
           depth = scene.height() / 3;

@@ -65,6 +65,7 @@ std::array<double, 4> surface_after(Drainage drainage, unsigned across)
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
   DynamicsSettings settings = shaken();
   settings.drainage = drainage;
+  settings.viscosity = 1e-4;
   settings.time_step = 8e-4;
   settings.motion[2] = ricker_motion(0.3, 4, 0.5, 1e-3);
   settings.surface_traction = [](double t) { return std::array<double, 3>{0, 0, -1e3 * std::min(1.0, t / 0.2)}; };
@@ -87,7 +88,7 @@ TEST(Dynamics, ColumnAtRestStaysAtRestToTheBit)
       for (const auto &at : space.position)
         initial.push_back({-5e3 * (20 - at[2]), -5e3 * (20 - at[2]), -1e4 * (20 - at[2]), 0, 0, 0});
       material.set_initial_stress(initial);
-      Dynamics run(space, material, {.drainage = drainage});
+      Dynamics run(space, material, {.viscosity = 1e-4, .drainage = drainage});
       for (int k = 0; k < 10000; ++k)
         run.step();
       EXPECT_EQ(run.displacement().linfty_norm(), 0);
@@ -235,6 +236,7 @@ TEST(Dynamics, RestoredRunGoesOnToTheSameBits)
       DynamicsSettings settings = shaken();
       settings.drainage = drainage;
       settings.lagged_compressibility = drainage == Drainage::undrained;
+      settings.viscosity = drainage == Drainage::dry ? 0 : 1e-4;
       Elastic first = elastic_of(space.n_points(), 2000, 200, 0.25), second = first;
       Dynamics whole(space, first, settings), resumed(space, second, settings);
       for (int k = 0; k < 300; ++k)
@@ -258,8 +260,11 @@ TEST(Dynamics, StateOfAnotherMeshIsRefused)
   const Discretisation<1> space = block<1>(), other = block<1>(11);
   Elastic material = elastic_of(space.n_points(), 2000, 200, 0.25);
   Elastic of_other = elastic_of(other.n_points(), 2000, 200, 0.25);
-  Dynamics run(space, material, {.time_step = 1e-4}), into(other, of_other, {.time_step = 1e-4});
+  Dynamics run(space, material, {.time_step = 1e-4}), into(other, of_other, {.time_step = 1e-4}),
+      viscous(space, material, {.time_step = 1e-4, .viscosity = 1e-4});
   EXPECT_THROW(into.restore(run.save()), InputError);
+  EXPECT_THROW(viscous.restore(run.save()), InputError);
+  EXPECT_THROW(run.restore(viscous.save()), InputError);
 }
 
 TEST(Dynamics, SettingsThatCannotBeAreRefused)
@@ -283,6 +288,9 @@ TEST(Dynamics, SettingsThatCannotBeAreRefused)
   Elastic few = elastic_of(linear.n_points(), 2000, 200, 0.25);
   EXPECT_THAT(message([&] { Dynamics(linear, few, {.drainage = Drainage::coupled}); }), HasSubstr("degree = 2"));
   EXPECT_THAT(message([&] { Discretisation<1>({.soil = one_layer(0, 2000, 4)}, {}); }), HasSubstr("thickness"));
+  const Discretisation<1> column = block<1>();
+  Elastic in_column = elastic_of(column.n_points(), 2000, 200, 0.25);
+  EXPECT_THAT(message([&] { Dynamics(column, in_column, {.viscosity = -1e-4}); }), HasSubstr("viscosity = -0.0001 s"));
   SoilProfile soil = one_layer(5, 2000, 4);
   soil.layers[0].permeability = -1e-5;
   EXPECT_THAT(message([&] { Discretisation<1>({.soil = soil}, {}); }), HasSubstr("permeability"));
