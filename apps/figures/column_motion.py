@@ -57,6 +57,15 @@ def motions(column):
     return figure
 
 
+def column_spectrum(column, where, axis):
+    """Periods and S_a: of every step of the run if it left them, else of the rows, which are fewer and filtered."""
+    if f"{where}_{axis}" in column.spectra:
+        return column.spectra["period"], column.spectra[f"{where}_{axis}"]
+    note("no spectra.csv; response spectra are those of the rows of the history")
+    a, dt = column.motion(f"{where}_a{axis}")
+    return PERIODS, response_spectrum(a, dt, PERIODS, column.spectrum_damping)
+
+
 def spectra(column):
     """Response spectra of input and surface, and their ratio."""
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
@@ -68,10 +77,9 @@ def spectra(column):
         top, bottom = panels[:, k]
         of = {}
         for where, label, colour in (("input", f"{input_name(column)} (input)", BLACK), ("surface", "surface", BLUE)):
-            a, dt = column.motion(f"{where}_a{axis}")
-            of[where] = response_spectrum(a, dt, PERIODS, column.spectrum_damping)
-            top.plot(PERIODS, of[where], color=colour, label=label)
-        bottom.plot(PERIODS, of["surface"] / of["input"], color=BLACK)
+            periods, of[where] = column_spectrum(column, where, axis)
+            top.plot(periods, of[where], color=colour, label=label)
+        bottom.plot(periods, of["surface"] / of["input"], color=BLACK)
         bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
         panel_letter(top, "abc"[k])

@@ -88,8 +88,23 @@ class Column:
                       for axis in self.moving for where in ("input", "surface")}
         prefixes = sorted({match[1] for match in map(re.compile(r"(d\d+)_").match, self.columns) if match},
                           key=lambda prefix: int(prefix[1:]))
-        depths = [quantity(depth) for depth in self.scene.get("output", {}).get("depths", [])]
-        self.points = [(depths[k] if k < len(depths) else None, prefix) for k, prefix in enumerate(prefixes)]
+        self.points = [(self._depth(prefix, k, summary), prefix) for k, prefix in enumerate(prefixes)]
+        self.spectra = self._read_spectra(folder / "spectra.csv")
+
+    def _depth(self, prefix, k, summary):
+        """Where the data of an output depth are, m: of the point nearest to what was asked for. None: not known."""
+        if self.has(f"{prefix}_depth"):
+            return float(self[f"{prefix}_depth"][0])
+        depths = summary.get("depths") or []
+        return depths[k] if k < len(depths) else None
+
+    @staticmethod
+    def _read_spectra(path):
+        try:
+            return read_history(path) if path.exists() else {}
+        except BadInput as error:
+            note(f"{error}; response spectra are those of the rows of the history")
+            return {}
 
     @staticmethod
     def _read(path, *parse):

@@ -4,6 +4,7 @@
 #include "apps/deposit/ranks.hpp"
 #include "apps/deposit/soil_material.hpp"
 #include "apps/soil_column/files.hpp"
+#include "apps/soil_column/resolution.hpp"
 #include "apps/soil_column/run.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
@@ -27,9 +28,11 @@ public:
         space_(mesh_of(scene_), shaken_supports(scene_.base.compliant()),
                scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
         soil_(soil_material(scene_, space_, request.threads, request.materials)),
-        run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_),
+        run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_, steps_between_rows()),
         follower_(space_, files_.line(), files_.history().vertical_stress())
   {
+    if constexpr (std::is_same_v<Solver, Dynamics>)
+      coarse_ = coarse_elements(scene_, *soil_.material, space_, motions_); // of the soil at the start of the whole run
     if (request.use != FolderUse::resume)
       return;
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
@@ -37,7 +40,7 @@ public:
     run_.restore(resumed_->state);
     resumed_->state = {}; // that of all ranks
     follower_.peaks.restore(*resumed_);
-    resumed_->get(files_.history().state);
+    files_.history().restore(*resumed_);
   }
   virtual ~ColumnRun() = default;
 
@@ -54,8 +57,12 @@ public:
             at = run_.n_steps();
             observe();
           }
+        write([&] { files_.write_rows(true); });
         save();
-        write([&] { files_.finish(follower_.peaks); });
+        write([&] {
+          files_.finish(follower_.peaks);
+          finish_files();
+        });
       }
     catch (const RunFailure &failure)
       {
@@ -74,8 +81,10 @@ protected:
   virtual double time_of(std::uint64_t step) const = 0;
   /// Whether a step is long enough to look at the clock, and to ask the other ranks, after each.
   virtual bool has_long_steps() const = 0;
-  /// Numbers that a resumed run needs besides.
-  virtual std::map<std::string, double> more_numbers() = 0;
+  /// What a resumed run needs besides.   Collective.
+  virtual void add_to(ColumnCheckpoint &checkpoint) = 0;
+  /// Files that are written at the end.   Collective.
+  virtual void finish_files() {}
   virtual void add_results(ColumnSummary &summary) = 0;
 
   /// Files that one rank alone writes, or fails to write: all stop then.
@@ -102,11 +111,25 @@ protected:
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
+  std::string coarse_;                        ///< what is wrong with the mesh, if something is
   ColumnInstant instant_;
   Progress progress_{request_.quiet, 5};
   RunTimes times_;
 
+  /// Whole steps in an interval of output.
+  std::uint64_t steps_in(double interval) const
+  {
+    return static_cast<std::uint64_t>(std::max(1LL, std::llround(interval / run_.time_step())));
+  }
+
 private:
+  std::size_t steps_between_rows() const
+  {
+    if constexpr (std::is_same_v<Solver, Dynamics>)
+      return steps_in(scene_.output.history_interval);
+    return 1;
+  }
+
   static MeshSpec mesh_of(const ColumnScene &scene)
   {
     MeshSpec mesh{.soil = soil_profile(scene)};
@@ -159,9 +182,12 @@ private:
   /// Brings all files up to date, then writes a checkpoint.
   void save()
   {
-    SolverState state = run_.save();
+    ColumnCheckpoint checkpoint{run_.save(), {}, {}, {}};
     follower_.gather();
-    write([&] { files_.save(std::move(state), follower_.peaks, more_numbers()); });
+    write([&] {
+      add_to(checkpoint);
+      files_.save(std::move(checkpoint), follower_.peaks);
+    });
     since_checkpoint_.restart();
   }
 
@@ -175,6 +201,7 @@ private:
       abort_all(what.c_str());
     try
       {
+        files_.write_rows(true);
         files_.flush();
       }
     catch (const std::exception &error) // the disk is full, say
@@ -198,6 +225,8 @@ private:
       summary.point_depths.push_back(point.depth);
     follower_.gather();
     summary.peaks = follower_.peaks;
+    if (!coarse_.empty())
+      summary.warnings.push_back(coarse_);
     summary.last = files_.history().state;
     summary.steps = static_cast<double>(run_.n_steps());
     add_results(summary);

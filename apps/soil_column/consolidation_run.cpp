@@ -91,6 +91,7 @@ private:
     follower_.follow(u, instant_.pressure, run_.time());
     this->write([&] {
       files_.record(instant_);
+      files_.write_rows();
       files_.profile(instant_);
       files_.paraview(instant_);
     });
@@ -102,7 +103,10 @@ private:
   double n_total() const override { return static_cast<double>(ends_.size()) + 1; }
   double time_of(std::uint64_t) const override { return run_.time(); } ///< of the last good sub-step
   bool has_long_steps() const override { return true; }
-  std::map<std::string, double> more_numbers() override { return {{"immediate_settlement", immediate_settlement_}}; }
+  void add_to(ColumnCheckpoint &checkpoint) override
+  {
+    checkpoint.numbers["immediate_settlement"] = immediate_settlement_;
+  }
 
   void add_results(ColumnSummary &summary) override
   {

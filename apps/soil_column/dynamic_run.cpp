@@ -2,7 +2,7 @@
 // Shaking of a column.
 #include "apps/deposit/grain_files.hpp"
 #include "apps/soil_column/column_run.hpp"
-#include "apps/soil_column/resolution.hpp"
+#include "apps/soil_column/surface_motion.hpp"
 
 #include <cmath>
 
@@ -36,8 +36,12 @@ class DynamicRun : public ColumnRun<dim, Dynamics>
 
 public:
   DynamicRun(const ColumnRequest &request, const std::array<Motion, 3> &motions)
-      : Run(request, motions, settings_of(request.scene, motions))
-  {}
+      : Run(request, motions, settings_of(request.scene, motions)),
+        motion_(scene_, space_, this->motions_, run_.time_step())
+  {
+    if (resumed_)
+      motion_.restore(*resumed_);
+  }
 
 private:
   void start() override
@@ -68,16 +72,15 @@ private:
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
-    const std::string coarse = resumed_ ? "" : coarse_elements(scene_, *soil_.material, space_, this->motions_);
-    if (!coarse.empty() && ranks().first())
-      fmt::print(stderr, "warning: {}\n", coarse);
+    if (!this->coarse_.empty() && !resumed_ && ranks().first())
+      fmt::print(stderr, "warning: {}\n", this->coarse_);
     soil_.material->seconds = 0;
   }
 
   /// Every so many whole steps.
   bool due(const std::optional<double> &interval) const
   {
-    return interval && run_.n_steps() % std::max(1LL, std::llround(*interval / run_.time_step())) == 0;
+    return interval && run_.n_steps() % this->steps_in(*interval) == 0;
   }
 
   /// One step, and what is written of the instant it starts from.
@@ -95,9 +98,11 @@ private:
     times_.solver += watch.seconds();
     ++times_.steps;
     follower_.follow(run_);
+    files_.history().follow(run_);
+    motion_.follow(run_);
     if (grain_files_)
       grain_files_->follow(run_.n_steps(), run_.time());
-    if (row || profile || paraview)
+    if (row || profile || paraview || files_.history().has_complete())
       this->write([&] {
         if (row)
           files_.record(instant_);
@@ -105,6 +110,7 @@ private:
           files_.profile(instant_);
         if (paraview)
           files_.paraview(instant_);
+        files_.write_rows();
       });
   }
 
@@ -125,18 +131,22 @@ private:
 
   bool has_long_steps() const override { return soil_.grains != nullptr; }
 
-  std::map<std::string, double> more_numbers() override
+  void add_to(ColumnCheckpoint &checkpoint) override
   {
+    motion_.save(checkpoint);
     if (!grain_files_)
-      return {};
+      return;
     grain_files_->flush();
-    return grain_files_->counters();
+    checkpoint.numbers.merge(grain_files_->counters());
   }
+
+  void finish_files() override { motion_.write_spectra(request_.folder / "spectra.csv"); }
 
   /// Velocities of the soil of grains at its start, the smallest redundancy index, and what the packings took.
   void add_results(ColumnSummary &summary) override
   {
     summary.time_step = run_.time_step();
+    summary.bands = motion_.bands();
     if (!grain_files_)
       return;
     const RveMaterialCost &cost = soil_.grains->cost();
@@ -154,7 +164,8 @@ private:
 
   const std::uint64_t last_step_ = static_cast<std::uint64_t>(
       std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12))); ///< the last one whose start is recorded
-  std::unique_ptr<GrainFiles> grain_files_;                                   ///< null without grains
+  SurfaceMotion motion_;
+  std::unique_ptr<GrainFiles> grain_files_;   ///< null without grains
   std::array<double, 2> velocities_ = {0, 0}; ///< of the soil of grains at the start of this run
 };
 } // namespace

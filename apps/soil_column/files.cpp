@@ -20,9 +20,9 @@ std::vector<double> chosen(const std::vector<double> &values, const std::vector<
 
 template <int dim>
 ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
-                              const std::array<Motion, 3> &motions)
+                              const std::array<Motion, 3> &motions, std::size_t stride)
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
-      paraview_(scene.output.paraview_interval.has_value()), history_(scene, space, motions)
+      paraview_(scene.output.paraview_interval.has_value()), history_(scene, space, motions, stride)
 {
   if (!scene.mesh.distributed)
     line_ = column_line(space);
@@ -44,11 +44,11 @@ void ColumnFiles<dim>::open(const ColumnCheckpoint *resumed)
 }
 
 template <int dim>
-void ColumnFiles<dim>::record(const ColumnInstant &instant)
+void ColumnFiles<dim>::write_rows(bool at_the_end)
 {
-  const std::vector<double> row = history_.row(instant);
-  if (recorder_)
-    recorder_->append(row);
+  while (const std::optional<std::vector<double>> row = history_.take(at_the_end))
+    if (recorder_)
+      recorder_->append(*row);
 }
 
 template <int dim>
@@ -87,14 +87,14 @@ void ColumnFiles<dim>::flush()
 }
 
 template <int dim>
-void ColumnFiles<dim>::save(SolverState state, const ColumnPeaks &peaks, std::map<std::string, double> more)
+void ColumnFiles<dim>::save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks)
 {
+  checkpoint.scene = scene_text_;
+  history_.save(checkpoint);
   if (!recorder_)
     return;
   flush();
-  ColumnCheckpoint checkpoint{std::move(state), std::move(more), {}, scene_text_};
   peaks.save(checkpoint);
-  checkpoint.put(history_.state);
   checkpoint.numbers["rows"] = static_cast<double>(recorder_->n_rows());
   checkpoint.numbers["profiles"] = profiles_ ? static_cast<double>(profiles_->n_rows()) : 0;
   checkpoint.numbers["paraview"] = pvd_ ? static_cast<double>(pvd_->n_entries()) : 0;

@@ -15,21 +15,22 @@ template <int dim>
 class ColumnFiles
 {
 public:
-  /// Collective. Touches nothing yet.
+  /// Collective. Touches nothing yet.   @param stride  steps between rows of the history
   ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
-              const std::array<Motion, 3> &motions);
+              const std::array<Motion, 3> &motions, std::size_t stride);
   /// Starts or cuts the files, on the rank that writes.   @param resumed  null: start anew
   /// @throws InputError  files that have been cut off or changed since the checkpoint
   void open(const ColumnCheckpoint *resumed);
 
-  /// A row of the history.   Collective.
-  void record(const ColumnInstant &instant);
+  /// A row of the history, which is written when it is complete: write_rows().   Collective.
+  void record(const ColumnInstant &instant) { history_.add(instant); }
+  /// Rows that are complete; at the end of a run all.
+  void write_rows(bool at_the_end = false);
   void profile(const ColumnInstant &instant);
   void paraview(const ColumnInstant &instant);
 
-  /// Brings all files up to date, then writes a checkpoint of a state with its peaks.
-  /// @param more  numbers that a resumed run needs
-  void save(SolverState state, const ColumnPeaks &peaks, std::map<std::string, double> more = {});
+  /// Brings all files up to date, then writes a checkpoint with what belongs to them and the peaks.
+  void save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks);
   void flush();
   /// Adds the largest values to the profiles.   @pre the last call
   void finish(const ColumnPeaks &peaks);

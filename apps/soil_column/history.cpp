@@ -36,9 +36,9 @@ void append(const std::vector<double> &values, const std::array<long, 3> &node, 
 
 template <int dim>
 ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
-                                  const std::array<Motion, 3> &motions)
+                                  const std::array<Motion, 3> &motions, std::size_t stride)
     : space_(space), motions_(motions), rigid_(!scene.base.compliant()), area_(std::pow(scene.mesh.width, dim - 1)),
-      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height()))
+      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height())), filter_(9, stride)
 {
   for (double depth : scene.output.depths)
     points_.push_back(point_at_depth(space, depth));
@@ -67,8 +67,11 @@ std::vector<RecordColumn> ColumnHistory<dim>::columns() const
                                  {"external", "J/m2"},
                                  {"residual", "J/m2"}});
   for (std::size_t k = 0; k < points_.size(); ++k)
-    for (const auto &[name, unit] : point_columns)
-      columns.push_back({fmt::format("d{}_{}", k, name), unit});
+    {
+      columns.push_back({fmt::format("d{}_depth", k), "m"});
+      for (const auto &[name, unit] : point_columns)
+        columns.push_back({fmt::format("d{}_{}", k, name), unit});
+    }
   return columns;
 }
 
@@ -100,6 +103,7 @@ void ColumnHistory<dim>::append_points(const ColumnInstant &instant, std::vector
     {
       const PointValues values =
           at.point < 0 ? PointValues{} : point_values(instant, static_cast<std::size_t>(at.point), vertical_stress_);
+      row.push_back(at.point < 0 ? 0 : at.depth);
       row.insert(row.end(), values.begin(), values.end());
     }
 }
@@ -114,8 +118,7 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
   append(instant.displacement, surface_, row);
   row.resize(settlement_at + 8, 0.0);
   append_points(instant, row);
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, row.data(), static_cast<int>(row.size()), MPI_DOUBLE, MPI_SUM, space_.communicator());
+  sum_over_ranks(row);
 
   row[0] = static_cast<double>(instant.step);
   row[1] = state.time = instant.time;
@@ -144,6 +147,75 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
   for (std::size_t k = 4; k < 7; ++k)
     state.max_energy = std::max(state.max_energy, std::abs(tail[k]));
   return row;
+}
+
+template <int dim>
+void ColumnHistory<dim>::sum_over_ranks(std::span<double> values) const
+{
+  if (space_.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                  space_.communicator());
+}
+
+template <int dim>
+void ColumnHistory<dim>::follow(const Dynamics &run)
+{
+  if (!filter_.filters())
+    return;
+  std::array<double, 9> sample = {};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      sample[3 + axis] = base_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(base_[axis]));
+      sample[6 + axis] = surface_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(surface_[axis]));
+    }
+  sum_over_ranks(sample);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      sample[axis] = motions_[axis].acceleration(run.time() - run.time_step());
+      if (rigid_) // unknowns count from the moving base
+        {
+          sample[3 + axis] += sample[axis];
+          sample[6 + axis] += sample[axis];
+        }
+    }
+  filter_.follow(sample);
+}
+
+template <int dim>
+std::optional<std::vector<double>> ColumnHistory<dim>::take(bool at_the_end)
+{
+  if (waiting_.empty() || !(at_the_end || is_complete(waiting_.front())))
+    return {};
+  std::vector<double> row = std::move(waiting_.front());
+  waiting_.pop_front();
+  if (!filter_.filters())
+    return row;
+  std::ranges::copy(filter_.at(static_cast<std::uint64_t>(row[0])), row.begin() + input_at);
+  return row;
+}
+
+template <int dim>
+void ColumnHistory<dim>::save(ColumnCheckpoint &checkpoint) const
+{
+  checkpoint.put(state);
+  checkpoint.numbers["filtered_steps"] = static_cast<double>(filter_.n_samples());
+  checkpoint.vectors["filtered_accelerations"] = filter_.samples();
+  std::vector<double> &rows = checkpoint.vectors["waiting_rows"];
+  for (const std::vector<double> &row : waiting_)
+    rows.insert(rows.end(), row.begin(), row.end());
+}
+
+template <int dim>
+void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
+{
+  checkpoint.get(state);
+  filter_.restore(checkpoint.vector("filtered_accelerations"),
+                  static_cast<std::uint64_t>(checkpoint.number("filtered_steps")));
+  const std::vector<double> &rows = checkpoint.vector("waiting_rows");
+  const std::size_t n = columns().size();
+  for (std::size_t k = 0; k + n <= rows.size(); k += n)
+    waiting_.emplace_back(rows.begin() + static_cast<std::ptrdiff_t>(k),
+                          rows.begin() + static_cast<std::ptrdiff_t>(k + n));
 }
 
 template class ColumnHistory<1>;

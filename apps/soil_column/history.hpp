@@ -3,7 +3,10 @@
 #include "apps/deposit/checkpoint.hpp"
 #include "apps/deposit/output.hpp"
 #include "apps/deposit/scene.hpp"
+#include "base/record/decimation_filter.hpp"
 #include "base/record/recorder.hpp"
+
+#include <deque>
 
 namespace isostat
 {
@@ -26,18 +29,29 @@ struct ColumnState
 };
 
 /// Rows of history.csv/.h5. Every quantity of a row is of the one instant `time` (see observe_step). Accelerations are
-/// absolute; velocities and displacements count from a rigid base and are absolute above a compliant one.
+/// absolute, and filtered of what rows so far apart cannot show (DecimationFilter): such a row is complete only six
+/// rows later. Velocities and displacements count from a rigid base and are absolute above a compliant one.
 /// tested: tests/apps/soil_column_test.py
 template <int dim>
 class ColumnHistory
 {
 public:
-  /// Collective.
-  ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space, const std::array<Motion, 3> &motions);
+  /// Collective.   @param stride  steps between rows; 1: nothing is filtered
+  ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space, const std::array<Motion, 3> &motions,
+                std::size_t stride);
 
   std::vector<RecordColumn> columns() const;
+  /// The accelerations of a step that has been made, in every step.   Collective.
+  void follow(const Dynamics &run);
+  /// The row of an instant waits until its accelerations can be filtered.
   /// Collective, the same on every rank of the mesh.
-  std::vector<double> row(const ColumnInstant &instant);
+  void add(const ColumnInstant &instant) { waiting_.push_back(row(instant)); }
+  bool has_complete() const { return !waiting_.empty() && is_complete(waiting_.front()); }
+  /// The next row that is complete; at the end of a run all are, the last of them filtered with what there is.
+  std::optional<std::vector<double>> take(bool at_the_end = false);
+
+  void save(ColumnCheckpoint &checkpoint) const;
+  void restore(const ColumnCheckpoint &checkpoint);
 
   const std::vector<double> &vertical_stress() const { return vertical_stress_; } ///< sigma'_v0 of every point, Pa
   const std::vector<PointAtDepth> &points() const { return points_; }             ///< of the scene's depths
@@ -49,6 +63,12 @@ private:
   {
     double ru = 0, ru_depth = 0, p_ratio = 1;
   };
+  std::vector<double> row(const ColumnInstant &instant);
+  bool is_complete(const std::vector<double> &row) const
+  {
+    return !filter_.filters() || filter_.has(static_cast<std::uint64_t>(row[0]));
+  }
+  void sum_over_ranks(std::span<double> values) const;
   Extremes extremes(const ColumnInstant &instant) const;
   void append_points(const ColumnInstant &instant, std::vector<double> &row) const;
 
@@ -59,5 +79,7 @@ private:
   Trio base_, surface_;
   std::vector<PointAtDepth> points_;
   std::vector<double> vertical_stress_, mean_stress_;
+  DecimationFilter filter_; ///< of input, base and surface
+  std::deque<std::vector<double>> waiting_;
 };
 } // namespace isostat

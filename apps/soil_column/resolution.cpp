@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/resolution.hpp"
 
+#include "fem/motion/low_pass.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,12 +30,43 @@ std::vector<double> slowest_waves(const ColumnScene &scene, const Material &mate
   MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
   return slowest;
 }
+
+/// Share of a motion's squared acceleration above a frequency.
+double share_above(const Motion &motion, double frequency)
+{
+  LowPass filter(frequency, motion.interval());
+  double all = 0, low = 0;
+  for (double a : motion.accelerations())
+    {
+      const double below = filter(a);
+      all += a * a;
+      low += below * below;
+    }
+  return all > 0 ? 1 - low / all : 0;
+}
 } // namespace
+
+double highest_frequency(const Motion &motion, double limit)
+{
+  constexpr double share = 0.01;
+  if (motion.at_rest())
+    return 0;
+  if (share_above(motion, limit) > share)
+    return limit;
+  double low = 0, high = limit;
+  for (int k = 0; k < 40; ++k)
+    {
+      const double middle = (low + high) / 2;
+      (share_above(motion, middle) > share ? low : high) = middle;
+    }
+  return high;
+}
 
 std::string coarse_elements(const ColumnScene &scene, const Material &material, const CellTables &mesh,
                             const std::array<Motion, 3> &motions)
 {
-  const double frequency = std::max(motions[0].mean_frequency(), motions[1].mean_frequency());
+  const double limit = scene.analysis.highest_frequency,
+               frequency = std::max(highest_frequency(motions[0], limit), highest_frequency(motions[1], limit));
   const std::vector<double> slowest = slowest_waves(scene, material, mesh);
   std::size_t worst = 0;
   double fewest = std::numeric_limits<double>::max();
@@ -47,8 +80,9 @@ std::string coarse_elements(const ColumnScene &scene, const Material &material, 
   if (frequency == 0 || fewest >= nodes_per_wave)
     return "";
   return fmt::format(
-      "the elements of layer.{}{} are too long for this motion: {:.1f} nodes in a wave length of {:.3g} m "
-      "({:.3g} m/s at {:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more.",
+      "the elements of layer.{}{} are too long for the shortest wave of interest: {:.1f} nodes in {:.3g} m ({:.3g} m/s "
+      "at "
+      "{:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more, or analysis.highest_frequency to what matters.",
       worst, scene.layers[worst].name.empty() ? "" : " (" + scene.layers[worst].name + ")", fewest,
       slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, worst,
       std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace isostat
@@ -68,6 +69,11 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
   if (p.input > 0)
     text += fmt::format("  amplification            {:.3f}\n", amplification(p));
+  if (p.input > 0)
+    text += fmt::format("  above {:<19}{:.1f} % of the squared acceleration of the surface, {:.1f} % of the input's; "
+                        "peak surface below it {:.4f} m/s2\n",
+                        fmt::format("{:.4g} Hz", scene.analysis.highest_frequency), 100 * s.bands.share,
+                        100 * s.bands.input_share, s.bands.peak_below);
   text += fmt::format("  peak shear strain        {:.5f} % at a depth of {:.2f} m\n", 100 * p.gamma, p.gamma_depth);
   if (has_ru(scene))
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
@@ -79,6 +85,11 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (s.grains && s.grains->has_profiles)
     text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
                         s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time);
+  if (!s.point_depths.empty())
+    text += fmt::format("  depths of histories      {:.4g} m, the points nearest to those asked for\n",
+                        fmt::join(s.point_depths, ", "));
+  for (const std::string &warning : s.warnings)
+    text += fmt::format("  warning: {}\n", warning);
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
@@ -128,12 +139,16 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"depths", s.point_depths},
             {"elements", s.cells},
             {"points", s.points},
+            {"warnings", s.warnings},
             {"steps", std::llround(s.steps)},
             {"time_step", s.time_step},
             {"end", s.last.time},
             {"peak_input", p.input},
             {"peak_surface", p.surface},
             {"amplification", amplification(p)},
+            {"peak_surface_below", shaken(scene) ? Json(s.bands.peak_below) : Json()},
+            {"share_above", shaken(scene) ? Json(s.bands.share) : Json()},
+            {"input_share_above", shaken(scene) ? Json(s.bands.input_share) : Json()},
             {"peak_gamma", p.gamma},
             {"peak_gamma_depth", p.gamma_depth},
             {"max_ru", has_ru(scene) ? Json(p.ru) : Json()},

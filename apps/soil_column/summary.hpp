@@ -2,6 +2,7 @@
 #pragma once
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
+#include "apps/soil_column/surface_motion.hpp"
 #include "base/files/json.hpp"
 
 #include <optional>
@@ -23,7 +24,9 @@ struct ColumnSummary
   std::size_t cells = 0, points = 0; ///< of the whole mesh
   double steps = 0, time_step = 0;   ///< s; 0 in a consolidation
   std::vector<double> point_depths;  ///< of the points whose histories were asked for, m
+  std::vector<std::string> warnings; ///< of what may mislead
   ColumnPeaks peaks;
+  MotionBands bands;                       ///< nothing in a consolidation
   ColumnState last;                        ///< of the last row
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
   std::optional<GrainsSummary> grains;

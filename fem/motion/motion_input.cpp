@@ -96,18 +96,6 @@ Motion::Motion(std::vector<double> accelerations, double interval)
 
 double Motion::duration() const { return at_rest() ? 0 : (accelerations_.size() - 1) * interval_; }
 
-double Motion::mean_frequency() const
-{
-  double square = 0, slope = 0; // integrals of a^2 and of (da/dt)^2, a piecewise linear
-  for (std::size_t i = 0; i + 1 < accelerations_.size(); ++i)
-    {
-      const double a = accelerations_[i], b = accelerations_[i + 1];
-      square += (a * a + a * b + b * b) / 3 * interval_;
-      slope += (b - a) * (b - a) / interval_;
-    }
-  return square > 0 ? std::sqrt(slope / square) / (2 * std::numbers::pi) : 0;
-}
-
 double Motion::peak() const
 {
   double peak = 0;

@@ -28,9 +28,6 @@ public:
   double duration() const;                      ///< time of the last sample, s; 0 at rest
   double interval() const { return interval_; } ///< s; 0 at rest
   double peak() const;                          ///< largest |acceleration|, m/s2; 0 at rest
-  /// Root mean square of a' over that of a, over 2 pi (Rice 1944: zeros that are passed upwards in a second). Of a sine
-  /// it is its frequency. Hz; 0 at rest     tested: tests/fem/motion/motion_input_test.cpp
-  double mean_frequency() const;
   const std::vector<double> &accelerations() const { return accelerations_; }
 
 private:

@@ -74,8 +74,12 @@ public:
 
   const Vector &displacement() const { return u_; } ///< at time()
   const Vector &velocity() const { return v_; }     ///< at time() - dt/2
-  Vector acceleration() const;                  ///< at time() - dt, as the unknown counts it; made anew at each call
-  const Vector &pressure() const { return p_; } ///< excess, at time() - dt; zero unless coupled
+  Vector acceleration() const;                ///< at time() - dt, as the unknown counts it; made anew at each call
+  double acceleration(unsigned unknown) const ///< the same of one unknown that this rank owns
+  {
+    return (v_.local_element(unknown) - next_.local_element(unknown)) / time_step_;
+  }
+  const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
   std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
   /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
   /// vertical equilibrium at time(), 0 if dry.

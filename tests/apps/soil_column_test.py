@@ -149,17 +149,24 @@ class Mistakes(ColumnTest):
                     *settings(analysis__time_step="10 ms"))
 
     def test_elements_too_long(self):
-        short = settings(analysis__duration="0.1 s", motion__0__frequency="40 Hz",
-                         layer__0__material="elastic")
+        short = settings(analysis__duration="0.1 s", motion__0__frequency="40 Hz", layer__0__material="elastic")
+        result = self.run_column(self.scene, "-o", "low", "-q", *short)
+        self.assert_done(result)
+        self.assertEqual(result.stderr, "", "12 nodes in a wave of 25 Hz; what is faster is of no interest")
+        short += settings(analysis__highest_frequency="40 Hz")
         result = self.run_column(self.scene, "-o", "out", "-q", *short)
         self.assert_done(result)
-        words = re.search(r"warning: the elements of layer.0 \(sand\) are too long for this motion: (\S+) nodes in a "
-                          r"wave length of \S+ m \(150 m/s at 40 Hz\), 10 are needed. Set layer.0.cells to (\d+) or",
+        words = re.search(r"warning: (the elements of layer.0 \(sand\) are too long for the shortest wave of interest: "
+                          r"(\S+) nodes in \S+ m \(150 m/s at 40 Hz\), 10 are needed. Set layer.0.cells to (\d+) "
+                          r"or .*)",
                           result.stderr)
         self.assertIsNotNone(words, result.stderr)
-        self.assert_near(float(words[1]), 2 * 150 / 40, 0.05, "cells of 1 m, degree 2; digits of the message")
-        result = self.run_column(self.scene, "-o", "fine", "-q", *short, *settings(layer__0__cells=words[2],
-                                                                                   layer__1__cells=4 * int(words[2])))
+        self.assert_near(float(words[2]), 2 * 150 / 40, 0.05, "cells of 1 m, degree 2; digits of the message")
+        self.assertIn(words[1], result.stdout)
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text(encoding="utf-8"))["warnings"],
+                         [words[1]])
+        result = self.run_column(self.scene, "-o", "fine", "-q", *short, *settings(layer__0__cells=words[3],
+                                                                                   layer__1__cells=4 * int(words[3])))
         self.assert_done(result)
         self.assertEqual(result.stderr, "")
 

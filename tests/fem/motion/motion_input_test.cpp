@@ -291,15 +291,6 @@ TEST(Scaling, FactorAndPeak)
   EXPECT_THAT(refusal([&] { scaled(m, NAN); }), HasSubstr("scale factor = nan"));
 }
 
-TEST(MeanFrequency, OfASineAndOfARickerWavelet)
-{
-  EXPECT_NEAR_BECAUSE(harmonic_motion(2, 3, 5, 0, 1e-3).mean_frequency(), 3, 3e-4, "a sine of straight lines");
-  // (1 - 2 b^2) exp(-b^2): its square has the integral 3/4, that of its slope 15/4, times sqrt(pi/2)
-  EXPECT_NEAR_BECAUSE(ricker_motion(1, 4, 0.5, 1e-3).mean_frequency(), 4 * std::sqrt(5) / 2, 2e-3,
-                      "a wavelet of straight lines");
-  EXPECT_EQ(Motion().mean_frequency(), 0);
-}
-
 TEST(Repeated, SecondTimeAfterAPauseAndOverlapping)
 {
   const Motion m({0, 2, -1}, 0.5);

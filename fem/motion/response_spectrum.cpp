@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/motion/response_spectrum.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace isostat
+{
+namespace
+{
+constexpr double parts_per_period = 64;
+constexpr double smallest = 1e-150; // below it at rest: numbers that underflow are slow
+} // namespace
+
+/// The exact step of length h: free vibration A, and the particular solution p + q tau of a linear acceleration, which
+/// is left out of the free vibration.
+ResponseSpectrum::Oscillator ResponseSpectrum::oscillator(double period, double damping, double interval)
+{
+  if (!(period > 0) || !(damping >= 0) || !(damping < 1) || !(interval > 0))
+    throw InputError("response spectrum: period = " + std::to_string(period) +
+                     " s, damping = " + std::to_string(damping) + ", interval = " + std::to_string(interval) +
+                     " s; must be > 0, in [0, 1), > 0");
+  Oscillator o{};
+  o.parts = static_cast<unsigned>(std::ceil(parts_per_period * interval / period));
+  o.after = static_cast<unsigned>(std::ceil(period / interval));
+  const double h = interval / o.parts, w = 2 * std::numbers::pi / period, damped = w * std::sqrt(1 - damping * damping),
+               decay = std::exp(-damping * w * h), c = decay * std::cos(damped * h),
+               s = decay * std::sin(damped * h) / damped;
+  o.stiff = w * w;
+  o.damp = 2 * damping * w;
+  o.a11 = c + damping * w * s;
+  o.a12 = s;
+  o.a21 = -w * w * s;
+  o.a22 = c - damping * w * s;
+  const auto response = [&](double a, double slope, double &u, double &v) {
+    const double q = -slope / o.stiff, p = (-a - o.damp * q) / o.stiff;
+    u = -o.a11 * p - o.a12 * q + p + q * h;
+    v = -o.a21 * p - o.a22 * q + q;
+  };
+  response(1, -1 / h, o.b01, o.b02);
+  response(0, 1 / h, o.b11, o.b12);
+  return o;
+}
+
+ResponseSpectrum::ResponseSpectrum(const std::vector<double> &periods, double damping, double interval)
+    : states_(periods.size())
+{
+  for (double period : periods)
+    oscillators_.push_back(oscillator(period, damping, interval));
+}
+
+void ResponseSpectrum::step(const Oscillator &o, double from, double to, State &s)
+{
+  const double slope = (to - from) / o.parts;
+  double a0 = from;
+  for (unsigned k = 1; k <= o.parts; ++k)
+    {
+      const double a1 = k == o.parts ? to : from + k * slope;
+      const double u = o.a11 * s.u + o.a12 * s.v + o.b01 * a0 + o.b11 * a1,
+                   v = o.a21 * s.u + o.a22 * s.v + o.b02 * a0 + o.b12 * a1;
+      s.u = std::abs(u) < smallest ? 0 : u;
+      s.v = std::abs(v) < smallest ? 0 : v;
+      s.peak = std::max(s.peak, std::abs(o.stiff * u + o.damp * v));
+      a0 = a1;
+    }
+}
+
+void ResponseSpectrum::follow(double acceleration)
+{
+  if (started_)
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      step(oscillators_[i], last_, acceleration, states_[i]);
+  started_ = true;
+  last_ = acceleration;
+}
+
+std::vector<double> ResponseSpectrum::peaks() const
+{
+  std::vector<double> peaks;
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    {
+      State s = states_[i];
+      step(oscillators_[i], last_, 0, s);
+      for (unsigned k = 0; k < oscillators_[i].after; ++k)
+        step(oscillators_[i], 0, 0, s);
+      peaks.push_back(s.peak);
+    }
+  return peaks;
+}
+
+std::vector<double> ResponseSpectrum::save() const
+{
+  std::vector<double> state = {last_, started_ ? 1.0 : 0.0};
+  for (const State &s : states_)
+    state.insert(state.end(), {s.u, s.v, s.peak});
+  return state;
+}
+
+void ResponseSpectrum::restore(const std::vector<double> &state)
+{
+  if (state.size() != 2 + 3 * states_.size())
+    throw InputError("checkpoint: a response spectrum of " + std::to_string(state.size()) +
+                     " numbers does not fit; resume with the scene of the first run");
+  last_ = state[0];
+  started_ = state[1] != 0;
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    states_[i] = {state[2 + 3 * i], state[3 + 3 * i], state[4 + 3 * i]};
+}
+
+std::vector<double> spectrum_periods()
+{
+  constexpr int n = 160;
+  constexpr double shortest = 0.02, longest = 5;
+  std::vector<double> periods;
+  for (int k = 0; k < n; ++k)
+    periods.push_back(shortest * std::pow(longest / shortest, k / (n - 1.0)));
+  return periods;
+}
+
+std::vector<double> response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping,
+                                      double end)
+{
+  if (motion.at_rest())
+    return std::vector<double>(periods.size(), 0.0);
+  ResponseSpectrum spectrum(periods, damping, motion.interval());
+  for (std::size_t k = 0; k < motion.accelerations().size() && static_cast<double>(k) * motion.interval() <= end; ++k)
+    spectrum.follow(motion.accelerations()[k]);
+  return spectrum.peaks();
+}
+} // namespace isostat
