@@ -61,7 +61,6 @@ def column_spectrum(column, where, axis):
     """Periods and S_a: of every step of the run if it left them, else of the rows, which are fewer and filtered."""
     if f"{where}_{axis}" in column.spectra:
         return column.spectra["period"], column.spectra[f"{where}_{axis}"]
-    note("no spectra.csv; response spectra are those of the rows of the history")
     a, dt = column.motion(f"{where}_a{axis}")
     return PERIODS, response_spectrum(a, dt, PERIODS, column.spectrum_damping)
 
@@ -71,6 +70,8 @@ def spectra(column):
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
     if column.consolidation or not axes_moving:
         return None
+    if not column.spectra:
+        note("no spectra.csv; response spectra are those of the rows of the history")
     figure, panels = plt.subplots(2, len(axes_moving), figsize=(3.6 * max(len(axes_moving), 1.5), 5.2), sharex=True,
                                   sharey="row", height_ratios=(1.5, 1), squeeze=False, layout="constrained")
     for k, axis in enumerate(axes_moving):
@@ -84,12 +85,14 @@ def spectra(column):
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
         panel_letter(top, "abc"[k])
         panel_letter(bottom, "defghi"[k] if len(axes_moving) == 3 else "bcdef"[k + len(axes_moving) - 1])
-    finish_spectra(panels, column.spectrum_damping)
+    finish_spectra(panels, column.spectrum_damping, column.damping["viscous_above"])
     return figure
 
 
-def finish_spectra(panels, damping):
+def finish_spectra(panels, damping, highest_frequency):
+    """Grey: periods of what is above the highest frequency of interest."""
     for axes in panels.flat:
+        axes.axvspan(PERIODS[0], max(PERIODS[0], 1 / highest_frequency), color="#eeeeee", zorder=0)
         axes.set_xscale("log")
         axes.set_xlim(PERIODS[0], PERIODS[-1])
         axes.set_ylim(bottom=0)

@@ -199,7 +199,7 @@ def path_stress(column):
 
 
 def point_label(depth, prefix):
-    return f"{depth:.4g} m" if depth is not None else prefix
+    return f"{depth:.3g} m" if depth is not None else prefix
 
 
 def loops(column):

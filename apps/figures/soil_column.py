@@ -4,7 +4,8 @@
     python3 -m figures soil_column RESULTS
 
 fig_motions.png       acceleration of input and surface, for each direction that moves
-fig_spectra.png       response spectra of input and surface, and their ratio
+fig_spectra.png       response spectra of input and surface of every step (spectra.csv), and their ratio; grey: periods
+                      that belong to frequencies above analysis.highest_frequency
 fig_transfer.png      Fourier amplitudes, surface over input; one elastic layer: beside its exact curve, from which the
                       largest difference is printed; other soil: smoothed, too (Konno and Ohmachi 1998, b = 80)
 fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the

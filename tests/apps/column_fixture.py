@@ -30,11 +30,24 @@ def write(folder, scene, history, profiles=None):
     rows = np.column_stack([np.arange(len(history["time"])), *history.values()])
     header = ",".join(f"{name} ({unit_of(name)})" for name in names)
     np.savetxt(folder / "history.csv", rows, fmt="%.10g", delimiter=",", header=header, comments="")
+    write_spectra(folder, history)
     if profiles:
         with h5py.File(folder / "profiles.h5", "w") as file:
             for name, values in profiles.items():
                 file[name] = values
     return folder
+
+
+def write_spectra(folder, history):
+    """Of what moves; PGA at every period is enough for a curve."""
+    moving = [axis for axis in "xyz" if np.abs(history.get(f"input_a{axis}", 0)).max() > 0]
+    if moving:
+        periods = np.geomspace(0.02, 5, 160)
+        columns = {f"{where}_{axis}": np.full_like(periods, np.abs(history[f"{where}_a{axis}"]).max())
+                   for axis in moving for where in ("input", "surface")}
+        header = ",".join(["period (s)", *(f"{name} (m/s2)" for name in columns)])
+        np.savetxt(folder / "spectra.csv", np.column_stack([periods, *columns.values()]), fmt="%.10g", delimiter=",",
+                   header=header, comments="")
 
 
 def scene(name):

@@ -176,11 +176,12 @@ class Figures(ToleranceTest):
     def test_history_alone(self):
         """No scene, no profiles, no summary: notes, and the figures that history.csv is enough for."""
         folder = fixture.elastic(self.folder / "run")
-        for name in ("scene.toml", "profiles.h5", "summary.json"):
+        for name in ("scene.toml", "profiles.h5", "summary.json", "spectra.csv"):
             (folder / name).unlink()
         result = self.draw(folder, "--out", str(self.folder / "it's here"))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("scene.toml", result.stderr)
+        self.assertIn("no spectra.csv", result.stderr)
         self.assertEqual(sorted(path.stem for path in (self.folder / "it's here").iterdir()),
                          ["fig_loops", "fig_motions", "fig_spectra", "fig_transfer"])
 
