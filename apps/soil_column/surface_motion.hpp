@@ -27,7 +27,7 @@ public:
   SurfaceMotion(const ColumnScene &scene, const FiniteElementSpace &space, const std::array<Motion, 3> &motions,
                 double time_step);
 
-  /// After each step.   Cost: in the loop, 0.5 us for each axis that moves.
+  /// After each step.   Cost: in the loop, 1 us for each axis that moves.
   void follow(const Dynamics &run);
   MotionBands bands() const; ///< collective
 

@@ -47,10 +47,42 @@ ResponseSpectrum::Oscillator ResponseSpectrum::oscillator(double period, double 
 }
 
 ResponseSpectrum::ResponseSpectrum(const std::vector<double> &periods, double damping, double interval)
-    : states_(periods.size())
 {
+  if (!std::ranges::is_sorted(periods))
+    throw InputError("response spectrum: its periods must rise");
   for (double period : periods)
-    oscillators_.push_back(oscillator(period, damping, interval));
+    {
+      const Oscillator o = oscillator(period, damping, interval);
+      oscillators_.push_back(o);
+      if (o.parts > 1)
+        {
+          states_.emplace_back();
+          continue;
+        }
+      Rows &r = rows_;
+      for (auto [to, value] : {std::pair(&r.a11, o.a11),
+                               {&r.a12, o.a12},
+                               {&r.a21, o.a21},
+                               {&r.a22, o.a22},
+                               {&r.b01, o.b01},
+                               {&r.b02, o.b02},
+                               {&r.b11, o.b11},
+                               {&r.b12, o.b12},
+                               {&r.stiff, o.stiff},
+                               {&r.damp, o.damp},
+                               {&r.u, 0.0},
+                               {&r.v, 0.0},
+                               {&r.peak, 0.0}})
+        to->push_back(value);
+    }
+}
+
+ResponseSpectrum::State ResponseSpectrum::state(std::size_t i) const
+{
+  if (i < states_.size())
+    return states_[i];
+  const std::size_t k = i - states_.size();
+  return {rows_.u[k], rows_.v[k], rows_.peak[k]};
 }
 
 void ResponseSpectrum::step(const Oscillator &o, double from, double to, State &s)
@@ -72,8 +104,24 @@ void ResponseSpectrum::step(const Oscillator &o, double from, double to, State &
 void ResponseSpectrum::follow(double acceleration)
 {
   if (started_)
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      step(oscillators_[i], last_, acceleration, states_[i]);
+    {
+      for (std::size_t i = 0; i < states_.size(); ++i)
+        step(oscillators_[i], last_, acceleration, states_[i]);
+      const double *a11 = rows_.a11.data(), *a12 = rows_.a12.data(), *a21 = rows_.a21.data(), *a22 = rows_.a22.data(),
+                   *b01 = rows_.b01.data(), *b02 = rows_.b02.data(), *b11 = rows_.b11.data(), *b12 = rows_.b12.data(),
+                   *stiff = rows_.stiff.data(), *damp = rows_.damp.data(), a0 = last_, a1 = acceleration;
+      double *__restrict us = rows_.u.data(), *__restrict vs = rows_.v.data(), *__restrict peak = rows_.peak.data();
+      const std::size_t n = rows_.u.size();
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          const double u = a11[i] * us[i] + a12[i] * vs[i] + b01[i] * a0 + b11[i] * a1,
+                       v = a21[i] * us[i] + a22[i] * vs[i] + b02[i] * a0 + b12[i] * a1,
+                       size = std::abs(stiff[i] * u + damp[i] * v);
+          us[i] = std::abs(u) < smallest ? 0 : u;
+          vs[i] = std::abs(v) < smallest ? 0 : v;
+          peak[i] = size > peak[i] ? size : peak[i];
+        }
+    }
   started_ = true;
   last_ = acceleration;
 }
@@ -81,9 +129,9 @@ void ResponseSpectrum::follow(double acceleration)
 std::vector<double> ResponseSpectrum::peaks() const
 {
   std::vector<double> peaks;
-  for (std::size_t i = 0; i < states_.size(); ++i)
+  for (std::size_t i = 0; i < oscillators_.size(); ++i)
     {
-      State s = states_[i];
+      State s = state(i);
       step(oscillators_[i], last_, 0, s);
       for (unsigned k = 0; k < oscillators_[i].after; ++k)
         step(oscillators_[i], 0, 0, s);
@@ -95,20 +143,29 @@ std::vector<double> ResponseSpectrum::peaks() const
 std::vector<double> ResponseSpectrum::save() const
 {
   std::vector<double> state = {last_, started_ ? 1.0 : 0.0};
-  for (const State &s : states_)
-    state.insert(state.end(), {s.u, s.v, s.peak});
+  for (std::size_t i = 0; i < oscillators_.size(); ++i)
+    {
+      const State s = this->state(i);
+      state.insert(state.end(), {s.u, s.v, s.peak});
+    }
   return state;
 }
 
 void ResponseSpectrum::restore(const std::vector<double> &state)
 {
-  if (state.size() != 2 + 3 * states_.size())
+  if (state.size() != 2 + 3 * oscillators_.size())
     throw InputError("checkpoint: a response spectrum of " + std::to_string(state.size()) +
                      " numbers does not fit; resume with the scene of the first run");
   last_ = state[0];
   started_ = state[1] != 0;
-  for (std::size_t i = 0; i < states_.size(); ++i)
-    states_[i] = {state[2 + 3 * i], state[3 + 3 * i], state[4 + 3 * i]};
+  for (std::size_t i = 0; i < oscillators_.size(); ++i)
+    {
+      const double *s = &state[2 + 3 * i];
+      if (const std::size_t k = i - states_.size(); i >= states_.size())
+        rows_.u[k] = s[0], rows_.v[k] = s[1], rows_.peak[k] = s[2];
+      else
+        states_[i] = {s[0], s[1], s[2]};
+    }
 }
 
 std::vector<double> spectrum_periods()

@@ -88,6 +88,7 @@ TEST(ResponseSpectrum, GoesOnFromItsStateToTheBit)
     }
   EXPECT_EQ(whole.peaks(), resumed.peaks());
   EXPECT_THROW(ResponseSpectrum({1}, 0.05, 1e-3).restore(whole.save()), InputError);
+  EXPECT_THROW(ResponseSpectrum({2, 1}, 0.05, 1e-3), InputError);
   EXPECT_THROW(ResponseSpectrum({0}, 0.05, 1e-3), InputError);
 }
 } // namespace isostat
