@@ -49,6 +49,7 @@ frequency = "2 Hz"
 duration = "4 s"
 ramp = "1 s"
 [analysis]
+viscosity = "0 ms"
 duration = "5 s"
 time_step = "4 ms"
 mass_damping = "0.2 1/s"

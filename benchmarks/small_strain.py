@@ -3,6 +3,7 @@
 """Stiffness against pressure, modulus reduction and damping of packings, with both contact laws.
 
     PYTHONPATH=build/release/python python3 benchmarks/small_strain.py stiffness
+    PYTHONPATH=build/release/python python3 benchmarks/small_strain.py velocity
     PYTHONPATH=build/release/python python3 benchmarks/small_strain.py reduction --jobs 2
     PYTHONPATH=build/release/python python3 benchmarks/small_strain.py figures
 
@@ -21,7 +22,7 @@ from small_strain import plan, report, runs  # noqa: E402  (beside this file, wh
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=("stiffness", "reduction", "figures"))
+    parser.add_argument("what", choices=("stiffness", "velocity", "reduction", "figures"))
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("results/small_strain"))
     parser.add_argument("--tables", type=pathlib.Path, default=pathlib.Path("docs/results"),
                         help="where `figures` writes")

@@ -44,8 +44,8 @@ def exponent(states, low, high):
 
 def stiffness_table(results):
     """Rows of moduli, exponent and void ratio for each law and preparation."""
-    lines = ["| law | prepared at | e at 100 kPa | Z at 100 kPa | G at 100 kPa, MPa | correlation, MPa | n, 20 to 800 kPa |",
-             "|---|---|---|---|---|---|---|"]
+    lines = ["| law | prepared at | e at 100 kPa | Z at 100 kPa | G at 100 kPa, MPa | correlation, MPa | "
+             "n, 20 to 800 kPa |", "|---|---|---|---|---|---|---|"]
     for law in plan.LAWS:
         for degrees in plan.DEGREES:
             states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
@@ -79,6 +79,41 @@ def draw_stiffness(results, path):
         axis.legend(frameon=False, fontsize=8, title="dashed: resonant column", title_fontsize=8)
         axis.grid(alpha=0.3, which="both", lw=0.4)
     axes[0].set_ylabel("shear modulus G (MPa)")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+# ---- wave speed against depth
+def velocity_rows(results, law):
+    """Depth, V_s of each seed, and V_s of the correlation at the packings' void ratio and mean stress, m/s."""
+    runs = [r["states"] for r in results if r["law"] == law]
+    for at in zip(*runs, strict=True):
+        target = [np.sqrt(published.small_strain_modulus(s["void_ratio"], s["pressure"]) / 1970) for s in at]
+        yield at[0]["depth"], [s["velocity"] for s in at], target
+
+
+def velocity_table(results):
+    """V_s of both laws and of the correlation, one row for each depth."""
+    lines = ["| depth, m | linear law, 1 GPa, m/s | over the correlation | Hertz-Mindlin, 38 GPa, m/s | "
+             "over the correlation |", "|---|---|---|---|---|"]
+    for linear, hertz in zip(*(velocity_rows(results, law) for law in plan.LAWS), strict=True):
+        lines.append(f"| {linear[0]} | " + " | ".join(
+            f"{text(v, 0)} | {text(np.array(v) / np.array(target), 2)}" for _, v, target in (linear, hertz)) + " |")
+    return "\n".join(lines)
+
+
+def draw_velocity(results, path):
+    """V_s over depth beside the correlation."""
+    figure, axis = plt.subplots(figsize=(4.4, 4.4), layout="constrained")
+    for law in plan.LAWS:
+        depth, speeds, target = (np.array(x) for x in zip(*velocity_rows(results, law), strict=True))
+        axis.errorbar(speeds.mean(axis=1), depth, xerr=speeds.std(axis=1, ddof=1) / np.sqrt(speeds.shape[1]), fmt="o-",
+                      ms=3.5, color=COLOURS[law], label=f"{law}, {plan.GROUND[law]['young']}")
+    axis.plot(target.mean(axis=1), depth, "--", color="black", lw=1, label="resonant column")
+    axis.fill_betweenx(depth, 0.85 * target.mean(axis=1), 1.15 * target.mean(axis=1), color="0.85", label="within 15 %")
+    axis.set(xlabel="velocity of shear waves (m/s)", ylabel="depth (m)", xlim=(0, None), ylim=(21, 0))
+    axis.legend(frameon=False, fontsize=8)
+    axis.grid(alpha=0.3, lw=0.4)
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -142,7 +177,8 @@ def draw_reduction(results, drained, path):
                                 sharey="row")
     gamma = np.logspace(-6, -2, 200)
     for column, pressure in enumerate(plan.REDUCTION_PRESSURES):
-        for name, curves, style in (("Darendeli (2001)", published.darendeli, "-"), ("Menq (2003)", published.menq, "--")):
+        for name, curves, style in (("Darendeli (2001)", published.darendeli, "-"),
+                                    ("Menq (2003)", published.menq, "--")):
             reduction, damping = curves(gamma, 1e3 * pressure)
             axes[0, column].semilogx(gamma, reduction, style, color="0.4", lw=1.2, label=name)
             axes[1, column].semilogx(gamma, 100 * damping, style, color="0.4", lw=1.2)
@@ -171,6 +207,9 @@ def write(folder, docs):
     if stiffness := read(folder, "stiffness"):
         draw_stiffness(stiffness, docs / "hertz_mindlin" / "stiffness.png")
         print(stiffness_table(stiffness))
+    if velocity := read(folder, "velocity"):
+        draw_velocity(velocity, docs / "hertz_mindlin" / "velocity.png")
+        print("\n" + velocity_table(velocity))
     if reduction := read(folder, "reduction"):
         for drained in (True, False):
             draw_reduction(reduction, drained,

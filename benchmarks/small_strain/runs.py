@@ -13,11 +13,11 @@ TOLERANCE = 1e-4       # of stresses that are kept, over p'
 NORMAL = np.eye(3, dtype=bool)
 
 
-def specimen(run, cache, grains, pressure):
+def specimen(run, cache, grains, pressure, laws=plan.LAWS):
     """The packing of a run, isotropically consolidated."""
     scene = isostat.Scene(
         grading={"grains": grains, "cloud_edge": f"{10 * (grains / 10000) ** (1 / 3):.3f} mm", "seed": run.seed},
-        contact={**plan.LAWS[run.law], "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
+        contact={**laws[run.law], "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
                  "twisting": {"stiffness": 0.3}},
         specimen={"domain": "periodic-cell", "pressure": f"{pressure} kPa",
                   "preparation_friction": f"{run.degrees} deg"})
@@ -48,6 +48,23 @@ def stiffness(run, cache, grains):
         for target in np.geomspace(previous, pressure, 9)[1:]:
             accepted(rve.mixed(np.zeros((3, 3)), -1e3 * target * np.eye(3), np.ones((3, 3), dtype=bool), TOLERANCE))
         states.append(state(rve))
+    return {"states": states, "seconds": time.perf_counter() - start}
+
+
+def velocity(run, cache, grains):
+    """Of vertical shear waves at each depth of a deposit, loaded by the weight above without lateral strain."""
+    start = time.perf_counter()
+    rve = isostat.Rve(specimen(run, cache, grains, run.pressure, plan.GROUND), min_steps=MIN_STEPS)
+    vertical, states = np.zeros((3, 3), dtype=bool), []
+    vertical[1, 1] = True
+    for depth in plan.DEPTHS:
+        target, present = plan.BUOYANT_WEIGHT * depth, -rve.stress[1, 1]
+        for stress in np.geomspace(present, target, 5)[1:]:
+            accepted(rve.mixed(np.zeros((3, 3)), -stress * np.eye(3), vertical, TOLERANCE))
+        c = rve.stiffness()
+        modulus = (c[3, 3] + c[5, 5]) / 2  # shear in the planes yz and xy, y being vertical
+        states.append({**state(rve), "depth": depth, "lateral": -(rve.stress[0, 0] + rve.stress[2, 2]) / 2,
+                       "velocity": float(np.sqrt(modulus / 1970))})
     return {"states": states, "seconds": time.perf_counter() - start}
 
 

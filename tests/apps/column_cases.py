@@ -49,6 +49,7 @@ kind = "{"compliant" if rock else "rigid"}"
 [load]
 surcharge = "{SURCHARGE} Pa"
 [analysis]
+viscosity = "0 ms"
 duration = "{duration} s"
 time_step = "{step} s"
 [output]
@@ -110,7 +111,7 @@ def published_scene(folder, corner, per_wave, duration):
     time = np.arange(0, 16 * width, 1e-4)
     np.savetxt(folder / "pulse.txt", np.column_stack([time, np.exp(-((time / width - 8) ** 2) / 2)]))
     return scene + ('[water]\ndrainage = "dry"\n[[motion]]\nkind = "record"\nfile = "pulse.txt"\nunit = "m/s2"\n'
-                    f'[analysis]\nduration = "{duration} s"\n[output]\nhistory_interval = "1 ms"\n')
+                    f'[analysis]\nviscosity = "0 ms"\nduration = "{duration} s"\n[output]\nhistory_interval = "1 ms"\n')
 
 
 def amplification(rows, frequency):
