@@ -4,7 +4,7 @@
 //
 //        | sigma_y              prepare   cloud -> isotropic compression -> friction -> balance   (or a file)
 //     ___v___                   programme stages of the scene: compress, friction, rebalance, undrained-monotonic,
-//    |o O o O|<- sigma_x                  undrained-cyclic, drained, constant-p, hold, simple shear
+//    |o O o O|<- sigma_x                  undrained-cyclic, drained, constant-p, hold, simple shear, path, repeat
 //    |O o O o|                  leaves    history.csv/.h5, snapshots, ParaView files, figures, a printed summary
 //    |_______|  y axial
 //
