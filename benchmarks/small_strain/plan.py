@@ -49,12 +49,12 @@ class Run:
 
 
 def runs(kind, seeds):
-    """All runs of a kind, the cheap ones first."""
+    """All runs of a kind."""
     if kind == "velocity":
         return [Run(kind, law, 10, seed, 10) for seed in range(1, seeds + 1) for law in LAWS]
     if kind == "stiffness":
         return [Run(kind, law, degrees, seed) for seed in range(1, seeds + 1) for degrees in DEGREES for law in LAWS]
     every = [Run(kind, law, REDUCTION_DEGREES, seed, pressure, amplitude, drained, damping)
-             for amplitude in AMPLITUDES for seed in range(1, seeds + 1) for pressure in REDUCTION_PRESSURES
-             for law in LAWS for drained in (False, True) for damping in (DAMPING, DAMPING / 2)]
+             for damping in (DAMPING, DAMPING / 2) for seed in range(1, seeds + 1) for amplitude in AMPLITUDES
+             for pressure in REDUCTION_PRESSURES for law in LAWS for drained in (False, True)]
     return [run for run in every if run.damping == DAMPING or run.amplitude <= SMALL]

@@ -65,7 +65,7 @@ TEST(HertzHardCases, GrainsOneToFiveInSize)
   Rve rve(test::prepare_in_cell(recipe), quick());
   const Packing &packing = rve.assembly().packing();
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
-  const Path path = shear(rve, 5e-3, 20);
+  const ExtremeStresses path = shear(rve, 5e-3, 20);
   std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
               packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
   EXPECT_GE(path.min_p, 0);

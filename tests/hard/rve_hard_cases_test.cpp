@@ -62,7 +62,7 @@ TEST(RveHardCases, ALiquidStaysLiquidOverTenPerCentOfShear)
 {
   Rve rve(test::periodic_specimen(grains, 14), quick());
   liquefy(rve, 0);
-  const Path path = shear(rve, 0.1, 50);
+  const ExtremeStresses path = shear(rve, 0.1, 50);
   std::printf("liquid: e %.3f, p' between %.3f and %.3f kPa over 10 %% of shear\n", rve.void_ratio(), path.min_p / 1e3,
               path.max_p / 1e3);
   EXPECT_BELOW_BECAUSE(path.max_p, 0.02 * p0, "a liquid: p' below 2 % of what the packing was prepared at");
@@ -124,7 +124,7 @@ TEST(RveHardCases, GrainsOneToFiveInSize)
   const Packing &packing = rve.assembly().packing();
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
   EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, prepared);
-  const Path path = shear(rve, 5e-3, 20);
+  const ExtremeStresses path = shear(rve, 5e-3, 20);
   std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
               packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
   EXPECT_GE(path.min_p, 0);
@@ -159,7 +159,7 @@ TEST(RveHardCases, WithoutFrictionItLosesItsStress)
   const Mat6 c = rve.stiffness();
   EXPECT_GT(c(0, 0), 0);
   EXPECT_EQ(c, rve.stiffness(Sliding::released)) << "no contact can yield";
-  const Path path = shear(rve, 0.02, 40);
+  const ExtremeStresses path = shear(rve, 0.02, 40);
   std::printf("no friction: E_oed %.0f MPa, G %.1f MPa; p' between %.2f and %.1f kPa over 2 %% of shear\n",
               c(0, 0) / 1e6, c(5, 5) / 1e6, path.min_p / 1e3, path.max_p / 1e3);
   EXPECT_BELOW_BECAUSE(path.min_p, 0.5 * p0, "without friction, shear at constant volume releases the packing");

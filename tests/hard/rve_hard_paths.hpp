@@ -19,16 +19,16 @@ inline RveSettings quick()
 }
 
 /// What a run of increments went through.
-struct Path
+struct ExtremeStresses
 {
   double min_p = 1e300, max_p = -1e300, max_tau = 0;
 };
 
 /// Simple shear at constant volume in equal increments; every one is accepted, finite and keeps the volume.
-inline Path shear(Rve &rve, double gamma, int increments)
+inline ExtremeStresses shear(Rve &rve, double gamma, int increments)
 {
   const double volume = rve.assembly().volume();
-  Path path;
+  ExtremeStresses path;
   for (int k = 0; k < increments; ++k)
     {
       const RveResponse r = rve.undrained(simple_shear(gamma / increments));
