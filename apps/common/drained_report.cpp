@@ -3,6 +3,8 @@
 
 #include "base/files/csv_table.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +16,17 @@ bool is_drained(const Stage &stage)
 {
   const auto *path = as<Path>(stage);
   return as<ServoedShear>(stage) || (path && path->is_drained_triaxial());
+}
+
+/// It ends at a lower stress ratio than it began with, of the same sign, and never had a higher one.
+bool unloads(const DrainedPath &path)
+{
+  if (path.stress_ratio.size() < 2)
+    return true;
+  const auto amount = [](double ratio) { return std::abs(ratio); };
+  return path.stress_ratio.back() * path.stress_ratio.front() > 0 &&
+         amount(path.stress_ratio.back()) < amount(path.stress_ratio.front()) &&
+         std::ranges::max(path.stress_ratio, {}, amount) == path.stress_ratio.front();
 }
 } // namespace
 
@@ -32,19 +45,24 @@ std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, co
   };
   const CsvTable history(folder / "history.csv",
                          {"stage (-)", "eps_x (-)", "eps_y (-)", "eps_z (-)", "p (Pa)", "q (Pa)"});
+  const auto stage_of = [&](std::size_t row) { return static_cast<std::size_t>(history(row, at_stage)); };
   std::vector<DrainedStage> stages;
   for (std::size_t k = 0; k < scene.stages.size(); ++k)
     if (is_drained(scene.stages[k]))
       {
         DrainedPath path;
         for (std::size_t row = 0; row < history.n_rows(); ++row)
-          if (static_cast<std::size_t>(history(row, at_stage)) == k)
-            {
-              path.axial.push_back(history(row, y));
-              path.volumetric.push_back(history(row, x) + history(row, y) + history(row, z));
-              path.stress_ratio.push_back(history(row, p) > 0 ? history(row, q) / history(row, p) : 0);
-            }
-        stages.push_back({k, drained_strength(path)});
+          {
+            if (stage_of(row) != k)
+              continue;
+            if (row > 0 && stage_of(row - 1) != k) // a stage that is repeated: its last time
+              path = {};
+            path.axial.push_back(history(row, y));
+            path.volumetric.push_back(history(row, x) + history(row, y) + history(row, z));
+            path.stress_ratio.push_back(history(row, p) > 0 ? history(row, q) / history(row, p) : 0);
+          }
+        if (!unloads(path))
+          stages.push_back({k, drained_strength(path)});
       }
   return stages;
 }
@@ -57,8 +75,9 @@ std::string to_text(const std::vector<DrainedStage> &stages)
       const auto line = [&](const char *name, const std::string &value) {
         text += fmt::format("\n  {:<25}{}{}", name, value, stages.size() > 1 ? fmt::format(" (stage {})", number) : "");
       };
-      line("peak friction", fmt::format("{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %", s.peak_friction,
-                                        s.peak_ratio, 100 * s.peak_strain));
+      const bool rises = std::abs(s.end_ratio) > 0.99 * std::abs(s.peak_ratio);
+      line("peak friction", fmt::format("{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %{}", s.peak_friction,
+                                        s.peak_ratio, 100 * s.peak_strain, rises ? ", no peak yet: mobilised" : ""));
       line("end friction", fmt::format("{:.2f} deg (q/p' {:.3f})", s.end_friction, s.end_ratio));
       line("largest dilatancy", fmt::format("{}-d eps_v/d eps {:.3f} at a strain of {:.3f} %",
                                             s.dilatancy ? fmt::format("{:.2f} deg, ", *s.dilatancy) : "",

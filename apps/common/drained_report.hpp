@@ -16,7 +16,8 @@ struct DrainedStage
   DrainedStrength strength;
 };
 
-/// Of each stage that drives the axial strain while a servo keeps stresses, from history.csv.
+/// Of each stage that drives the axial strain while a servo keeps stresses, from history.csv; of one that is repeated
+/// the last time. Stages that unload have no strength.
 std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, const Scene &scene);
 
 /// Lines for the terminal, each after a line break.

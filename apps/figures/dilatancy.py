@@ -25,6 +25,8 @@ def dilatancy(run):
         return None
     stage = run.drained_stages[-1]
     rows = run["stage"] == stage["stage"]
+    others = np.flatnonzero(~rows[:np.flatnonzero(rows)[-1]])
+    rows[:others[-1] + 1 if others.size else 0] = False  # of a stage that is repeated the last time
     if np.count_nonzero(rows) < 3:
         return None
     axial = run["eps_y"][rows]

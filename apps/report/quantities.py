@@ -11,6 +11,8 @@ SHOWN = {
         "grains": "-", "void_ratio": "-", "relative_density": "-", "e_min": "-", "e_max": "-",
         "preparation_friction_deg": "deg", "p0": "kPa", "steps": "-", "steps_since_resumed": "-", "seconds": "-",
         "shear_stage_first_row": "-", "reversals": "-", "worst_overshoot": "kPa", "energy_residual": "-",
+        "cyclic_response.load_min": "kPa", "cyclic_response.load_max": "kPa",
+        "cyclic_response.strain_min": "%", "cyclic_response.strain_max": "%",
         "gamma_max": "%", "tau_max": "kPa", "sigma_v0": "kPa", "stress_ratio_max": "-", "CSR": "-",
         "liquefaction.row": "-", "liquefaction.cycle": "-", "liquefaction.strain_before": "%",
         "liquefaction.IR_at_onset": "-", "liquefaction.IR_min": "-", "liquefaction.IR_recovered": "-"},

@@ -11,7 +11,7 @@ from figures.common import plt
 MOST_PARTS = 1500  # segments and marks of a figure; more become images, because each would be an element of its own
 FEW_PARTS = 50  # of an artist that stays as it is
 DIGITS = 2  # of coordinates, in points: 0.01 pt is a seventieth of a pixel of a screen
-IMAGE_DPI = 200  # of what becomes an image
+IMAGE_DPI = 180  # of what becomes an image
 NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")

@@ -79,7 +79,8 @@ std::vector<std::string> lost_now(const ControlSpec &spec, double strain, DriveS
 SceneFragment<ControlSpec> control_keys() { return {keys}; }
 
 std::vector<std::string> check_control(const ControlSpec &spec, const KeptStresses &targets,
-                                       const std::array<double, 4> &stress, double planned, DriveState &state)
+                                       const std::array<double, 4> &stress, double planned, DriveState &state,
+                                       double scale)
 {
   ControlState &control = state.control;
   const double driven = std::abs(state.loading.strain - control.last_strain),
@@ -89,8 +90,8 @@ std::vector<std::string> check_control(const ControlSpec &spec, const KeptStress
   for (std::size_t k = 0; k < targets.size(); ++k)
     if (targets[k])
       {
-        const double off =
-            std::abs(stress[k] - *targets[k]) / std::max(std::abs(*targets[k]), k < 3 ? least_share_of_p0 * p : p);
+        const double least = std::max(scale, k < 3 ? least_share_of_p0 * p : p);
+        const double off = std::abs(stress[k] - *targets[k]) / std::max(std::abs(*targets[k]), least);
         add(control.of(all_quantities[k]), off, spec.stress_tolerance, stress[k], *targets[k], driven, state);
       }
   if (!state.undrained.liquefaction)

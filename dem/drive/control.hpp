@@ -34,9 +34,11 @@ using KeptStresses = std::array<std::optional<double>, 4>;
 /// inertia with.
 /// @param stress  sigma_x, sigma_y, sigma_z, tau_xy as measured, Pa, compression positive
 /// @param planned  strain at which the stage ends, an amount; 0: unknown
+/// @param scale    what deviations are judged against where targets are lower, Pa
 /// @return a line for each quantity that turns out lost before the stage has ended
 std::vector<std::string> check_control(const ControlSpec &spec, const KeptStresses &targets,
-                                       const std::array<double, 4> &stress, double planned, DriveState &state);
+                                       const std::array<double, 4> &stress, double planned, DriveState &state,
+                                       double scale = 0);
 
 /// At the end of a stage: what was lost joins DriveState::control.losses.   @return a line for each loss not yet told
 std::vector<std::string> close_control(const ControlSpec &spec, DriveState &state);

@@ -82,6 +82,8 @@ struct PathState
   double gamma = 0;                   ///< of a cell: sum of L_xy dt since then [-]
 
   double p0() const { return start ? start->p0 : 0.0; }
+  /// p0', or before the specimen is sheared the mean stress with which the present stage began, Pa.
+  double reference_pressure() const { return start ? start->p0 : lateral_target.mean(); }
 
   template <class Self, class F>
   static void for_each(Self &self, F &&f)

@@ -30,7 +30,7 @@ constexpr Key shared[] = {
   {.path = "contact_damping", .value = "0.05", .range = {0, 1, false, true},
    .reason = "because it is a share of critical damping; a large one needs a small time step",
    .text = "Dashpots along the normals of contacts, as a share of critical damping: two grains that collide part with "
-           "0.86 of their speed at 0.05. 0: none.",
+           "0.86 of their speed at 0.05 (Hertz-Mindlin law: 0.85). 0: none.",
    .field = [](MotionSpec &m) -> Field { return &m.contact_damping; }},
   {.path = "free_grain_damping", .value = "0.1", .range = {0, 1}, .reason = "because it is a share",
    .text = "Share of its velocity that a grain on which nothing acts loses in each step; 0: it flies on until it hits "
@@ -47,7 +47,7 @@ constexpr Key chosen[] = {
   {.path = "load_per_wave", .value = "0.1", .range = {0, 1},
    .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
    .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the packing, "
-           "L sqrt(density/young): the strain rate is lowered where the packing is stiff, the larger the packing the "
+           "L sqrt(density/E), E the modulus of contacts under p0' (young of the linear law): the strain rate is lowered where the packing is stiff, the larger the packing the "
            "more, but not below a hundredth. 0: never lowered. Not used with a fixed strain_rate.",
    .field = [](MotionSpec &m) -> Field { return &m.load_per_wave; }},
   {.path = "carry_grains", .kind = Kind::boolean, .value = "true",

@@ -95,7 +95,8 @@ private:
     std::vector<std::string> lost;
     if (state_.place.steps % control_interval == 1) // the indicator is of the step before
       lost = check_control(programme_.control, stage_.kept_stresses(context_),
-                           {seen.stress[0], seen.stress[1], seen.stress[2], seen.tau}, stage_.planned_strain(), state_);
+                           {seen.stress[0], seen.stress[1], seen.stress[2], seen.tau}, stage_.planned_strain(), state_,
+                           stage_.stress_scale(context_));
     if (finished)
       for (std::string &line : close_control(programme_.control, state_))
         lost.push_back(std::move(line));

@@ -45,7 +45,8 @@ TEST(HertzMindlinPacking, StiffnessRisesWithAPowerOfPressure)
   const double p2 = pressure(rve), g2 = shear_modulus(rve), exponent = std::log(g2 / g1) / std::log(p2 / p1);
   std::printf("G %.0f MPa at %.0f kPa, %.0f MPa at %.0f kPa: exponent %.3f\n", g1 / 1e6, p1 / 1e3, g2 / 1e6, p2 / 1e3,
               exponent);
-  EXPECT_NEAR_BECAUSE(exponent, 0.415, 0.085, "1/3 with the same contacts, more as others close; sand has 0.4 to 0.5");
+  EXPECT_NEAR_BECAUSE(exponent, 0.415, 0.05,
+                      "one packing of 500 grains; 0.36 to 0.40 with 1,000, 1/3 were its contacts always the same");
 }
 
 TEST(HertzMindlinPacking, CriticalStepIsBounded)
@@ -120,7 +121,7 @@ TEST(HertzMindlinPacking, StaysInOrderForTenMillionSteps)
   std::printf("%llu steps, p' %.2f kPa\n", static_cast<unsigned long long>(rve.cost().steps), pressure(rve) / 1e3);
   EXPECT_GE(rve.cost().steps, 10'000'000u);
   EXPECT_NEAR_BECAUSE(rve.assembly().volume() / volume, 1, 1e-12, "round-off: the volume is set from its logarithm");
-  EXPECT_GE(pressure(rve), -1e-6);
+  EXPECT_BELOW_BECAUSE(rve.kinetic_stress().norm(), 1e3, "quasi-static: the packing was prepared at 200 kPa");
 }
 } // namespace
 } // namespace isostat

@@ -2,9 +2,11 @@
 // The general stage on packings: what each condition keeps is kept, courses are followed, stages end where they should,
 // a stopped run goes on to the same bits.
 #include "base/error.hpp"
+#include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/measure/stress.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/periodic.hpp"
 #include "tests/support/specimens.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -181,6 +183,25 @@ TEST(PathConsolidation, GoesAlongAStraightLineAndDoesNotCount)
   EXPECT_BELOW_BECAUSE((reached - target).norm(), 0.01 * 200e3, "each within 0.5 % of p'");
   EXPECT_NEAR_BECAUSE(result.state.path.p0() / 200e3, 1, 0.01, "that of the end of the consolidation");
   EXPECT_NEAR_BECAUSE(result.last().seen.axial, 1e-4, 1e-6, "strains count from the shear stage");
+}
+
+TEST(PathConsolidation, EndsWithContactsWhoseStiffnessGoesWithPressure)
+{
+  // the time of a wave, and with it the ramp, follows from the stress before the specimen has a p0'
+  test::CellRecipe recipe{.grading = test::small_grading(300), .degrees = 8};
+  recipe.law = HertzMindlin();
+  Path path;
+  path.drive = DrivenComponent::none;
+  path.consolidation = true;
+  path.max_steps = 200'000;
+  for (int k = 0; k < 3; ++k)
+    {
+      path.components[k].keep = PathCondition::stress;
+      path.components[k].stress = k == 1 ? 220e3 : 200e3;
+    }
+  const Result result = run({path}, test::prepare_in_cell(recipe));
+  EXPECT_NEAR_BECAUSE(result.last().seen.stress[1] / 220e3, 1, 0.01, "within 0.5 % of p' at the end");
+  EXPECT_LT(result.last().seen.step, 200'000u);
 }
 
 TEST(PathEnds, AtQPRatioAndVolume)

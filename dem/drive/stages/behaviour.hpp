@@ -92,6 +92,8 @@ public:
   /// Stresses that it is to keep at this moment, and the amount of driven strain at which it ends, 0 if that is not
   /// known: for the control (dem/drive/control.hpp) of a stage that shears.
   virtual KeptStresses kept_stresses(const StageContext &) const { return {}; }
+  /// What a deviation of them is judged against where their targets are lower, Pa.
+  virtual double stress_scale(const StageContext &) const { return 0; }
   virtual double planned_strain() const { return 0; }
 
   /// How much of it is done, 0..1; nothing if that cannot be told.

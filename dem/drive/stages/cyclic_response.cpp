@@ -67,7 +67,11 @@ void follow_response(double load, double strain, double amplitude, const ShearMo
     }
 }
 
-bool reverses_stress(const CyclicResponse &response) { return response.least_load < 0 && response.largest_load > 0; }
+bool reverses_stress(const CyclicResponse &response)
+{
+  const double overshoot = 0.01 * (response.largest_load - response.least_load); // each turn comes a little late
+  return response.least_load < -overshoot && response.largest_load > overshoot;
+}
 
 const char *response_name(const UndrainedRecord &record, const ShearMode &mode)
 {

@@ -38,6 +38,6 @@ void follow_response(double load, double strain, double amplitude, const ShearMo
 /// The term for it: "flow", "limited flow", "cyclic mobility", "plastic strain accumulation", or "no failure".
 /// @param record  at the end of the test   @param mode  of the cyclic stage
 const char *response_name(const UndrainedRecord &record, const ShearMode &mode);
-/// The load changed its sign in the cyclic stage.
+/// The load changed its sign in the cyclic stage, by more than a hundredth of its range.
 bool reverses_stress(const CyclicResponse &response);
 } // namespace isostat

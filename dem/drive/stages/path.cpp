@@ -112,7 +112,7 @@ Vec3 Path::stress_targets(const DriveState &state, const Mat3 &stress) const
   Mat3 factors = Mat3::Identity();
   Vec3 right = -stress.diagonal();
   const int d = drive == DrivenComponent::x ? 0 : drive == DrivenComponent::z ? 2 : 1;
-  const double of_driven = state.loading.direction == LoadDirection::compression ? b : 1 - b;
+  const double of_driven = right[d] >= right.mean() ? b : 1 - b; // whichever of sigma_1 and sigma_3 the driven one is
   int first_p = -1;
   for (int k = 0; k < 3; ++k)
     switch (components[k].keep)
@@ -152,6 +152,13 @@ double Path::tau_target(const DriveState &state) const
   const PathProgress &progress = state.progress;
   return table().prescribes(PathQuantity::tau) ? table().value(PathQuantity::tau, progress.place, progress.tau)
                                                : progress.tau;
+}
+
+double Path::stress_scale(const StageContext &c) const
+{
+  const bool follows = std::any_of(components.begin(), components.begin() + 3,
+                                   [](const PathComponent &k) { return k.keep > PathCondition::stress; });
+  return follows ? -c.assembly.stress().trace() / 3 : 0;
 }
 
 KeptStresses Path::kept_stresses(const StageContext &c) const

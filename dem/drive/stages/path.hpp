@@ -10,8 +10,8 @@
 //     stress      sigma_k as when the stage began, or on its way to a target
 //     p           sigma_k such that p' is as when the stage began, or on its way to a target. Of two such axes both
 //                 move alike
-//     b           sigma_k such that b = (s2 - s3)/(s1 - s3) has its value, s2 the axis itself and s1, s3 (in extension
-//                 s3, s1) the driven axis and the remaining one
+//     b           sigma_k such that b = (s2 - s3)/(s1 - s3) has its value, s2 the axis itself and s1, s3 the driven
+//                 axis and the remaining one, the larger stress being s1
 //
 // "On its way": targets of the stage are reached together along a straight line in stress space; a table
 // (path_table.hpp) has many such lines, of strains too. They are passed no faster than the rate control allows, or at
@@ -99,6 +99,8 @@ public:
   bool turns() const { return turn.strain > 0 || turn.high || turn.low; }
   double planned_strain() const override { return turns() ? 0 : end.strain; }
   KeptStresses kept_stresses(const StageContext &c) const override;
+  /// p', where a target follows the measured stress of another axis (conditions p and b) and has its scatter.
+  double stress_scale(const StageContext &c) const override;
   double load(const Observation &seen) const override;
   double strain(const Observation &seen) const override;
   std::optional<double> fraction_done(const DriveState &state) const override;

@@ -111,12 +111,18 @@ PathTable read_path_table(const std::filesystem::path &file)
         reject(
             file, l + 1,
             fmt::format("{} = {:g}; must be above {:g}: rows follow each other, and the state of the specimen when the "
-                        "stage begins is the one at 0",
+                        "stage begins is the one at 0. Remove this row or correct it",
                         header[0], place, table.at.empty() ? 0 : table.at.back()));
       table.at.push_back(place);
       for (std::size_t c = 0; c < headings.size(); ++c)
-        table.columns[static_cast<std::size_t>(*headings[c].quantity)].push_back(
-            headings[c].factor * finite_number(file, l + 1, fields[c + 1]));
+        {
+          const double value = headings[c].factor * finite_number(file, l + 1, fields[c + 1]);
+          if (is_compression(*headings[c].quantity) && value < 0)
+            reject(file, l + 1,
+                   fmt::format("{} = {}; must be >= 0, as grains without cohesion bear no tension. Correct it",
+                               header[c + 1], fields[c + 1]));
+          table.columns[static_cast<std::size_t>(*headings[c].quantity)].push_back(value);
+        }
     }
   if (table.at.empty())
     reject(file, 2, "no rows; a path has at least one");

@@ -26,6 +26,8 @@ enum class PathQuantity
 inline constexpr std::size_t n_path_quantities = 9;
 
 constexpr bool is_strain(PathQuantity quantity) { return quantity >= PathQuantity::strain_x; }
+/// A normal stress or their mean, which grains without cohesion bear in compression alone.
+constexpr bool is_compression(PathQuantity quantity) { return !is_strain(quantity) && quantity != PathQuantity::tau; }
 const char *name_of(PathQuantity quantity); ///< "stress_x", "mean_stress", "gamma": a column without its unit
 
 /// A path through stress and strain: straight lines between knots. Knot 0 is where the specimen stands when the stage

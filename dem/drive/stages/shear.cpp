@@ -76,14 +76,18 @@ void ShearStage::note_inertia(const StageContext &c, const Observation &seen)
         quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
 }
 
-double ShearStage::ramp_time(const StageContext &c) { return ramp_waves * wave_time(c.assembly, c.state.path.p0()); }
+double ShearStage::ramp_time(const StageContext &c)
+{
+  return ramp_waves * wave_time(c.assembly, c.state.path.reference_pressure());
+}
 
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {
   DriveState &state = c.state;
   note_inertia(c, seen);
   Loading &loading = state.loading;
-  const double present = load(seen), dt = c.assembly.settings.time_step, wave = wave_time(c.assembly, state.path.p0());
+  const double present = load(seen), dt = c.assembly.settings.time_step,
+               wave = wave_time(c.assembly, state.path.reference_pressure());
   update_slope(loading, present, std::max<std::uint64_t>(1, std::lround(wave / dt)));
   const double rate = bounded_rate(state.pace, loading);
   loading.signed_rate = next_rate(loading, rate, present, turning_load(state), ramp_waves * wave, dt);

@@ -171,7 +171,6 @@ inline double misfit(const Outcome &a, const Outcome &b, bool with_energy)
   const auto own = [](const Histories &h, std::size_t i) { // kn^2, in proportion to the overlap, as its round-off is
     return h[i].own.empty() || h[i].own[0] == 0 ? Vec3(0, 0, 0) : Vec3(std::pow(h[i].own[0], -2), 0, 0);
   };
-if(getenv("DBG"))std::printf("DBG before %g own %g\n",worst,misfit(a.histories, b.histories, n, own));
   worst = std::max(worst, misfit(a.histories, b.histories, n, own));
   if (with_energy && !a.loss.sliding.empty())
     for (auto m : {&DissipationPerPair::sliding, &DissipationPerPair::rolling, &DissipationPerPair::released,

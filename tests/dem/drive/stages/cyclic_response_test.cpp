@@ -88,6 +88,14 @@ TEST_F(Response, StrainInOneDirectionWithoutLiquefactionAccumulates)
   EXPECT_EQ(flows, 0);
 }
 
+TEST_F(Response, AnOvershootBeyondZeroIsNoReversalOfStress)
+{
+  go(40e3, 1e-3), turn(), go(-0.1e3, 1e-3), turn(), go(40e3, 1e-3), turn();
+  EXPECT_FALSE(reverses_stress(state.undrained.response));
+  go(-4e3, 1e-3), turn();
+  EXPECT_TRUE(reverses_stress(state.undrained.response));
+}
+
 TEST_F(Response, ASmallDropOfTheLoadIsNoSoftening)
 {
   go(50e3, 2e-3), go(47.5e3, 0.03), go(60e3, 0.01), turn();

@@ -62,6 +62,7 @@ TEST_F(PathTableTest, MistakesAreNamedWithTheirLine)
   says("step (-),stress_x (-)\n1,2\n", "1", "stresses in (Pa)");
   says("step (-),tau (Pa),tau (kPa)\n1,2,3\n", "1", "twice");
   says("step (-),tau (Pa)\n0,2\n", "2", "must be above 0");
+  says("step (-),stress_x (kPa)\n1,2\n2,-20\n", "3", "stress_x (kPa) = -20; must be >= 0");
   says("step (-),tau (Pa)\n1,2\n1,3\n", "3", "must be above 1");
   says("step (-),tau (Pa)\n1\n", "2", "1 values; the header names 2");
   says("step (-),tau (Pa)\n1,x\n", "2", "expected a number");
