@@ -22,9 +22,9 @@ struct RefreshRule
   bool operator==(const RefreshRule &) const = default;
 };
 
-/// Wave moduli of elements, and the p' at which each was computed. They fall with p', so that an old value is rather too
-/// large: good for the bound of a stable time step. Where p' rises by less than the rule's share an old value is too
-/// small: hardly with linear contacts, by up to a tenth with those of Hertz.
+/// Wave moduli of elements, and the p' at which each was computed. They fall with p', so that an old value is rather
+/// too large: good for the bound of a stable time step. Where p' rises by less than the rule's share an old value is
+/// too small: hardly with linear contacts, by up to a tenth with those of Hertz.
 /// tested: tests/coupling/batch/wave_moduli_cache_test.cpp
 class WaveModuliCache
 {

@@ -119,7 +119,8 @@ times = 2
         stages = history["stage"].astype(int)
         self.assertEqual(stages[np.flatnonzero(np.diff(stages, prepend=-1))].tolist(), [0, 1, 0, 1])
         first = np.flatnonzero(np.diff(stages))[0] + 1
-        self.assert_close(history["p"][:first], history["p"][0], 0.02, "300 grains; the servo follows a load that grows")
+        self.assert_close(history["p"][:first], history["p"][0], 0.02,
+                          "300 grains; the servo follows a load that grows")
         x, y, z = (history[f"sigma_{axis}"][:first][-1] for axis in "xyz")
         self.assert_near((z - x) / (y - x), 0.5, 0.05, "the same, of a difference of stresses")
 
