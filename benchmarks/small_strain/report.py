@@ -11,6 +11,7 @@ import numpy as np  # noqa: E402
 from . import plan, published  # noqa: E402
 
 COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red"}
+LOST = 0.05  # G/G_max below which a cycle is that of a liquid: its damping ratio means nothing
 NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Mindlin, quartz"}
 
 
@@ -37,7 +38,7 @@ def text(values, digits, factor=1.0):
 # ---- stiffness against pressure
 def exponent(states, low, high):
     """n of G ~ p^n by least squares in logarithms between two pressures, Pa."""
-    points = [(s["pressure"], s["shear_modulus"]) for s in states if low <= s["pressure"] <= high]
+    points = [(s["mean_stress"], s["shear_modulus"]) for s in states if low <= s["mean_stress"] <= high]
     p, g = np.log(np.array(points)).T
     return np.polyfit(p, g, 1)[0]
 
@@ -51,7 +52,7 @@ def stiffness_table(results):
             states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
             if not states:
                 continue
-            at = [next(s for s in one if abs(s["pressure"] / 100e3 - 1) < 0.02) for one in states]
+            at = [next(s for s in one if abs(s["mean_stress"] / 100e3 - 1) < 0.02) for one in states]
             published_g = [published.small_strain_modulus(s["void_ratio"], 100e3) for s in at]
             lines.append(f"| {NAMES[law]} | {degrees}° | {text([s['void_ratio'] for s in at], 3)} | "
                          f"{text([s['coordination'] for s in at], 2)} | "
@@ -68,7 +69,7 @@ def draw_stiffness(results, path):
             states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
             if not states:
                 continue
-            p = np.array([[s["pressure"] for s in one] for one in states]).mean(axis=0)
+            p = np.array([[s["mean_stress"] for s in one] for one in states]).mean(axis=0)
             g = np.array([[s["shear_modulus"] for s in one] for one in states])
             e = np.array([[s["void_ratio"] for s in one] for one in states]).mean(axis=0)
             error = g.std(axis=0, ddof=1) / np.sqrt(len(g)) if len(g) > 1 else None
@@ -88,7 +89,7 @@ def velocity_rows(results, law):
     """Depth, V_s of each seed, and V_s of the correlation at the packings' void ratio and mean stress, m/s."""
     runs = [r["states"] for r in results if r["law"] == law]
     for at in zip(*runs, strict=True):
-        target = [np.sqrt(published.small_strain_modulus(s["void_ratio"], s["pressure"]) / 1970) for s in at]
+        target = [np.sqrt(published.small_strain_modulus(s["void_ratio"], s["mean_stress"]) / 1970) for s in at]
         yield at[0]["depth"], [s["velocity"] for s in at], target
 
 
@@ -134,8 +135,9 @@ def reduction_table(results, drained):
         cells = []
         for law, pressure in columns:
             runs = chosen(results, law, pressure, drained, amplitude)
-            cells.append("" if not runs else text([r["secant"] / r["shear_modulus"] for r in runs], 3) + "; " +
-                         text([r["damping_ratio"] for r in runs], 2, 100) + " %")
+            reduction = [r["secant"] / r["shear_modulus"] for r in runs]
+            damping = text([r["damping_ratio"] for r in runs], 2, 100) + " %"
+            cells.append("" if not runs else text(reduction, 3) + "; " + (damping if min(reduction) > LOST else "lost"))
         if any(cells):
             lines.append(f"| {amplitude:.0e} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
@@ -166,8 +168,9 @@ def curve(results, law, pressure, drained):
     points = []
     for amplitude in plan.AMPLITUDES:
         if runs := chosen(results, law, pressure, drained, amplitude):
-            points.append((amplitude, *mean([r["secant"] / r["shear_modulus"] for r in runs]),
-                           *mean([100 * r["damping_ratio"] for r in runs])))
+            reduction = [r["secant"] / r["shear_modulus"] for r in runs]
+            damping = mean([100 * r["damping_ratio"] for r in runs]) if min(reduction) > LOST else (np.nan, np.nan)
+            points.append((amplitude, *mean(reduction), *damping))
     return np.array(points).T
 
 
@@ -194,7 +197,7 @@ def draw_reduction(results, drained, path):
             axes[row, column].grid(alpha=0.3, lw=0.4)
     axes[0, 0].set_ylabel("G/G_max")
     axes[1, 0].set_ylabel("damping ratio (%)")
-    axes[0, 0].legend(frameon=False, fontsize=8)
+    axes[1, -1].legend(*axes[0, 0].get_legend_handles_labels(), loc="upper left", frameon=False, fontsize=8)
     figure.suptitle("drained" if drained else "undrained", fontsize=10)
     figure.savefig(path, dpi=130)
     plt.close(figure)

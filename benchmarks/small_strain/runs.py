@@ -33,7 +33,7 @@ def accepted(response):
 def state(rve):
     """Moduli of the contact network and what they belong to."""
     stiffness, network = rve.stiffness(), rve.snapshot().network()
-    return {"pressure": -np.trace(rve.stress) / 3, "void_ratio": rve.void_ratio, "density": rve.dry_density,
+    return {"mean_stress": -np.trace(rve.stress) / 3, "void_ratio": rve.void_ratio, "density": rve.dry_density,
             "shear_modulus": float(np.mean(np.diag(stiffness)[3:])), "constrained_modulus":
             float(np.mean(np.diag(stiffness)[:3])), "coordination": network["coordination_number"]}
 
@@ -44,7 +44,7 @@ def stiffness(run, cache, grains):
     rve = isostat.Rve(specimen(run, cache, grains, run.pressure), min_steps=MIN_STEPS)
     states = [state(rve)]
     for pressure in plan.PRESSURES[1:]:
-        previous = states[-1]["pressure"] / 1e3
+        previous = states[-1]["mean_stress"] / 1e3
         for target in np.geomspace(previous, pressure, 9)[1:]:
             accepted(rve.mixed(np.zeros((3, 3)), -1e3 * target * np.eye(3), np.ones((3, 3), dtype=bool), TOLERANCE))
         states.append(state(rve))
@@ -82,7 +82,7 @@ def reduction(run, cache, grains):
     rve = isostat.Rve(specimen(run, cache, grains, run.pressure), min_steps=MIN_STEPS, damping=run.damping)
     first = state(rve)
     kept, increment = rve.stress * NORMAL, np.zeros((3, 3))
-    gamma, tau, pressure = [0.0], [rve.stress[0, 1]], [first["pressure"]]
+    gamma, tau, pressure = [0.0], [rve.stress[0, 1]], [first["mean_stress"]]
     for sign in [1] * STEPS + ([-1] * 2 * STEPS + [1] * 2 * STEPS) * plan.CYCLES:
         increment[0, 1] = sign * run.amplitude / STEPS
         accepted(rve.mixed(increment, kept, NORMAL, TOLERANCE) if run.drained else rve.undrained(increment))
