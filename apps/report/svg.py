@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A figure of matplotlib as SVG to stand in a page: small, with ids of its own, without links to anything outside."""
 import io
+import itertools
 import re
 
 from matplotlib.collections import Collection, LineCollection, QuadMesh
@@ -72,6 +73,8 @@ def element(figure, prefix):
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<!--.*?-->\s*", "", svg, flags=re.S)
     svg = shortened(svg.replace("xlink:href", "href"))
+    number = itertools.count()  # ids of images follow from their pixels, which may be the same in two panels
+    svg = re.sub(r'(?<= id=")image[0-9a-f]+', lambda _: f"image{next(number)}", svg)
     svg = IDENTIFIER.sub(lambda match: match[0] + prefix + "-", svg)
     width, height = map(float, re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups())
     view = f"0 {round(top, 1):g} {width:g} {round(height - top, 1):g}"
