@@ -103,7 +103,7 @@ std::vector<std::string> check_control(const ControlSpec &spec, const KeptStress
 std::vector<std::string> close_control(const ControlSpec &spec, DriveState &state)
 {
   ControlState &control = state.control;
-  const std::vector<std::string> lines = lost_now(spec, control.strain, state);
+  std::vector<std::string> lines = lost_now(spec, control.strain, state);
   for (const ControlledQuantity quantity : all_quantities)
     if (control.of(quantity).told)
       control.losses.push_back(loss_of(state, quantity));

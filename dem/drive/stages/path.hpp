@@ -148,9 +148,10 @@ private:
     mutable std::shared_ptr<const PathTable> table;
     Read() = default;
     Read(const Read &) {} // a copy may be given other targets
-    Read &operator=(const Read &)
+    Read &operator=(const Read &other)
     {
-      table.reset();
+      if (this != &other)
+        table.reset();
       return *this;
     }
     bool operator==(const Read &) const { return true; }

@@ -46,7 +46,7 @@ std::string misfit(const Path &path, const PathTable &table, std::size_t k)
 
 std::string Path::contradiction() const
 {
-  int n_volume = 0, n_p = 0, n_b = 0;
+  int n_p = 0, n_b = 0;
   for (std::size_t k = 0; k < 4; ++k)
     {
       const auto &[keep, ratio, stress] = components[k];
@@ -60,7 +60,6 @@ std::string Path::contradiction() const
         return fmt::format("{}.strain_ratio goes with {}.keep = \"strain\" alone", name, name);
       if (stress && keep != PathCondition::stress)
         return fmt::format("{}.stress goes with {}.keep = \"stress\" alone", name, name);
-      n_volume += keep == PathCondition::volume;
       n_p += keep == PathCondition::p;
       n_b += keep == PathCondition::b;
     }
