@@ -90,6 +90,6 @@ def reduction(run, cache, grains):
         tau.append(rve.stress[0, 1])
         pressure.append(-np.trace(rve.stress) / 3)
     last = slice(-4 * STEPS - 1, None)  # from the last peak but one to the last
-    return {**first, **{f"{key}": value for key, value in loop(np.array(gamma)[last], np.array(tau)[last]).items()},
+    return {**first, **loop(np.array(gamma)[last], np.array(tau)[last]),
             "gamma": gamma, "tau": tau, "p": pressure, "void_ratio_after": rve.void_ratio,
             "seconds": time.perf_counter() - start}

@@ -85,17 +85,7 @@ TEST(RveHardCases, ReversalsInsideTheLiquidState)
 {
   Rve rve(test::periodic_specimen(grains, 2), quick());
   liquefy(rve, 1.5e-3);
-  double maximum = 0;
-  for (const double way : {2e-3, -4e-3, 4e-3, -2e-3})
-    maximum = std::max(maximum, shear(rve, way, 20).max_p);
-  EXPECT_BELOW_BECAUSE(maximum, 0.02 * p0, "a liquid: p' below 2 % of what the packing was prepared at");
-  double gamma = 0;
-  for (; gamma > -0.08 && mean_stress(rve) < p0; gamma -= 2e-3)
-    shear(rve, -2e-3, 4);
-  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", maximum / 1e3,
-              mean_stress(rve) / 1e3, 100 * gamma);
-  EXPECT_GT(mean_stress(rve), p0);
-  EXPECT_BELOW_BECAUSE(rve.stress()(0, 1), -0.3 * mean_stress(rve), "sheared to the left, it resists to the left");
+  reverse_in_liquid(rve, 0.08);
 }
 
 TEST(RveHardCases, DenseConstantVolumeShearPassesTenMegapascals)

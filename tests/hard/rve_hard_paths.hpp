@@ -48,7 +48,8 @@ inline ExtremeStresses shear(Rve &rve, double gamma, int increments)
 }
 
 /// Expands evenly until hardly a contact is left, p' < p0/1000, and by a linear strain more.
-inline void liquefy(Rve &rve, double more)
+/// @param most  change of the void ratio that this may take
+inline void liquefy(Rve &rve, double more, double most = 1e-3)
 {
   const double void_ratio = rve.void_ratio();
   const auto expand = [&](double linear) {
@@ -58,9 +59,27 @@ inline void liquefy(Rve &rve, double more)
   while (mean_stress(rve) >= 1e-3 * p0)
     {
       expand(1e-5);
-      ASSERT_BELOW_BECAUSE(rve.void_ratio(), void_ratio + 1e-2, "p vanishes long before");
+      ASSERT_BELOW_BECAUSE(rve.void_ratio(), void_ratio + most, "p vanishes long before");
     }
   expand(more);
   EXPECT_BELOW_BECAUSE(mean_stress(rve), 1e-3 * p0, "what liquefied is called here");
+}
+
+/// Four reversals of a dense packing that is liquid, which stays so; then sheared to the left until it carries p0
+/// again.
+/// @param reach  amount of gamma by which it must
+inline void reverse_in_liquid(Rve &rve, double reach)
+{
+  double maximum = 0;
+  for (const double way : {2e-3, -4e-3, 4e-3, -2e-3})
+    maximum = std::max(maximum, shear(rve, way, 20).max_p);
+  EXPECT_BELOW_BECAUSE(maximum, 0.02 * p0, "a liquid: p' below 2 % of what the packing was prepared at");
+  double gamma = 0;
+  for (; gamma > -reach && mean_stress(rve) < p0; gamma -= 2e-3)
+    shear(rve, -2e-3, 4);
+  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", maximum / 1e3,
+              mean_stress(rve) / 1e3, 100 * gamma);
+  EXPECT_GT(mean_stress(rve), p0);
+  EXPECT_BELOW_BECAUSE(rve.stress()(0, 1), -0.3 * mean_stress(rve), "sheared to the left, it resists to the left");
 }
 } // namespace isostat::test::hard
