@@ -103,7 +103,7 @@ void Path::begin_shear(const StageContext &c, const Mat3 &stress) const
   progress.tau = stress(0, 1);
   progress.volume = c.assembly.volume();
   progress.reversals = c.state.undrained.reversals;
-  progress.table = table().hash();
+  progress.table = table_hash();
 }
 
 Vec3 Path::stress_targets(const DriveState &state, const Mat3 &stress) const
@@ -353,7 +353,7 @@ void Path::turn_round(const StageContext &c, const Observation &seen, Verdict &v
 Verdict Path::reached(const StageContext &c, const Observation &seen) const
 {
   Verdict verdict;
-  if (c.state.progress.table != table().hash())
+  if (c.state.progress.table != table_hash())
     throw InputError(
         fmt::format("stage {} (path): the table {} is not the one that the stage began with. Put that one back, "
                     "or start anew with --overwrite.",

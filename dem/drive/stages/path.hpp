@@ -137,6 +137,7 @@ private:
   bool at_rest(const StageContext &c) const;
   void turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const;
   void walk(const StageContext &c) const;
+  std::uint64_t table_hash() const { return table(), read_.hash; }
   Vec3 stress_targets(const DriveState &state, const Mat3 &stress) const;
   double tau_target(const DriveState &state) const;
   std::array<double, 4> prescribed_steps(const StageContext &c, const Observation &seen) const;
@@ -146,6 +147,7 @@ private:
   struct Read
   {
     mutable std::shared_ptr<const PathTable> table;
+    mutable std::uint64_t hash = 0; ///< of the table, looked at in every step
     Read() = default;
     Read(const Read &) {} // a copy may be given other targets
     Read &operator=(const Read &other)

@@ -105,7 +105,10 @@ PathTable Path::course() const
 const PathTable &Path::table() const
 {
   if (!read_.table)
-    read_.table = std::make_shared<const PathTable>(course());
+    {
+      read_.table = std::make_shared<const PathTable>(course());
+      read_.hash = read_.table->hash();
+    }
   return *read_.table;
 }
 } // namespace isostat
