@@ -37,7 +37,8 @@ template <int dim>
 void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress);
 
-/// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), `sigma_v0` (Pa), series `time` (n) and,
+/// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), `sigma_v0` (Pa) and `shear_velocity` (m/s)
+/// at the start, series `time` (n) and,
 /// n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v, p, u (Pa), ru (-), as in the history; at the
 /// end of the run `peak_gamma` (-, at the depths), `node_depth` (m) and `peak_acceleration` (m/s2, at those). Written
 /// aside and renamed; rows wait in memory until flush() or until they outnumber a quarter of those written.
@@ -48,8 +49,8 @@ class ProfileFile
 public:
   static constexpr std::size_t n_quantities = point_columns.size();
   /// @param resume_rows  rows of an existing file that are kept; InputError if it has fewer, or other depths
-  ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
-              std::size_t resume_rows = 0);
+  ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
+              std::span<const double> shear_velocity, std::size_t resume_rows = 0);
 
   /// @param values  all depths of the first quantity, then of the second ...
   void append(double time, std::span<const double> values);

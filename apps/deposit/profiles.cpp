@@ -16,8 +16,8 @@ const std::string format_name = "isostat-column-profiles";
 constexpr std::uint64_t schema_version = 1;
 } // namespace
 
-ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::vector<double> sigma_v0,
-                         std::size_t resume_rows)
+ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
+                         std::span<const double> shear_velocity, std::size_t resume_rows)
     : path_(std::move(path)), depths_(std::move(depths))
 {
   if (resume_rows > 0)
@@ -27,7 +27,8 @@ ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths,
   set_format(root, format_name, schema_version);
   const std::size_t m = depths_.size(), chunk = std::max<std::size_t>(1, 4096 / m);
   root.write("depth", std::span<const double>(depths_), "m");
-  root.write("sigma_v0", std::span<const double>(sigma_v0), "Pa");
+  root.write("sigma_v0", sigma_v0, "Pa");
+  root.write("shear_velocity", shear_velocity, "m/s");
   root.create_series("time", "s");
   for (const auto &[name, unit] : point_columns)
     root.create_series(name, unit, m, chunk);

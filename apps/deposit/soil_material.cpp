@@ -134,18 +134,4 @@ std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vec
     }
   return points;
 }
-
-std::array<double, 2> grain_velocities(const ColumnScene &scene, const SoilMaterial &soil, const CellTables &mesh)
-{
-  std::vector<WaveModuli> moduli(soil.grains->n_points());
-  soil.grains->wave_moduli(moduli);
-  std::array<double, 2> range = {1e300, 0};
-  for (std::size_t k = 0; k < moduli.size(); ++k)
-    {
-      const std::size_t layer = mesh.cell_layer[soil.grains_places[k] / mesh.points_per_cell()];
-      const double velocity = std::sqrt(moduli[k].s / scene.layers[layer].density);
-      range = {std::min(range[0], velocity), std::max(range[1], velocity)};
-    }
-  return range;
-}
 } // namespace isostat

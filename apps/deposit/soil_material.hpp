@@ -64,7 +64,4 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
 /// @param depths, requested  of the points of the mesh, below the surface, m
 std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
                                         const std::vector<double> &requested);
-
-/// Smallest and largest shear wave velocity of the points with grains, m/s.   Collective.
-std::array<double, 2> grain_velocities(const ColumnScene &scene, const SoilMaterial &soil, const CellTables &mesh);
 } // namespace isostat

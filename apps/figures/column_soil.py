@@ -118,6 +118,21 @@ def profiles(column):
     return figure
 
 
+def velocity(column):
+    """Velocity of shear waves at the start over depth, where it varies."""
+    speeds = column.profiles.get("shear_velocity") if column.profiles else None
+    if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
+        return None
+    figure, axes = plt.subplots(figsize=(3.2, 4.0), layout="constrained")
+    depth = column.profiles["depth"]
+    axes.plot(speeds, depth, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
+    axes.set_xlim(left=0)
+    axes.set_xlabel("Velocity of shear waves at the start (m/s)")
+    axes.set_ylabel("Depth (m)")
+    depth_axis(column, axes, depth)
+    return figure
+
+
 def edges(middle, low, high):
     """Borders of cells around the given points."""
     return np.concatenate([[low], 0.5 * (middle[1:] + middle[:-1]), [high]])

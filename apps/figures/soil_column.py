@@ -10,6 +10,7 @@ fig_transfer.png      Fourier amplitudes, surface over input; one elastic layer:
                       largest difference is printed; other soil: smoothed, too (Konno and Ohmachi 1998, b = 80)
 fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the
                       depth at several times
+fig_velocity.png      velocity of shear waves of small strain over the depth at the start, where it varies
 fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
@@ -27,7 +28,7 @@ from .column_results import Column
 from .column_consolidation import isochrones, settlement
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
-from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks
+from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
 from .drawing import Drawing
 
 FIGURES = {
@@ -35,6 +36,7 @@ FIGURES = {
     "fig_spectra": spectra,
     "fig_transfer": transfer,
     "fig_profiles": profiles,
+    "fig_velocity": velocity,
     "fig_ru_map": ru_map,
     "fig_histories": histories,
     "fig_loops": loops,

@@ -29,10 +29,11 @@ public:
                scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
         soil_(soil_material(scene_, space_, request.threads, request.materials)),
         run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_, steps_between_rows()),
-        follower_(space_, files_.line(), files_.history().vertical_stress())
+        follower_(space_, files_.line(), files_.history().vertical_stress()),
+        velocities_(shear_velocities(scene_, *soil_.material, space_))
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)
-      coarse_ = coarse_elements(scene_, *soil_.material, space_, motions_); // of the soil at the start of the whole run
+      coarse_ = coarse_elements(scene_, velocities_, space_, motions_);
     if (request.use != FolderUse::resume)
       return;
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
@@ -111,6 +112,7 @@ protected:
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
+  std::vector<double> velocities_;            ///< of shear waves at every point at the start of the whole run, m/s
   std::string coarse_;                        ///< what is wrong with the mesh, if something is
   ColumnInstant instant_;
   Progress progress_{request_.quiet, 5};
@@ -150,7 +152,7 @@ private:
           write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                            {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
         }
-      files_.open(resumed_.get());
+      files_.open(velocities_, resumed_.get());
     });
   }
 

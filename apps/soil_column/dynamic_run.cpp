@@ -32,7 +32,7 @@ class DynamicRun : public ColumnRun<dim, Dynamics>
 {
   using Run = ColumnRun<dim, Dynamics>;
   using Run::request_, Run::scene_, Run::space_, Run::soil_, Run::run_, Run::files_, Run::follower_, Run::resumed_,
-      Run::instant_, Run::times_;
+      Run::velocities_, Run::instant_, Run::times_;
 
 public:
   DynamicRun(const ColumnRequest &request, const std::array<Motion, 3> &motions)
@@ -56,18 +56,18 @@ private:
       }
     if (soil_.grains)
       {
-        velocities_ = grain_velocities(scene_, soil_, space_);
+        for (std::size_t place : soil_.grains_places)
+          range_ = {std::min(range_[0], velocities_[place]), std::max(range_[1], velocities_[place])};
         unsigned long n_packings = soil_.grains->owners().size();
         if (space_.shared_out())
           {
             const MPI_Comm all = space_.communicator();
             MPI_Allreduce(MPI_IN_PLACE, &n_packings, 1, MPI_UNSIGNED_LONG, MPI_SUM, all);
-            MPI_Allreduce(MPI_IN_PLACE, &velocities_[0], 1, MPI_DOUBLE, MPI_MIN, all);
-            MPI_Allreduce(MPI_IN_PLACE, &velocities_[1], 1, MPI_DOUBLE, MPI_MAX, all);
+            MPI_Allreduce(MPI_IN_PLACE, &range_[0], 1, MPI_DOUBLE, MPI_MIN, all);
+            MPI_Allreduce(MPI_IN_PLACE, &range_[1], 1, MPI_DOUBLE, MPI_MAX, all);
           }
         if (ranks().first())
-          this->progress_.say(
-              fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, velocities_[0], velocities_[1]));
+          this->progress_.say(fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, range_[0], range_[1]));
       }
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,
@@ -152,9 +152,8 @@ private:
     const RveMaterialCost &cost = soil_.grains->cost();
     const auto n_packings = soil_.grains->owners().size();
     const auto &[redundancy, depth, time] = grain_files_->minimum();
-    summary.grains = {
-        n_packings, velocities_[0], velocities_[1], scene_.output.profile_interval.has_value(), redundancy, depth,
-        time};
+    summary.grains = {n_packings, range_[0], range_[1], scene_.output.profile_interval.has_value(),
+                      redundancy, depth,     time};
     times_.packing_trials = static_cast<double>(cost.trials * n_packings);
     times_.packing_steps = static_cast<double>(cost.steps);
     times_.in_packings = cost.batch_seconds;
@@ -165,8 +164,8 @@ private:
   const std::uint64_t last_step_ = static_cast<std::uint64_t>(
       std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12))); ///< the last one whose start is recorded
   SurfaceMotion motion_;
-  std::unique_ptr<GrainFiles> grain_files_;   ///< null without grains
-  std::array<double, 2> velocities_ = {0, 0}; ///< of the soil of grains at the start of this run
+  std::unique_ptr<GrainFiles> grain_files_;  ///< null without grains
+  std::array<double, 2> range_ = {1e300, 0}; ///< of velocities_ where the soil is of grains, of all ranks
 };
 } // namespace
 

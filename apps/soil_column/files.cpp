@@ -29,13 +29,13 @@ ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const D
 }
 
 template <int dim>
-void ColumnFiles<dim>::open(const ColumnCheckpoint *resumed)
+void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed)
 {
   recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"), scene_text_);
   if (line_)
-    profiles_ =
-        std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,
-                                      chosen(history_.vertical_stress(), line_->points), counter(resumed, "profiles"));
+    profiles_ = std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,
+                                              chosen(history_.vertical_stress(), line_->points),
+                                              chosen(velocities, line_->points), counter(resumed, "profiles"));
   if (paraview_)
     {
       fs::create_directories(folder_ / "paraview");

@@ -18,9 +18,10 @@ public:
   /// Collective. Touches nothing yet.   @param stride  steps between rows of the history
   ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
               const std::array<Motion, 3> &motions, std::size_t stride);
-  /// Starts or cuts the files, on the rank that writes.   @param resumed  null: start anew
+  /// Starts or cuts the files, on the rank that writes.
+  /// @param velocities  of shear waves at every point at the start of the run, m/s   @param resumed  null: start anew
   /// @throws InputError  files that have been cut off or changed since the checkpoint
-  void open(const ColumnCheckpoint *resumed);
+  void open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed);
 
   /// A row of the history, which is written when it is complete: write_rows().   Collective.
   void record(const ColumnInstant &instant) { history_.add(instant); }

@@ -14,17 +14,16 @@ namespace isostat
 namespace
 {
 /// The shear wave of each layer's slowest cell, by its mean slowness, m/s.
-std::vector<double> slowest_waves(const ColumnScene &scene, const Material &material, const CellTables &mesh)
+std::vector<double> slowest_waves(const ColumnScene &scene, const std::vector<double> &velocities,
+                                  const CellTables &mesh)
 {
-  std::vector<WaveModuli> moduli(material.n_points());
-  material.wave_moduli(moduli);
   std::vector<double> slowest(scene.layers.size(), std::numeric_limits<double>::max());
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell)
     {
       const std::size_t layer = mesh.cell_layer[cell], n = mesh.points_per_cell();
       double slowness = 0;
       for (std::size_t point = cell * n; point < (cell + 1) * n; ++point)
-        slowness += std::sqrt(scene.layers[layer].density / moduli[point].s) / static_cast<double>(n);
+        slowness += 1 / (velocities[point] * static_cast<double>(n));
       slowest[layer] = std::min(slowest[layer], 1 / slowness);
     }
   MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
@@ -62,12 +61,25 @@ double highest_frequency(const Motion &motion, double limit)
   return high;
 }
 
-std::string coarse_elements(const ColumnScene &scene, const Material &material, const CellTables &mesh,
+std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh)
+{
+  std::vector<WaveModuli> moduli(material.n_points());
+  material.wave_moduli(moduli);
+  std::vector<double> velocities;
+  for (std::size_t point = 0; point < moduli.size(); ++point)
+    {
+      const Layer &layer = scene.layers[mesh.cell_layer[point / mesh.points_per_cell()]];
+      velocities.push_back(std::sqrt(moduli[point].s / layer.density));
+    }
+  return velocities;
+}
+
+std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
                             const std::array<Motion, 3> &motions)
 {
   const double limit = scene.analysis.highest_frequency,
                frequency = std::max(highest_frequency(motions[0], limit), highest_frequency(motions[1], limit));
-  const std::vector<double> slowest = slowest_waves(scene, material, mesh);
+  const std::vector<double> slowest = slowest_waves(scene, velocities, mesh);
   std::size_t worst = 0;
   double fewest = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < slowest.size(); ++k)

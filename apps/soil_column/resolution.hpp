@@ -6,6 +6,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace isostat
 {
@@ -17,11 +18,16 @@ inline constexpr double nodes_per_wave = 10;
 /// rest. Hz   cost: 40 passes over the samples     tested: tests/apps/soil_column_test.py
 double highest_frequency(const Motion &motion, double limit);
 
+/// Velocity sqrt(G/rho) of shear waves at every point of this rank, of the material's present stiffness and the density
+/// of its layer, m/s.   Collective.     tested: tests/apps/soil_column_test.py
+std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh);
+
 /// What is wrong with a mesh whose elements are too long for the shortest wave of interest: the layer with the fewest
 /// nodes per wave length, and the number of cells it should have. The nodes are p n V_s/(H f) for n cells of degree p
 /// over H, V_s the shear wave of the layer's slowest cell at the start, f the highest frequency of the horizontal
 /// motions that is not above analysis.highest_frequency.   Collective.
+/// @param velocities  shear_velocities() at the start
 /// @return empty  enough nodes, or nothing moves     tested: tests/apps/soil_column_test.py
-std::string coarse_elements(const ColumnScene &scene, const Material &material, const CellTables &mesh,
+std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
                             const std::array<Motion, 3> &motions);
 } // namespace isostat

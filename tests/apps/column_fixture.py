@@ -157,7 +157,8 @@ def liquefaction(folder):
     ru = np.outer(1 - np.exp(-5 * energy / energy[-1]), 0.99 * loose + 0.15 * (depth > 2))
     ru = np.minimum(ru, 0.99)
     history = {"time": t, "settlement": 0.02 * energy / energy[-1], "max_ru": ru.max(axis=1)}
-    profiles = {"depth": depth, "time": t[::20], "sigma_v0": sigma0, "ru": ru[::20], "u": (ru * sigma0)[::20]}
+    profiles = {"depth": depth, "time": t[::20], "sigma_v0": sigma0, "shear_velocity": 60 * sigma0**0.1,
+                "ru": ru[::20], "u": (ru * sigma0)[::20]}
     points = [int(np.argmin(np.abs(depth - z))) for z in (3, 5, 7, 11)]
     for axis, a in inputs.items():
         accelerations, gamma = layer_motion(a, dt, [0.0, *depth], 3.0)

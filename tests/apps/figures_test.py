@@ -155,12 +155,12 @@ class Figures(ToleranceTest):
             self.assert_below(float(said[1]), 1e-3, "the fixture is the series with fewer terms")
 
     def test_liquefaction(self):
-        self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "ru_map",
-                    "histories", "loops")
+        self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles",
+                    "velocity", "ru_map", "histories", "loops")
 
     def test_grains(self):
-        self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "ru_map",
-                    "histories", "loops", "grains_profiles", "grains_map", "grains_history")
+        self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "velocity",
+                    "ru_map", "histories", "loops", "grains_profiles", "grains_map", "grains_history")
 
     def test_grains_without_profiles(self):
         """What is left of a run is drawn: here the history at the output depths, and no r_u in profiles.h5."""

@@ -43,6 +43,7 @@ class Scenes(ColumnTest):
             self.assertEqual(file["gamma_xz"].shape, (21, 80))
             self.assert_close(file["sigma_v0"], 1900 * 9.81 * np.asarray(file["depth"]), 1e-12,
                               "round-off of a sum over the depth")
+            self.assert_close(file["shear_velocity"], np.full(80, 200.0), 1e-12, "round-off of G = rho V_s^2")
             self.assertTrue((np.diff(file["depth"]) > 0).all())
             self.assert_close(np.asarray(file["time"]), 0.1 * np.arange(21), 1e-12, "round-off of times")
             self.assertEqual(file["node_depth"][-1], 20)
