@@ -37,11 +37,11 @@ template <int dim>
 void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress);
 
-/// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), `sigma_v0` (Pa) and `shear_velocity` (m/s)
-/// at the start, series `time` (n) and,
-/// n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v, p, u (Pa), ru (-), as in the history; at the
-/// end of the run `peak_gamma` (-, at the depths), `node_depth` (m) and `peak_acceleration` (m/s2, at those). Written
-/// aside and renamed; rows wait in memory until flush() or until they outnumber a quarter of those written.
+/// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), of the start `sigma_v0` (Pa) and
+/// `shear_velocity` (m/s), series `time` (n) and, n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v,
+/// p, u (Pa), ru (-), as in the history; at the end of the run `peak_gamma` (-, at the depths), `node_depth` (m) and
+/// `peak_acceleration` (m/s2, at those). Written aside and renamed; rows wait in memory until flush() or until they
+/// outnumber a quarter of those written.
 /// @throws RunFailure  cannot be written
 /// tested: tests/apps/soil_column_test.py
 class ProfileFile
