@@ -293,6 +293,7 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
     return found == specimen.end() ? otherwise : found->second;
   };
   summary.title = scene.title;
+  summary.law = scene.contact->name();
   summary.grains = static_cast<std::size_t>(number("grains", 0));
   summary.void_ratio = number("void_ratio", 0);
   for (auto &[name, value] :
@@ -329,10 +330,11 @@ std::string to_text(const TestSummary &s, const Scene &scene)
                                  s.void_ratio, density_text(s));
   if (s.preparation_friction >= 0)
     text += fmt::format(", prepared at {:.2f} deg", s.preparation_friction);
-  text += fmt::format(
-      "\n  p0'                      {:.2f} kPa\n  run                      {:.0f} steps{} in {:.1f} s ({:.0f} steps/s)",
-      s.p0 / 1e3, s.steps, s.last_steps < s.steps ? fmt::format(", the last {:.0f}", s.last_steps) : "", s.seconds,
-      s.last_steps / std::max(s.seconds, 1e-9));
+  text += fmt::format("\n  contact law              {}\n  p0'                      {:.2f} kPa\n  run                   "
+                      "   {:.0f} steps{} in {:.1f} s ({:.0f} steps/s)",
+                      s.law, s.p0 / 1e3, s.steps,
+                      s.last_steps < s.steps ? fmt::format(", the last {:.0f}", s.last_steps) : "", s.seconds,
+                      s.last_steps / std::max(s.seconds, 1e-9));
   text +=
       fmt::format("\n  strain rate              {}\n  largest indicator        {:.4f} (recorded before liquefaction)",
                   rate_text(scene), s.max_indicator);
@@ -367,6 +369,7 @@ std::string to_text(const TestSummary &s, const Scene &scene)
 void write_json(const std::filesystem::path &path, const TestSummary &s)
 {
   Json json{{"title", s.title},
+            {"contact_law", s.law},
             {"grains", s.grains},
             {"void_ratio", s.void_ratio},
             {"relative_density", or_null(s.relative_density)},

@@ -24,7 +24,7 @@ struct ShearExtremes
 /// What is reported of a finished test, from its history.csv and the driver's state.
 struct TestSummary
 {
-  std::string title;
+  std::string title, law; ///< as the scene names them
   std::size_t grains = 0;
   double void_ratio = 0, preparation_friction = -1;     ///< degrees; negative: unknown
   std::optional<double> relative_density, e_min, e_max; ///< and the limits that define it, as the specimen has them
