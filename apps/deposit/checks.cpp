@@ -4,6 +4,7 @@
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/water/pore_fluid.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,35 @@ void check_mesh(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("water.lagged_compressibility",
                     "has no effect unless water.drainage is \"undrained\": the stiffness "
                     "of the water is part of \"coupled\". Remove it.");
+}
+
+/// Air matters to pressure alone, and that only where the volume of the soil may change.
+bool feels_air(const ColumnScene &scene)
+{
+  return scene.water.drainage == Drainage::coupled ||
+         (scene.water.drainage == Drainage::undrained && scene.water.lagged_compressibility);
+}
+
+void check_air(const SceneDocument &document, const ColumnScene &scene)
+{
+  constexpr const char *remedy = "has no effect if water.drainage is \"dry\" or \"undrained\" at constant volume. Give "
+                                 "drainage = \"coupled\", or remove it.";
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    if (scene.layers[i].saturation < 1 && !feels_air(scene))
+      document.refuse(fmt::format("layer.{}.saturation", i), remedy);
+  if (scene.water.henry > 0 && !feels_air(scene))
+    document.refuse("water.henry", remedy);
+  if (scene.water.air != AirLaw::boyle)
+    return;
+  if (!has_boyle_air(soil_profile(scene)) || !feels_air(scene))
+    document.refuse("water.air", feels_air(scene)
+                                     ? "has no effect without air. Give a layer a saturation below 1 or water a "
+                                       "henry above 0, or remove it."
+                                     : remedy);
+  if (scene.analysis.kind == AnalysisKind::consolidation)
+    document.refuse("water.air",
+                    "must be \"constant\" in a consolidation, whose air keeps the stiffness that it has in "
+                    "situ. Remove it.");
 }
 
 void check_layer(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
@@ -69,6 +99,9 @@ void check_motions(const SceneDocument &document, const ColumnScene &scene)
         if (scene.motions[j].axis == motion.axis)
           document.refuse(prefix + ".axis", fmt::format("has its motion already ({}). Give one [[motion]] to an axis.",
                                                         document.where(fmt::format("motion.{}", j))));
+      if (motion.axis == Axis::z && scene.water.drainage == Drainage::undrained && scene.base.compliant())
+        document.refuse(prefix + ".axis", "must not be z if water.drainage is \"undrained\" above a compliant base: at "
+                                          "constant volume no P wave comes up. Give drainage = \"coupled\".");
       if (motion.kind == MotionKind::record && motion.file.empty())
         document.refuse(prefix + ".file", "must name a file. Give the path of a record.");
       if (motion.kind == MotionKind::harmonic && 2 * motion.ramp > motion.duration)
@@ -136,6 +169,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
   check_mesh(document, scene);
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     check_layer(document, scene, i);
+  check_air(document, scene);
   check_base(document, scene.base);
   check_motions(document, scene);
   check_grains(document, scene);

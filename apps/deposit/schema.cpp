@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
 // binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
-// packings in coupling/scene/packings.cpp: other programs have them too.
+// air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings in coupling/scene/packings.cpp.
 #include "apps/deposit/scene.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/water/pore_fluid_scene.hpp"
 
 namespace isostat
 {
@@ -91,13 +92,14 @@ constexpr Key ground_keys[] = {
    .value = "1000 kg/m3", .range = positive, .text = "Density of the water.",
    .field = [](ColumnScene &s) -> Field { return &s.water.density; }},
   {.path = "water.bulk_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
-   .value = "2.2 GPa", .range = positive, .text = "Bulk modulus K_f of the water; air in it makes it softer.",
+   .value = "2.2 GPa", .range = positive, .text = "Bulk modulus K_w of the water; air in it (`layer.saturation`) makes it softer.",
    .field = [](ColumnScene &s) -> Field { return &s.water.bulk_modulus; }},
   {.path = "water.gravity", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
    .value = "9.81 m/s2", .range = positive, .text = "Acceleration of gravity, of the soil's weight too.",
    .field = [](ColumnScene &s) -> Field { return &s.water.gravity; }},
   {.path = "water.lagged_compressibility", .kind = Kind::boolean, .value = "false",
-   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness.",
+   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The fluid must be "
+           "stiffer than the skeleton, K_f/n > M.",
    .field = [](ColumnScene &s) -> Field { return &s.water.lagged_compressibility; }},
 
   {.path = "layer.name", .kind = Kind::text, .text = "Name of the layer, for tables and figures.",
@@ -167,7 +169,8 @@ constexpr Key loading_keys[] = {
    .text = "Velocity of P waves in the rock; left out: twice the shear velocity.",
    .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
 
-  {.path = "motion.axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion.",
+  {.path = "motion.axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
+           "rigid body: no P waves; use coupled for them.",
    .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.axis; }},
   {.path = "motion.kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
    .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
@@ -355,6 +358,8 @@ const SceneSchema &column_schema()
 {
   static const KeyTable keys{
       ground_keys,
+      splice("water", pore_fluid_keys(), 0, [](ColumnScene &s) -> Water & { return s.water; }),
+      splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),

@@ -120,7 +120,7 @@ class Terzaghi:
         self.modulus = 2 * shear * (1 - nu) / (1 - 2 * nu)
         storage = layer["porosity"] / water["bulk_modulus"]
         self.p0 = load / (1 + storage * self.modulus)
-        mobility = layer["permeability"] / (water["density"] * water["gravity"])
+        mobility = layer["permeability"] / water.get("relative_viscosity", 1) / (water["density"] * water["gravity"])
         self.c = mobility / (1 / self.modulus + storage)
         self.m = (np.arange(400) + 0.5) * np.pi
 

@@ -13,7 +13,9 @@ MIN_COMPARED = 0.01  # time factor from which the exact series is compared: earl
 
 def exact_solution(column):
     layer, load = column.uniform_elastic(), column.step_load()
-    return Terzaghi(layer, column.water, load) if layer and load and layer["permeability"] > 0 else None
+    if not layer or not load or layer["permeability"] <= 0 or layer["saturation"] < 1 or column.water["henry"] > 0:
+        return None  # the stiffness of air rises with the depth
+    return Terzaghi(layer, column.water, load)
 
 
 def chosen_rows(time, exact):

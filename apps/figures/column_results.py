@@ -33,7 +33,8 @@ def of_layer(table):
         raise KeyError("shear_modulus")
     return {"height": quantity(table["thickness"]), "density": density, "velocity": velocity,
             "poisson_ratio": table.get("poisson_ratio", 0.3), "porosity": table.get("porosity", 0.4),
-            "permeability": quantity(table.get("permeability"), 0.0), "material": table["material"]}
+            "permeability": quantity(table.get("permeability"), 0.0), "material": table["material"],
+            "saturation": float(table.get("saturation", 1))}
 
 
 class Grains:
@@ -145,7 +146,9 @@ class Column:
         water = scene.get("water", {})
         self.water = {"density": quantity(water.get("density"), 1000.0),
                       "gravity": quantity(water.get("gravity"), 9.81),
-                      "bulk_modulus": quantity(water.get("bulk_modulus"), 2.2e9)}
+                      "bulk_modulus": quantity(water.get("bulk_modulus"), 2.2e9),
+                      "relative_viscosity": float(water.get("relative_viscosity", 1)),
+                      "henry": float(water.get("henry", 0))}
 
     def has(self, name):
         return name in self.columns
@@ -164,6 +167,12 @@ class Column:
     def boundaries(self):
         """Depths between layers, m."""
         return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
+
+    def capped_boundaries(self):
+        """Of those, the ones below layers that are less permeable than the layer beneath."""
+        pairs = zip(self.layers, self.layers[1:])
+        return [depth for depth, (above, below) in zip(self.boundaries(), pairs)
+                if above["permeability"] < below["permeability"]]
 
     def uniform_elastic(self):
         """The one layer if all are elastic and alike; else None."""

@@ -14,6 +14,8 @@ fig_velocity.png      velocity of shear waves of small strain over the depth at 
 fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
+fig_expansion.png     below less permeable layers: net expansion and settlement, above the volumetric strain over depth
+                      and time
 fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
 fig_settlement.png    consolidation: settlement against time, beside Terzaghi's if it applies
 fig_grains_profiles.png   packings of grains: redundancy index I_R, coordination number, fabric over the depth
@@ -26,6 +28,7 @@ compression.
 """
 from .column_results import Column
 from .column_consolidation import isochrones, settlement
+from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
@@ -40,6 +43,7 @@ FIGURES = {
     "fig_ru_map": ru_map,
     "fig_histories": histories,
     "fig_loops": loops,
+    "fig_expansion": expansion,
     "fig_isochrones": isochrones,
     "fig_settlement": settlement,
     "fig_grains_profiles": grains_profiles,

@@ -230,6 +230,7 @@ private:
     if (!coarse_.empty())
       summary.warnings.push_back(coarse_);
     summary.last = files_.history().state;
+    summary.expansions = files_.history().expansions();
     summary.steps = static_cast<double>(run_.n_steps());
     add_results(summary);
     times_.material = soil_.material->seconds;

@@ -38,7 +38,8 @@ template <int dim>
 ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
                                   const std::array<Motion, 3> &motions, std::size_t stride)
     : space_(space), motions_(motions), rigid_(!scene.base.compliant()), area_(std::pow(scene.mesh.width, dim - 1)),
-      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height())), filter_(9, stride)
+      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height())), expansions_(scene, space),
+      filter_(9, stride)
 {
   for (double depth : scene.output.depths)
     points_.push_back(point_at_depth(space, depth));
@@ -72,6 +73,8 @@ std::vector<RecordColumn> ColumnHistory<dim>::columns() const
       for (const auto &[name, unit] : point_columns)
         columns.push_back({fmt::format("d{}_{}", k, name), unit});
     }
+  for (std::size_t k = 0; k < expansions_.all().size(); ++k)
+    columns.push_back({fmt::format("expansion_{}", k), "m"});
   return columns;
 }
 
@@ -146,6 +149,8 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
   std::copy(std::begin(tail), std::end(tail), row.begin() + settlement_at);
   for (std::size_t k = 4; k < 7; ++k)
     state.max_energy = std::max(state.max_energy, std::abs(tail[k]));
+  const std::vector<double> expansions = expansions_.follow(instant);
+  row.insert(row.end(), expansions.begin(), expansions.end());
   return row;
 }
 
@@ -198,6 +203,7 @@ template <int dim>
 void ColumnHistory<dim>::save(ColumnCheckpoint &checkpoint) const
 {
   checkpoint.put(state);
+  expansions_.save(checkpoint);
   checkpoint.numbers["filtered_steps"] = static_cast<double>(filter_.n_samples());
   checkpoint.vectors["filtered_accelerations"] = filter_.samples();
   std::vector<double> &rows = checkpoint.vectors["waiting_rows"];
@@ -209,6 +215,7 @@ template <int dim>
 void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(state);
+  expansions_.restore(checkpoint);
   filter_.restore(checkpoint.vector("filtered_accelerations"),
                   static_cast<std::uint64_t>(checkpoint.number("filtered_steps")));
   const std::vector<double> &rows = checkpoint.vector("waiting_rows");

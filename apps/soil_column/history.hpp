@@ -3,6 +3,7 @@
 #include "apps/deposit/checkpoint.hpp"
 #include "apps/deposit/output.hpp"
 #include "apps/deposit/scene.hpp"
+#include "apps/soil_column/expansion.hpp"
 #include "base/record/decimation_filter.hpp"
 #include "base/record/recorder.hpp"
 
@@ -55,7 +56,8 @@ public:
 
   const std::vector<double> &vertical_stress() const { return vertical_stress_; } ///< sigma'_v0 of every point, Pa
   const std::vector<PointAtDepth> &points() const { return points_; }             ///< of the scene's depths
-  ColumnState state;                                                              ///< of the last row
+  const std::vector<CapExpansion> &expansions() const { return expansions_.all(); }
+  ColumnState state; ///< of the last row
 
 private:
   using Trio = std::array<long, 3>;
@@ -79,6 +81,7 @@ private:
   Trio base_, surface_;
   std::vector<PointAtDepth> points_;
   std::vector<double> vertical_stress_, mean_stress_;
+  CapExpansions<dim> expansions_;
   DecimationFilter filter_; ///< of input, base and surface
   std::deque<std::vector<double>> waiting_;
 };

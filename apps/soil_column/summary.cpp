@@ -48,6 +48,17 @@ Json layers_json(const ColumnScene &scene)
     }
   return layers;
 }
+Json expansions_json(const std::vector<CapExpansion> &caps)
+{
+  Json json = Json::array();
+  for (const CapExpansion &cap : caps)
+    json.push_back({{"below", cap.layer},
+                    {"depth", cap.depth},
+                    {"largest", cap.largest},
+                    {"largest_time", cap.largest_time},
+                    {"end", cap.last}});
+  return json;
+}
 } // namespace
 
 std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
@@ -79,6 +90,10 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
                         p.ru_time);
   text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
+  for (const CapExpansion &cap : s.expansions)
+    text += fmt::format(
+        "  net expansion            {:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end\n",
+        1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
   if (s.grains)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
@@ -155,6 +170,7 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"max_ru_depth", has_ru(scene) ? Json(p.ru_depth) : Json()},
             {"max_ru_time", has_ru(scene) ? Json(p.ru_time) : Json()},
             {"settlement", s.last.settlement},
+            {"expansions", expansions_json(s.expansions)},
             {"energy_residual", s.last.residual},
             {"relative_energy_residual", relative_residual(s.last)},
             {"final_settlement", drains ? Json(s.final_settlement) : Json()},

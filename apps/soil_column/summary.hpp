@@ -28,6 +28,7 @@ struct ColumnSummary
   ColumnPeaks peaks;
   MotionBands bands;                       ///< nothing in a consolidation
   ColumnState last;                        ///< of the last row
+  std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
   std::optional<GrainsSummary> grains;
 };

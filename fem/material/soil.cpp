@@ -48,6 +48,8 @@ std::size_t SoilProfile::cell_at(double z) const
   return below - 1 - static_cast<std::size_t>((top - z) / height);
 }
 
+double SoilProfile::hydrostatic_pressure(double z) const { return water.density * water.gravity * (height() - z); }
+
 double SoilProfile::vertical_effective_stress(double z, double surcharge) const
 {
   double stress = surcharge, bottom = height();

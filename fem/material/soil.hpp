@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// One layer of saturated soil.
+/// One layer of soil below the water table.
 struct Layer
 {
   std::string name;
@@ -14,6 +14,7 @@ struct Layer
   double density = 2000;   ///< of soil and water together, kg/m3
   double porosity = 0.4;   ///< [-]
   double permeability = 0; ///< hydraulic conductivity k, m/s; 0: no water moves
+  double saturation = 1;   ///< S in situ: volume of water over that of the pores; the rest is air [-]
   double k0 = 0.5;         ///< sigma'_h / sigma'_v in situ [-]
   unsigned cells = 0;      ///< elements through its thickness; 0: from cell_size
   double cell_size = 0;    ///< largest height of an element, m
@@ -30,15 +31,26 @@ enum class Drainage
   coupled    ///< u-p: displacement and pore pressure
 };
 
-/// Pore water.
+/// How air in the pores answers pressure: fem/water/pore_fluid.hpp.
+enum class AirLaw
+{
+  constant, ///< with the stiffness that it has in situ
+  boyle     ///< by Boyle's law, at the pressure of the moment
+};
+
+/// Pore water, and air in it.
 struct Water
 {
-  double density = 1000;       ///< kg/m3
-  double bulk_modulus = 2.2e9; ///< K_f, Pa
-  double gravity = 9.81;       ///< m/s2, also of the soil's weight
+  double density = 1000;         ///< kg/m3
+  double bulk_modulus = 2.2e9;   ///< K_f, Pa
+  double relative_viscosity = 1; ///< mu/mu_w: of the pore fluid over that of water [-]
+  double gravity = 9.81;         ///< m/s2, also of the soil's weight
+  AirLaw air = AirLaw::constant; ///< of no meaning without air
+  double henry = 0; ///< h: volume of air, at its pressure, that a volume of water dissolves [-]; 0.02 at 20 C
+  double atmospheric_pressure = 101325; ///< at the water table, Pa
 
-  /// Mobility kb = k/(rho_f g), m2/(Pa s).
-  double mobility(double permeability) const { return permeability / (density * gravity); }
+  /// Mobility kb = k/(rho_f g) mu_w/mu, m2/(Pa s), of soil with the permeability k for water.
+  double mobility(double permeability) const { return permeability / relative_viscosity / (density * gravity); }
   bool operator==(const Water &) const = default;
 };
 
@@ -53,6 +65,7 @@ struct SoilProfile
   double height() const;                ///< summed from the base up, m
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
   std::size_t cell_at(double z) const;  ///< number of the cell at a height, from the base up   @pre not on a boundary
+  double hydrostatic_pressure(double z) const; ///< of the water at rest, above the atmospheric one, Pa
   /// Vertical effective stress of the soil's own weight and of a uniform load on the surface, compression positive. Pa
   double vertical_effective_stress(double z, double surcharge = 0) const;
 };

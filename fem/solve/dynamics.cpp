@@ -2,6 +2,7 @@
 #include "fem/solve/dynamics.hpp"
 
 #include "base/error.hpp"
+#include "fem/water/biot_integrals.hpp"
 #include "fem/water/pressure_system.hpp"
 
 #include <algorithm>
@@ -47,7 +48,11 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
                                  time_step_, stable));
   prepare_steps();
   if (settings_.lagged_compressibility)
-    lagged_pressure_.assign(space_.n_points(), 0.0);
+    {
+      lagged_pressure_.assign(space_.n_points(), 0.0);
+      lagged_fluids_ = pore_fluids(space_);
+      check_lagged_compression();
+    }
 }
 
 Dynamics::~Dynamics() = default;

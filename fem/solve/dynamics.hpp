@@ -12,6 +12,7 @@
 namespace isostat
 {
 class PressureSystem;
+struct PoreFluid;
 
 /// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
 using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
@@ -59,7 +60,8 @@ class Dynamics
 {
 public:
   /// @pre material.n_points() == space.n_points(), initial stress set
-  /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1
+  /// @throws InputError  step above the stable one, undrained in more than one dimension, u-p with degree 1, lagged
+  ///                     compressibility of a fluid that is softer than the skeleton
   Dynamics(const FiniteElementSpace &space, Material &material, DynamicsSettings settings);
   ~Dynamics();
 
@@ -109,6 +111,7 @@ private:
   void move();
   void strain_points();
   void add_lagged_compression();
+  void check_lagged_compression() const;
   void check_motion();
 
   const FiniteElementSpace &space_;
@@ -134,6 +137,7 @@ private:
   std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
   Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;
+  std::vector<PoreFluid> lagged_fluids_; ///< of the points, lagged compressibility only
   std::unique_ptr<PressureSystem> pressure_system_;
 
   // of one step

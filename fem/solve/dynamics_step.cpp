@@ -134,18 +134,27 @@ void Dynamics::check_motion()
                                  time_step_, stable, step_, time()));
 }
 
-/// The water of an undrained column gives way: volume strain -dp/Q, taken from the step before (docs/theory_column.md,
-/// section 3).
+/// The water of an undrained column gives way: volume strain -dTheta = -dp/Q, taken from the step before
+/// (docs/theory_column.md, section 3).
 void Dynamics::add_lagged_compression()
 {
   const std::vector<double> pressure = point_pressure();
-  const std::vector<PorousLayer> layers = porous_layers(space_.mesh().soil);
   for (std::size_t q = 0; q < pressure.size(); ++q)
     {
-      increments_[q][8] -=
-          (pressure[q] - lagged_pressure_[q]) * layers[space_.cell_layer[q / space_.points_per_cell()]].storage;
+      increments_[q][8] -= lagged_fluids_[q].change(lagged_pressure_[q], pressure[q]);
       lagged_pressure_[q] = pressure[q];
     }
+}
+
+/// Each step takes back M/Q of the error of the one before, M the skeleton's modulus: it dies away if that is below 1.
+void Dynamics::check_lagged_compression() const
+{
+  for (std::size_t q = 0; q < lagged_fluids_.size(); ++q)
+    if (const double stiffness = 1 / lagged_fluids_[q].storage(lagged_pressure_[q]); !(moduli_[q].p < stiffness))
+      throw InputError(fmt::format("lagged compressibility at a height of {:.4g} m: the fluid in the pores, K_f/n = "
+                                   "{:.4g} MPa, must be stiffer than the skeleton, {:.4g} MPa, or the pressure "
+                                   "oscillates from step to step. Use coupled drainage with permeability 0.",
+                                   space_.position[q][2], 1e-6 * stiffness, 1e-6 * moduli_[q].p));
 }
 
 /// The strains of the step that u has made; the material follows.

@@ -42,7 +42,13 @@ Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSet
   min_scale_ = std::max(settings_.min_force, 1e-4 * reference_force_.l2_norm());
   pressure_scale_ = mean_modulus(material_, space_.communicator());
   if (settings_.pore_water)
-    water_ = std::make_unique<BiotOperator>(space_);
+    {
+      if (has_boyle_air(space_.mesh().soil))
+        throw InputError(
+            "statics with air that follows Boyle's law; must have the constant stiffness that it has in situ. "
+            "Set water.air = \"constant\".");
+      water_ = std::make_unique<BiotOperator>(space_);
+    }
   system_ = std::make_unique<StaticsSystem>(space_, water_.get(), pressure_scale_);
 }
 

@@ -38,11 +38,30 @@ std::vector<PorousLayer> porous_layers(const SoilProfile &soil)
   const Water &water = soil.water;
   std::vector<PorousLayer> layers;
   for (const Layer &layer : soil.layers)
-    layers.push_back({layer.porosity / water.bulk_modulus, water.mobility(layer.permeability), water.density});
+    layers.push_back({water.mobility(layer.permeability), water.density});
   return layers;
 }
 
-BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::size_t cell)
+std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space)
+{
+  const SoilProfile &soil = space.mesh().soil;
+  std::vector<PoreFluid> fluids;
+  for (std::size_t q = 0; q < space.n_points(); ++q)
+    fluids.push_back(
+        pore_fluid(soil, soil.layers[space.cell_layer[q / space.points_per_cell()]], space.position[q][2]));
+  return fluids;
+}
+
+std::vector<double> point_storage(const FiniteElementSpace &space)
+{
+  std::vector<double> storage;
+  for (const PoreFluid &fluid : pore_fluids(space))
+    storage.push_back(fluid.storage(0));
+  return storage;
+}
+
+BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::span<const double> storage,
+                   std::size_t cell)
 {
   const std::size_t n_a = space.n_nodes, n_i = space.pressure_nodes_per_cell(), n_q = space.n_gauss,
                     dim = space.dimension;
@@ -56,7 +75,7 @@ BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, st
         const double *slope = &space.pressure_gradient[(point * n_i + i) * dim];
         for (std::size_t j = 0; j < n_i; ++j)
           {
-            c.s(i, j) += w * layer.storage * value * space.pressure_shape[q * n_i + j];
+            c.s(i, j) += w * storage[point] * value * space.pressure_shape[q * n_i + j];
             for (std::size_t d = 0; d < dim; ++d)
               c.h(i, j) += w * layer.mobility * slope[d] * space.pressure_gradient[(point * n_i + j) * dim + d];
           }
@@ -74,8 +93,9 @@ BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, st
 BiotOperator::BiotOperator(const FiniteElementSpace &space) : space_(space)
 {
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
+  const std::vector<double> storage = point_storage(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
-    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], cell));
+    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], storage, cell));
 }
 
 void BiotOperator::add_pore_force(const Vector &p, Vector &f) const

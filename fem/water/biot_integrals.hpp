@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/space/discretisation.hpp"
+#include "fem/water/pore_fluid.hpp"
 
 namespace isostat
 {
-/// Coefficients of the pore water in each layer, as the solvers take them: docs/theory_column.md (3).
+/// How water flows through each layer, as the solvers take it: docs/theory_column.md (3).
 struct PorousLayer
 {
-  double storage = 0;       ///< 1/Q = n/K_f for rigid grains, 1/Pa
   double mobility = 0;      ///< kb = k/(rho_f g), m2/(Pa s)
   double fluid_density = 0; ///< rho_f, kg/m3
 };
 std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
+
+/// Water and air at each point.
+std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space);
+/// 1/Q at each point: n/K_f for rigid grains and the stiffness of the fluid in situ, 1/Pa.
+std::vector<double> point_storage(const FiniteElementSpace &space);
 
 /// Integrals of Biot's equations over one cell, rigid grains (Biot's coefficient 1). Rows are the cell's pressure
 /// nodes; columns its displacements [node][3] (g, l) or its pressure nodes (s, h). docs/theory_column.md (7).
@@ -23,9 +28,10 @@ struct BiotCell
   Eigen::MatrixXd h; ///< int kb grad N_i grad N_j, m3/(Pa s)
 };
 
-/// @param layer  coefficients of the cell's layer
+/// @param layer  coefficients of the cell's layer   @param storage  1/Q of every point of the mesh
 /// tested: tests/fem/water/pressure_system_test.cpp, tests/verification/consolidation_test.cpp
-BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::size_t cell);
+BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::span<const double> storage,
+                   std::size_t cell);
 
 /// The integrals of all cells, and their products with vectors. Displacements and pressures of other ranks are fetched
 /// and results brought home.   tested: tests/verification/consolidation_test.cpp, tests/verification/mandel_test.cpp

@@ -2,6 +2,7 @@
 #include "fem/water/pressure_system.hpp"
 
 #include "fem/linear/petsc.hpp"
+#include "fem/water/air_pressure.hpp"
 #include "fem/water/biot_integrals.hpp"
 
 #include <utility>
@@ -10,12 +11,13 @@ namespace isostat
 {
 struct PressureSystem::Matrices
 {
-  PetscMatrix storage;             ///< S/(2 dt)
-  PetscMatrix to_force;            ///< G^T
-  PetscMatrix ahead, behind;       ///< G/2 + L/dt, G/2 - L/dt
-  PetscMatrix factor;              ///< of the matrix of the pressure
-  std::array<Vector, 3> base_flow; ///< L times a unit acceleration along each axis: int kb rho_f grad N_i
-  std::vector<unsigned> held;      ///< owned unknowns with p = 0: drained, or removed by a tie
+  PetscMatrix storage;              ///< S/(2 dt); not with Boyle's law
+  PetscMatrix to_force;             ///< G^T
+  PetscMatrix ahead, behind;        ///< G/2 + L/dt, G/2 - L/dt
+  PetscMatrix factor;               ///< of the matrix of the pressure; likewise
+  std::unique_ptr<AirPressure> air; ///< Boyle's law
+  std::array<Vector, 3> base_flow;  ///< L times a unit acceleration along each axis: int kb rho_f grad N_i
+  std::vector<unsigned> held;       ///< owned unknowns with p = 0: drained, or removed by a tie
   mutable Vector right_hand_side, work;
   PetscView of_u, of_p, of_residual;
 };
@@ -46,9 +48,10 @@ BiotEntries::BiotEntries(const FiniteElementSpace &space, const std::vector<Poro
   n_displacements = u.locally_owned_size();
   n_pressures = p.locally_owned_size();
   const std::size_t n_u = 3 * space.n_nodes, n_i = space.pressure_nodes_per_cell();
+  const std::vector<double> storage_of_points = point_storage(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], cell);
+      const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], storage_of_points, cell);
       for (std::size_t i = 0; i < n_i; ++i)
         {
           const PetscInt row = p.global_index(space.cell_pressures[cell * n_i + i]);
@@ -100,26 +103,6 @@ PetscMatrix BiotEntries::seepage() const
   return petsc_matrix(communicator, n_pressures, n_pressures, entries);
 }
 
-/// LU of a square matrix: PETSc's own on one rank, MUMPS on several.
-PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
-{
-  int n_ranks = 1;
-  MPI_Comm_size(communicator, &n_ranks);
-  Mat factor = nullptr;
-  petsc_check(MatGetFactor(matrix, n_ranks > 1 ? MATSOLVERMUMPS : MATSOLVERPETSC, MAT_FACTOR_LU, &factor));
-  PetscMatrix owner(factor);
-  IS rows = nullptr, columns = nullptr;
-  if (n_ranks == 1)
-    petsc_check(MatGetOrdering(matrix, banded ? MATORDERINGNATURAL : MATORDERINGND, &rows, &columns));
-  MatFactorInfo info;
-  petsc_check(MatFactorInfoInitialize(&info));
-  petsc_check(MatLUFactorSymbolic(factor, matrix, rows, columns, &info));
-  petsc_check(MatLUFactorNumeric(factor, matrix, &info));
-  petsc_check(ISDestroy(&rows));
-  petsc_check(ISDestroy(&columns));
-  return owner;
-}
-
 /// Owned pressures that are 0: drained, or not in any cell. Soil without permeability does not feel that its surface is
 /// drained.
 std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
@@ -162,9 +145,10 @@ std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vec
   return flows;
 }
 
-/// 3S/(2 dt) + H + (G/2 + L/dt) D G^T, equation (8); rows of held pressures are those of the identity.
-PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, Mat to_force, double time_step, Vec update,
-                            const std::vector<PetscInt> &held)
+/// factor S/(2 dt) + H + (G/2 + L/dt) D G^T, equation (8); rows of held pressures are those of the identity. The
+/// pattern has room for S whatever the factor.
+PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, double factor, Mat to_force, double time_step,
+                            Vec update, const std::vector<PetscInt> &held)
 {
   const PetscMatrix ahead = entries.coupling(0.5, 1 / time_step), seepage = entries.seepage();
   petsc_check(MatDiagonalScale(ahead.get(), nullptr, update));
@@ -173,9 +157,10 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, Mat to_forc
   const PetscMatrix product_owner(product);
   petsc_check(MatDuplicate(storage, MAT_COPY_VALUES, &matrix));
   PetscMatrix owner(matrix);
-  petsc_check(MatScale(matrix, 3));
+  petsc_check(MatScale(matrix, factor));
   petsc_check(MatAXPY(matrix, 1, seepage.get(), DIFFERENT_NONZERO_PATTERN));
   petsc_check(MatAXPY(matrix, 1, product, DIFFERENT_NONZERO_PATTERN));
+  petsc_check(MatSetOption(matrix, MAT_KEEP_NONZERO_PATTERN, factor == 0 ? PETSC_TRUE : PETSC_FALSE));
   petsc_check(MatZeroRows(matrix, held.size(), held.data(), 1, nullptr, nullptr));
   return owner;
 }
@@ -193,6 +178,7 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step
                                .ahead = entries.coupling(0.5, 1 / time_step),
                                .behind = entries.coupling(0.5, -1 / time_step),
                                .factor = {},
+                               .air = {},
                                .base_flow = base_flows(space, layers),
                                .held = held_pressures(space, n_p),
                                .right_hand_side = zero,
@@ -204,10 +190,14 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step
   std::vector<PetscInt> held;
   for (unsigned p : m.held)
     held.push_back(zero.global_index(p));
-  const PetscMatrix matrix =
-      pressure_matrix(entries, m.storage.get(), m.to_force.get(), time_step, m.of_u.of(update), held);
+  const bool boyle = has_boyle_air(space.mesh().soil);
+  PetscMatrix matrix =
+      pressure_matrix(entries, m.storage.get(), boyle ? 0 : 3, m.to_force.get(), time_step, m.of_u.of(update), held);
   m.of_u.release();
-  m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
+  if (boyle)
+    m.air = std::make_unique<AirPressure>(space, time_step, std::move(matrix), m.held);
+  else
+    m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
 }
 
 PressureSystem::~PressureSystem() = default;
@@ -218,11 +208,17 @@ void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const V
   const Matrices &m = *matrices_;
   const std::size_t n = m.work.locally_owned_size();
   double *rhs = m.right_hand_side.begin(), *work = m.work.begin();
-  // right-hand side of (8), term by term: S (4p' - p'')/(2 dt)
-  for (std::size_t i = 0; i < n; ++i)
-    work[i] = 4 * p_before.local_element(i) - p_before_that.local_element(i);
-  petsc_check(MatMult(m.storage.get(), m.of_p.of(m.work), m.of_residual.of(m.right_hand_side)));
-  m.of_p.release();
+  // right-hand side of (8), term by term: S (4p' - p'')/(2 dt), which AirPressure has itself
+  if (m.air)
+    m.right_hand_side = 0;
+  else
+    {
+      for (std::size_t i = 0; i < n; ++i)
+        work[i] = 4 * p_before.local_element(i) - p_before_that.local_element(i);
+      petsc_check(MatMult(m.storage.get(), m.of_p.of(m.work), m.of_residual.of(m.right_hand_side)));
+      m.of_p.release();
+      m.of_residual.release();
+    }
   // - (G/2 + L/dt) v*
   petsc_check(MatMult(m.ahead.get(), m.of_u.of(v_star), m.of_p.of(m.work)));
   m.of_u.release();
@@ -241,7 +237,9 @@ void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const V
   for (unsigned held : m.held)
     rhs[held] = 0;
   m.of_p.release();
-  petsc_check(MatSolve(m.factor.get(), m.of_residual.vec(), m.of_p.of(p)));
+  if (m.air)
+    return m.air->solve(m.right_hand_side, p_before, p_before_that, p);
+  petsc_check(MatSolve(m.factor.get(), m.of_residual.of(m.right_hand_side), m.of_p.of(p)));
   m.of_p.release();
   m.of_residual.release();
 }

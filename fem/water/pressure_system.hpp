@@ -17,7 +17,8 @@ namespace isostat
 ///
 /// p is excess pressure, compression positive, Pa; v in m/s. The matrix is constant: assembled and factorised once by
 /// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
-/// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains).
+/// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains). Where
+/// air follows Boyle's law, S is not constant: AirPressure.
 /// tested: tests/fem/water/pressure_system_test.cpp
 class PressureSystem
 {

@@ -36,6 +36,7 @@ def general(name):
     """Names with numbers as the page has them: dK_gamma_xz, ENTRY/snapshot/..."""
     name = re.sub(r"^(s\d{4}|i[0-9a-f]{16})(?=/|@|$)", "ENTRY", name)
     name = re.sub(r"(?<=losses/)\d+(?=/|@|$)", "N", name)
+    name = re.sub(r"(?<=history/expansion_)\d+$", "K", name)
     return re.sub(r"(?<=history/)([dp])\d+_", r"\1K_", name)
 
 
@@ -94,7 +95,8 @@ class FileFormats(GrainColumnTest):
                             ("cell", tiny_scene(specimen=CELL, stages=SHEAR, output=every))):
             self.assert_done(self.run_test(self.write(f"{name}.toml", scene), "-o", name, "-q"))
         self.whole()
-        for name, change in (("terzaghi", {}), ("uniform_layer", {"analysis__duration": "0.1 s"})):
+        for name, change in (("terzaghi", {}), ("uniform_layer", {"analysis__duration": "0.1 s"}),
+                             ("silt_cap", {"analysis__duration": "0.1 s"})):
             self.assert_done(self.run_column(SCENES / f"{name}.toml", "-o", name, "-q", *settings(**change)))
         block = self.write("block.toml", ELASTIC.format(degree=1))
         self.assert_done(self.run_app("biaxial", block, "-o", "block", "-q", "--no-figures"))

@@ -20,13 +20,18 @@ double shared(double value, bool mine)
 }
 
 template <int dim>
-void run(Drainage drainage)
+void run(Drainage drainage, double saturation = 1)
 {
   MeshSpec mesh{.soil = {.layers = {{.name = "soft", .thickness = 4, .permeability = 1e-3, .cells = 3},
                                     {.name = "stiff", .thickness = 6, .permeability = 1e-4, .cells = 3}},
                          .water = {}},
                 .width = {4, 3},
                 .cells_across = {2, 2}};
+  if (saturation < 1)
+    {
+      mesh.soil.layers[1].saturation = saturation;
+      mesh.soil.water.air = AirLaw::boyle;
+    }
   const Discretisation<dim> space(mesh, shaken_supports(false), MPI_COMM_WORLD);
   Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
   DynamicsSettings settings{.time_step = 5e-4, .drainage = drainage};
@@ -59,4 +64,5 @@ int main()
   run<2>(Drainage::coupled);
   run<3>(Drainage::coupled);
   run<3>(Drainage::dry);
+  run<2>(Drainage::coupled, 0.98);
 }

@@ -26,7 +26,7 @@ def numbers_on(ranks, program):
 def main():
     program = os.path.join(sys.argv[1], "distributed_waves")
     _, expected = numbers_on(1, program)
-    assert len(expected) == 3 and all(abs(row[1]) > 1e-5 for row in expected), expected
+    assert len(expected) == 4 and all(abs(row[1]) > 1e-5 for row in expected), expected
     for ranks in (2, 3):
         fewest, found = numbers_on(ranks, program)
         assert fewest > 0, "a rank without cells: nothing is shared out"

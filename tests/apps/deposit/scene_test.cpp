@@ -239,6 +239,7 @@ TEST(ColumnScene, RoundTripToTheBit)
         for (ColumnLayer &item : scene.layers) // what rules bind, and what is not written
           {
             item.density = scene.water.density + 1 / 3.0;
+            item.saturation = scene.water.drainage == Drainage::coupled ? item.saturation : 1;
             item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanParameters{};
             if (item.material == LayerMaterial::iwan)
               item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;
@@ -248,6 +249,8 @@ TEST(ColumnScene, RoundTripToTheBit)
             item.ramp = item.duration / 3;
             item.factor = item.peak || item.kind != MotionKind::record ? 1 : item.factor;
           }
+        scene.water.henry = scene.water.drainage == Drainage::coupled ? scene.water.henry : 0;
+        scene.water.atmospheric_pressure = 1e5 / 3;
         if (scene.base.kind == BaseKind::rigid)
           scene.base = {};
         if (scene.analysis.kind == AnalysisKind::consolidation)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where soil expands and where it compresses while its water moves: figure of a column under a less permeable layer."""
+import numpy as np
+
+from .column_soil import depth_axis, edges
+from .common import BLACK, BLUE, ORANGE, panel_letter, plt
+
+
+def expansion(column):
+    """Net expansion under each less permeable layer and settlement, above the volumetric strain over depth and time."""
+    names = [name for name in column.columns if name.startswith("expansion_")]
+    strain = column.profile("eps_zz")
+    if not names or strain is None or len(column.profiles["time"]) < 2:
+        return None
+    depth, time = column.profiles["depth"], column.profiles["time"]
+    order = np.argsort(depth)
+    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 5.2), sharex=True, height_ratios=(1, 2),
+                                       layout="constrained")
+    for name, style in zip(names, ("-", "--", ":", "-.") * len(names)):
+        above = column.capped_boundaries()[int(name.rsplit("_", 1)[1])]
+        top.plot(column.time, 1e3 * column[name], style, color=BLUE, label=f"net expansion below {above:.3g} m")
+    top.plot(column.time, 1e3 * column["settlement"], color=ORANGE, label="settlement of the surface")
+    top.set_ylabel("Height (mm)")
+    top.legend(loc="upper left", fontsize=8)
+    top.set_ylim(0, 1.25 * top.get_ylim()[1])
+    expanded = -100 * strain[:, order].T  # volume strain of a column, positive in expansion
+    limit = float(np.nanpercentile(np.abs(expanded), 99)) or 1.0
+    shade = axes.pcolormesh(edges(time, time[0], time[-1]), edges(depth[order], 0, bottom), expanded, cmap="RdBu",
+                            vmin=-limit, vmax=limit, rasterized=True)
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, extend="both").set_label(
+        "Volumetric strain (%)\ncompression     expansion")
+    depth_axis(column, axes, depth)
+    for boundary in column.capped_boundaries():
+        axes.axhline(boundary, color=BLACK, linewidth=0.9)
+    axes.grid(False)
+    axes.set_xlim(time[0], time[-1])
+    axes.set_xlabel("Time (s)")
+    axes.set_ylabel("Depth (m)")
+    panel_letter(top, "a")
+    panel_letter(axes, "b")
+    return figure

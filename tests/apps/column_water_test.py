@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The water of a column as a user sees it: expansion under a cap, air, three components of motion, viscosity."""
+import json
+
+import h5py
+import numpy as np
+
+from column_support import ColumnTest, SCENES, SOIL, history, settings
+from support import main
+
+
+class Water(ColumnTest):
+    def run_scene(self, name, folder, *options):
+        result = self.run_column(SCENES / f"{name}.toml", "-o", folder, "--quiet", *options)
+        self.assert_done(result)
+        where = self.folder / folder
+        return history(where), json.loads((where / "summary.json").read_text(encoding="utf-8")), result.stdout
+
+    def test_sand_expands_under_a_cap_after_the_shaking(self):
+        rows, summary, text = self.run_scene("silt_cap", "cap")
+        (cap,) = summary["expansions"]
+        self.assertEqual((cap["below"], cap["depth"]), ("silt", 2))
+        self.assertIn(f"{1e3 * cap['largest']:.3f} mm of water below silt (2.00 m)", text)
+        self.assert_near(rows["expansion_0"].max(), cap["largest"], 1e-12, "digits of the history")
+        self.assertGreater(cap["largest_time"], 10, "the shaking ends at 5 s")
+        # liquefied sand: the gradient is (rho - rho_f)/rho_f, and what k i brings from below the silt keeps out
+        rise = np.interp([6, 12], rows["time"], rows["expansion_0"])
+        self.assert_near((rise[1] - rise[0]) / 6, 0.9 * (1e-3 - 1e-6), 0.05e-3,
+                         "r_u is not quite 1, and the silt's own pressure changes")
+        late = rows["time"] > 20
+        self.assertLess(rows["d0_eps_zz"][late].max(), 0, "just below the silt: expanded")
+        self.assertGreater(rows["d2_eps_zz"][late].min(), 0, "at 7 m: compressed")
+        # from the profiles: in an element of degree 2 two Gauss points, each of half of its height, are exact
+        with h5py.File(self.folder / "cap/profiles.h5") as file:
+            depth, time, strain = (np.asarray(file[name]) for name in ("depth", "time", "eps_zz"))
+        sand = depth > 2
+        expanded = np.cumsum(-strain[:, sand] * 0.25, axis=1)[:, 1::2].max(axis=1).clip(0)
+        found = np.interp(time, rows["time"], rows["expansion_0"])
+        self.assert_below(np.abs(expanded - found).max() / found.max(), 0.02,
+                          "the largest sum may be that of a node in the middle of an element")
+
+    def test_no_cap_no_expansion(self):
+        rows, summary = self.rows_of(SOIL)
+        self.assertEqual(summary["expansions"], [], "the lower layer is the less permeable one")
+        self.assertFalse([name for name in rows if name.startswith("expansion")])
+
+    def test_air_takes_up_what_water_cannot(self):
+        air, _, _ = self.run_scene("three_components", "air", *settings(analysis__duration="7 s"))
+        wet, _, _ = self.run_scene("three_components", "wet", *settings(
+            analysis__duration="7 s", layer__0__saturation=1, water__air="constant"))
+        at = [float(np.interp(6, rows["time"], rows["d2_ru"])) for rows in (wet, air)]
+        print(f"r_u at 9 m after 6 s: {at[0]:.3f} saturated, {at[1]:.3f} with 0.5 % of air")
+        self.assertGreater(at[0], 0.9)
+        self.assertGreater(at[0] - at[1], 0.1)
+
+    def test_a_viscous_fluid_is_a_less_permeable_soil(self):
+        fluid, _ = self.rows_of(SOIL.replace("[water]", "[water]\nrelative_viscosity = 4"), "fluid")
+        soil, _ = self.rows_of(SOIL.replace('"1e-4 m/s"', '"2.5e-5 m/s"').replace('"1e-6 m/s"', '"2.5e-7 m/s"'), "soil")
+        self.assertEqual(fluid["d0_u"].tobytes(), soil["d0_u"].tobytes())
+
+    def test_an_undrained_column_follows_its_base_along_z(self):
+        text = SOIL.replace('axis = "y"', 'axis = "z"').replace('"coupled"', '"undrained"')
+        rows, _ = self.rows_of(text, "rigid")
+        self.assertGreater(np.abs(rows["input_az"]).max(), 0.1)
+        self.assertEqual(rows["surface_az"].tobytes(), rows["input_az"].tobytes())
+
+
+if __name__ == "__main__":
+    main()

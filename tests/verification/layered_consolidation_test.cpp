@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Consolidation of sand under a cap that is less permeable, of soil with air in its water, and with a viscous fluid.
+#include "fem/material/composite.hpp"
+#include "fem/material/elastic.hpp"
+#include "fem/solve/statics.hpp"
+#include "tests/support/near.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr double load = 1e3, porosity = 0.4; // Pa, [-]
+
+StaticsSettings loaded()
+{
+  StaticsSettings settings;
+  settings.pore_water = true;
+  settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -load}; }}};
+  return settings;
+}
+const Supports supports = {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = {Face::surface}};
+
+/// A layer of the exact solution.
+struct Stratum
+{
+  double thickness, modulus, permeability; ///< m, D in Pa, m/s
+  double mobility() const { return permeability / 9810; }
+  double storage() const { return 1 / modulus + porosity / 2.2e9; }
+  double start() const { return load / (modulus * storage()); } ///< pressure before any flow
+};
+constexpr Stratum cap{2, 2e7, 1e-7}, sand{8, 1e8, 1e-5};
+
+/// Pressure of the two layers by separation of variables, z from the base:
+///     sand  cos(m z/sqrt(c)) sin(m h_cap/sqrt(c_cap))      cap  sin(m (H - z)/sqrt(c_cap)) cos(m h_sand/sqrt(c))
+/// each times exp(-m^2 t), c = kb/S; m from the flow at the interface, factors by orthogonality with the weight S
+/// (Carslaw & Jaeger 1959, Conduction of heat in solids, 12.8: of composite slabs).
+class Exact
+{
+public:
+  Exact()
+  {
+    const auto mismatch = [this](double m) {
+      const auto [a, b] = rates(m);
+      return sand.mobility() * b * std::sin(b * sand.thickness) * std::sin(a * cap.thickness) -
+             cap.mobility() * a * std::cos(a * cap.thickness) * std::cos(b * sand.thickness);
+    };
+    const double step = 1e-3 * std::sqrt(cap.mobility() / cap.storage()) / cap.thickness;
+    for (double m = step; modes_.size() < 60; m += step)
+      if (mismatch(m) * mismatch(m + step) < 0)
+        {
+          double low = m, high = m + step;
+          for (int k = 0; k < 80; ++k)
+            (mismatch(low) * mismatch((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+          modes_.push_back({low, factor(low)});
+        }
+  }
+  double pressure(double z, double t) const
+  {
+    return sum(t, [z](double a, double b) {
+      return z < sand.thickness ? std::cos(b * z) * std::sin(a * cap.thickness)
+                                : std::sin(a * (sand.thickness + cap.thickness - z)) * std::cos(b * sand.thickness);
+    });
+  }
+  double settlement_of_sand(double t) const
+  {
+    const double carried =
+        sum(t, [](double a, double b) { return std::sin(b * sand.thickness) / b * std::sin(a * cap.thickness); });
+    return (load * sand.thickness - carried) / sand.modulus;
+  }
+  double settlement_of_cap(double t) const
+  {
+    const double carried =
+        sum(t, [](double a, double b) { return (1 - std::cos(a * cap.thickness)) / a * std::cos(b * sand.thickness); });
+    return (load * cap.thickness - carried) / cap.modulus;
+  }
+
+private:
+  static std::array<double, 2> rates(double m)
+  {
+    return {m * std::sqrt(cap.storage() / cap.mobility()), m * std::sqrt(sand.storage() / sand.mobility())};
+  }
+  static double factor(double m)
+  {
+    const auto [a, b] = rates(m);
+    const double in_sand = std::sin(a * cap.thickness), in_cap = std::cos(b * sand.thickness);
+    const double start = sand.storage() * sand.start() * in_sand * std::sin(b * sand.thickness) / b +
+                         cap.storage() * cap.start() * in_cap * (1 - std::cos(a * cap.thickness)) / a;
+    const double norm =
+        sand.storage() * in_sand * in_sand * (sand.thickness / 2 + std::sin(2 * b * sand.thickness) / (4 * b)) +
+        cap.storage() * in_cap * in_cap * (cap.thickness / 2 - std::sin(2 * a * cap.thickness) / (4 * a));
+    return start / norm;
+  }
+  template <class Shape>
+  double sum(double t, const Shape &shape) const
+  {
+    double total = 0;
+    for (const auto &[m, c] : modes_)
+      {
+        const auto [a, b] = rates(m);
+        total += c * std::exp(-m * m * t) * shape(a, b);
+      }
+    return total;
+  }
+  std::vector<std::array<double, 2>> modes_;
+};
+
+struct Column
+{
+  explicit Column(std::vector<Layer> layers, Water water, std::vector<double> moduli)
+      : space({.soil = {std::move(layers), water}}, supports), soil(parts(moduli)), statics(space, *soil, loaded())
+  {}
+  std::unique_ptr<Material> parts(const std::vector<double> &moduli)
+  {
+    std::vector<CompositeMaterial::Part> of_layers;
+    for (unsigned k = 0; k < moduli.size(); ++k)
+      {
+        std::vector<std::size_t> points;
+        for (std::size_t q = 0; q < space.n_points(); ++q)
+          if (space.cell_layer[q / space.points_per_cell()] == k)
+            points.push_back(q);
+        const std::size_t n = points.size();
+        of_layers.push_back({std::make_unique<Elastic>(ElasticParameters{moduli[k] / 3, 0.25}, n), std::move(points)});
+      }
+    return std::make_unique<CompositeMaterial>(std::move(of_layers));
+  }
+  double down(double z) const { return -statics.displacement().local_element(space.find_dof({0, 0, z}, 2)); }
+  double pressure(double z) const { return statics.pressure().local_element(space.find_pressure({0, 0, z})); }
+
+  Discretisation<1> space;
+  std::unique_ptr<Material> soil;
+  Statics statics;
+};
+
+Column capped_sand()
+{
+  return Column(
+      {{.name = "cap", .thickness = cap.thickness, .porosity = porosity, .permeability = cap.permeability, .cells = 40},
+       {.name = "sand",
+        .thickness = sand.thickness,
+        .porosity = porosity,
+        .permeability = sand.permeability,
+        .cells = 40}},
+      {}, {cap.modulus, sand.modulus});
+}
+} // namespace
+
+TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
+{
+  const Exact exact;
+  EXPECT_NEAR_BECAUSE(exact.settlement_of_cap(1e9), load * cap.thickness / cap.modulus, 1e-15, "all water has left");
+  Column column = capped_sand();
+  column.statics.step_undrained();
+  double duration = 1;
+  for (double end : {1e3, 1e4, 3e4, 1e5})
+    {
+      while (column.statics.time() < end)
+        {
+          column.statics.step(std::min(duration, end - column.statics.time()));
+          duration *= 1.05;
+        }
+      const double t = column.statics.time(), middle = sand.thickness, top = sand.thickness + cap.thickness;
+      const double p = (column.pressure(middle) - exact.pressure(middle, t)) / load,
+                   base = (column.pressure(0) - exact.pressure(0, t)) / load,
+                   u = column.down(middle) / exact.settlement_of_sand(t) - 1,
+                   all = column.down(top) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
+      std::printf(
+          "  t = %6.0f s: p under the cap %.3f of the load (%+.1e), base (%+.1e), settlement of the sand (%+.1e), of "
+          "the surface (%+.1e)\n",
+          t, column.pressure(middle) / load, p, base, u, all);
+      for (double error : {p, base, u, all})
+        EXPECT_NEAR_BECAUSE(error, 0, 1e-2, "steps that grow by a twentieth each, 40 elements a layer");
+    }
+}
+
+/// Water that leaves a layer, by its own volumes (compression of the skeleton less what its water stores), against
+/// Darcy's law on the other side of its upper boundary.
+TEST(LayeredConsolidation, WaterThatLeavesTheSandGoesThroughTheCap)
+{
+  Column column = capped_sand();
+  column.statics.step_undrained();
+  const double middle = sand.thickness, top = sand.thickness + cap.thickness, h = cap.thickness / 40;
+  const auto stored = [&](unsigned layer) { // by the water's own compression, m
+    double volume = 0;
+    const std::vector<double> p = column.statics.point_pressure();
+    for (std::size_t q = 0; q < p.size(); ++q)
+      if (column.space.cell_layer[q / column.space.points_per_cell()] == layer)
+        volume += column.space.weight[q] * porosity / 2.2e9 * p[q];
+    return volume;
+  };
+  const auto out_of_sand = [&] { return column.down(middle) - stored(1); };
+  const auto out_of_both = [&] { return column.down(top) - stored(0) - stored(1); };
+  // p is linear in an element: its flow is that of the middle, and the one at an end is extrapolated from two
+  const auto flow = [&](double z, double inwards) {
+    const auto mean = [&](double a) { return (column.pressure(a) - column.pressure(a + inwards)) / inwards; };
+    return cap.mobility() * (1.5 * mean(z) - 0.5 * mean(z + inwards));
+  };
+  for (int k = 0; k < 40; ++k)
+    column.statics.step(50); // the flow through the surface starts with a jump
+  const double sand_before = out_of_sand(), both_before = out_of_both();
+  double into_cap = 0, out_of_cap = 0;
+  for (int k = 0; k < 400; ++k)
+    {
+      const double in = flow(middle, h), out = flow(top, -h);
+      column.statics.step(250);
+      into_cap += 125 * (in + flow(middle, h));
+      out_of_cap += 125 * (out + flow(top, -h));
+    }
+  const double left_sand = out_of_sand() - sand_before, left = out_of_both() - both_before;
+  std::printf(
+      "  water out of the sand %.5f mm, into the cap %.5f mm; out of both %.5f mm, out of the surface %.5f mm\n",
+      1e3 * left_sand, 1e3 * into_cap, 1e3 * left, 1e3 * out_of_cap);
+  EXPECT_NEAR_BECAUSE(into_cap / left_sand, 1, 1e-2, "second order in elements of 5 cm and in the steps");
+  EXPECT_NEAR_BECAUSE(out_of_cap / left, 1, 1e-2, "second order in elements of 5 cm and in the steps");
+}
+
+/// A load at once: p = q/(1 + D n/K_f), 1/K_f = S/K_w + (1 - S)/p_abs at each depth; settlement q int dz/(D + K_f/n).
+TEST(LayeredConsolidation, AirTakesItsShareOfALoad)
+{
+  constexpr double height = 10, modulus = 1e8, s = 0.99;
+  Column column({{.name = "", .thickness = height, .porosity = porosity, .saturation = s, .cells = 20}}, {}, {modulus});
+  column.statics.step_undrained();
+  const auto storage = [](double z) { return porosity * (s / 2.2e9 + (1 - s) / (101325 + 9810 * (height - z))); };
+  double worst = 0, settlement = 0;
+  for (double z = 0; z < 10.01; z += 0.5)
+    worst = std::max(worst, std::abs(column.pressure(z) / load * (1 + modulus * storage(z)) - 1));
+  constexpr int n = 1000;
+  for (int k = 0; k < n; ++k)
+    settlement += load * height / n / (modulus + 1 / storage((k + 0.5) * height / n));
+  std::printf(
+      "  S = 0.99: share of the water %.4f at the base, %.4f at the surface, error %.1e; settlement error %.1e\n",
+      column.pressure(0) / load, column.pressure(height) / load, worst, column.down(height) / settlement - 1);
+  EXPECT_BELOW_BECAUSE(worst, 1e-3, "the pressure is linear in each of 20 elements");
+  EXPECT_NEAR_BECAUSE(column.down(height) / settlement, 1, 1e-4, "the pressure is linear in each of 20 elements");
+}
+
+TEST(LayeredConsolidation, AViscousFluidTakesLongerInProportion)
+{
+  const auto settled = [](double viscosity, double slower) {
+    Column column({{.name = "", .thickness = 10, .permeability = 1e-6, .cells = 20}}, {.relative_viscosity = viscosity},
+                  {1e8});
+    column.statics.step_undrained();
+    for (int k = 0; k < 50; ++k)
+      column.statics.step(40 * slower);
+    return column.down(10);
+  };
+  const double water = settled(1, 1), viscous = settled(30, 30);
+  std::printf("  30 times as viscous, after 30 times the time: settlement %.9g mm, %.1e from that with water\n",
+              1e3 * viscous, viscous / water - 1);
+  EXPECT_CLOSE_BECAUSE(viscous, water, 1e-12, "round-off: the same equations in another unit of time");
+  EXPECT_GT(water, 2 * settled(30, 1));
+}
+} // namespace isostat
