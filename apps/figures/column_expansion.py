@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where soil expands and where it compresses while its water moves: figure of a column under a less permeable layer."""
 import numpy as np
+from matplotlib.colors import TwoSlopeNorm
 
 from .column_soil import depth_axis, edges
 from .common import BLACK, BLUE, ORANGE, panel_letter, plt
@@ -23,12 +24,13 @@ def expansion(column):
     top.plot(column.time, 1e3 * column["settlement"], color=ORANGE, label="settlement of the surface")
     top.set_ylabel("Height (mm)")
     top.legend(loc="upper left", fontsize=8)
-    top.set_ylim(0, 1.25 * top.get_ylim()[1])
+    top.set_ylim(-0.06 * top.get_ylim()[1], 1.25 * top.get_ylim()[1])
     expanded = -100 * strain[:, order].T  # volume strain of a column, positive in expansion
-    limit = float(np.nanpercentile(np.abs(expanded), 99)) or 1.0
+    norm = TwoSlopeNorm(0, min(-1e-6, float(np.nanmin(expanded))), max(1e-6, float(np.nanmax(expanded))))
     shade = axes.pcolormesh(edges(time, time[0], time[-1]), edges(depth[order], 0, bottom), expanded, cmap="RdBu",
-                            vmin=-limit, vmax=limit, rasterized=True)
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, extend="both").set_label(
+                            norm=norm, rasterized=True)
+    ticks = [norm.vmin, norm.vmin / 2, 0, norm.vmax / 2, norm.vmax]
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, ticks=ticks, format="%.2g").set_label(
         "Volumetric strain (%)\ncompression     expansion")
     depth_axis(column, axes, depth)
     for boundary in column.capped_boundaries():
