@@ -4,10 +4,12 @@
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <thread>
+#include <unistd.h>
 
 namespace isostat
 {
@@ -95,6 +97,21 @@ std::string await_session(const TaskQueue &queue, const fs::path &folder)
                                "sees this folder.",
                                folder.string()));
 }
+
+/// Takes what the launcher left out of the environment: MPI programs that this process starts are no ranks of it.
+void forget_launch()
+{
+  constexpr std::string_view launched[] = {"OMPI_", "PMIX_", "PMI_", "SLURM_"}, kept = "OMPI_ALLOW_RUN_AS_ROOT";
+  std::vector<std::string> names;
+  for (char **entry = environ; *entry; ++entry)
+    {
+      const std::string_view text = *entry, name = text.substr(0, text.find('='));
+      if (!name.starts_with(kept) && std::ranges::any_of(launched, [&](auto word) { return name.starts_with(word); }))
+        names.emplace_back(name);
+    }
+  for (const std::string &name : names)
+    unsetenv(name.c_str());
+}
 } // namespace
 
 bool run_children(const RunPool &pool, const std::vector<ChildRun> &runs, const ChildEvents &events)
@@ -176,7 +193,9 @@ void CampaignShare::add_options(CLI::App &line)
 
 bool CampaignShare::help(const fs::path &folder) const
 {
-  if (!helper && launch().rank == 0)
+  const bool helps = helper || launch().rank > 0;
+  forget_launch();
+  if (!helps)
     return false;
   catch_signals();
   const std::size_t n = help_with_runs(folder / "queue", jobs);

@@ -147,6 +147,13 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
                               "\"dynamic\", or layers another material.");
   if (scene.needs_common_library())
     check_packings(document, "grains", scene.grains);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    if (const std::size_t mixed = scene.layers[i].grains.mixed; mixed > 1 && mixed < scene.grains.realisations)
+      document.refuse(
+          fmt::format("layer.{}.mixed_realisations", i),
+          fmt::format("must be 1 or at least grains.realisations, {}, because the packings of a point differ. "
+                      "Give more seeds.",
+                      scene.grains.realisations));
   check_depths(document, scene, "grains.path_depths", scene.grain_output.path_depths);
   check_depths(document, scene, "grains.snapshot_depths", scene.grain_output.snapshot_depths);
 }

@@ -39,9 +39,9 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 
 /// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), of the start `sigma_v0` (Pa) and
 /// `shear_velocity` (m/s), series `time` (n) and, n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v,
-/// p, u (Pa), ru (-), as in the history; at the end of the run `peak_gamma` (-, at the depths), `node_depth` (m) and
-/// `peak_acceleration` (m/s2, at those). Written aside and renamed; rows wait in memory until flush() or until they
-/// outnumber a quarter of those written.
+/// p, u (Pa), ru (-), as in the history; at the end of the run `peak_gamma`, `peak_ru` (-, at the depths), `node_depth`
+/// (m) and `peak_acceleration` (m/s2, at those). Written aside and renamed; rows wait in memory until flush() or until
+/// they outnumber a quarter of those written.
 /// @throws RunFailure  cannot be written
 /// tested: tests/apps/soil_column_test.py
 class ProfileFile
@@ -56,7 +56,7 @@ public:
   void append(double time, std::span<const double> values);
   void flush();
   /// Adds the largest values. Call it once, at the end.
-  void finish(std::span<const double> peak_gamma, std::span<const double> node_depth,
+  void finish(std::span<const double> peak_gamma, std::span<const double> peak_ru, std::span<const double> node_depth,
               std::span<const double> peak_acceleration);
   std::size_t n_rows() const { return n_rows_; }
 

@@ -325,6 +325,13 @@ constexpr Key sand_keys[] = {
   {.path = "layer.library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5", .kinds = grains,
    .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.library; }},
+  {.path = "layer.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
+   .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
+           "many that differ); 1: all points have the same, brought to the stress of their depth.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.mixed; }},
+  {.path = "layer.lot", .kind = Kind::integer, .value = "0", .kinds = grains,
+   .text = "Another number draws other seeds of the `mixed_realisations`.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.lot; }},
 };
 
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};

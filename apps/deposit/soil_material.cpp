@@ -2,6 +2,7 @@
 #include "apps/deposit/soil_material.hpp"
 
 #include "base/error.hpp"
+#include "dem/prepare/random.hpp"
 #include "fem/material/elastic.hpp"
 
 #include <algorithm>
@@ -38,6 +39,15 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t l
                                    "layer's k0 or its material.",
                                    layer, scene.layers[layer].name, error.what()));
     }
+}
+
+/// The lot depends on the place of the point, in micrometres, alone: not on the numbering of the mesh, nor on ranks.
+SpecimenRequest drawn(SpecimenRequest request, const Place &place)
+{
+  const auto micrometres = [&](int axis) { return static_cast<std::uint64_t>(std::llround(1e6 * place[axis])); };
+  const auto u = uniform(request.lot, RandomStream::packings, micrometres(2), micrometres(0) << 32 ^ micrometres(1));
+  request.drawn = static_cast<std::size_t>(u[0] * static_cast<double>(request.mixed));
+  return request;
 }
 
 void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
@@ -105,7 +115,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
       for (std::size_t q : points[layer])
         {
           soil.grains_places.push_back(q);
-          requests.push_back(scene.layers[layer].grains);
+          requests.push_back(drawn(scene.layers[layer].grains, mesh.position[q]));
           stresses.push_back(in_situ[q]);
         }
   if (scene.has_grains())

@@ -20,7 +20,7 @@ except ModuleNotFoundError as missing:
     sys.exit(f"error: Python has no module {missing.name}: install it, apt-get install python3-{missing.name}")
 
 PROGRAMS = ("calibrate", "element_test", "liquefaction_resistance", "micromechanics", "soil_column", "rve_replay",
-            "biaxial")
+            "biaxial", "column_ensemble")
 
 
 def main():

@@ -8,7 +8,8 @@ from figures.files import Damaged, read_parsed
 # The file with the numbers of a program's summary; it is written last, so a run that has it is finished.
 NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxial": "summary.json",
            "rve_replay": "summary.json", "liquefaction_resistance": "resistance.json",
-           "calibrate": "calibrate.json", "micromechanics": "micromechanics.json"}
+           "calibrate": "calibrate.json", "micromechanics": "micromechanics.json",
+           "column_ensemble": "ensemble.json"}
 
 
 IN_PYTHON = {"isostat.run()": "element_test", "isostat.column.run()": "soil_column"}  # whose files they leave
@@ -74,6 +75,8 @@ def find_results(path):
         raise NoResults(f"{path}: there is no such folder. Give the results folder of a run.")
     if (path / NUMBERS["micromechanics"]).is_file():
         return Results(path, "micromechanics")
+    if (path / NUMBERS["column_ensemble"]).is_file():
+        return Results(path, "column_ensemble")
     words = read_provenance(text_of(path / "provenance.txt")).get("command", "").split()
     program = words[0].rpartition("/")[2] if words else ""
     program = IN_PYTHON.get(program, program)

@@ -106,8 +106,21 @@ def micromechanics(results, _analysis):
     return [Verdict("Liquefied:", f"first in snapshot {s['onset']} of 0 to {s['snapshots'] - 1}.")]
 
 
+def column_ensemble(results, _ensemble):
+    s = results.numbers
+    found = [Verdict("Members:", f"{s['members']} of {s['asked']} have finished.",
+                     GOOD if s["members"] == s["asked"] else ATTENTION)]
+    thickness = s["numbers"].get("liquefied_thickness")
+    if thickness and thickness["n"] > 1:
+        found.append(Verdict("Liquefied:", f"a thickness of {thickness['mean']:.3g} m, standard error "
+                             f"{thickness['standard_error']:.2g} m, had r_u above {s['liquefied_ru']}; the members "
+                             f"range from {thickness['min']:.3g} to {thickness['max']:.3g} m."))
+    return found
+
+
 OF_PROGRAM = {judge.__name__: judge for judge in (element_test, soil_column, biaxial, rve_replay,
-                                                  liquefaction_resistance, calibrate, micromechanics)}
+                                                  liquefaction_resistance, calibrate, micromechanics,
+                                                  column_ensemble)}
 
 
 def of_run(results, drawn):

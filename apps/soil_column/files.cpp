@@ -106,7 +106,7 @@ void ColumnFiles<dim>::finish(const ColumnPeaks &peaks)
 {
   flush();
   if (profiles_)
-    profiles_->finish(peaks.line_gamma, line_->node_depths, peaks.line_acceleration);
+    profiles_->finish(peaks.line_gamma, peaks.line_ru, line_->node_depths, peaks.line_acceleration);
 }
 
 template class ColumnFiles<1>;

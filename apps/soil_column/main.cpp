@@ -11,15 +11,25 @@
 //   soil_column apps/scenes/column/uniform_layer.toml
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
+//   soil_column apps/scenes/column/quick_ensemble.toml --ensemble 8 --jobs 2     as often with other packings: bands
 #include "apps/deposit/ranks.hpp"
+#include "apps/soil_column/ensemble.hpp"
 #include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
 
 namespace
 {
 using namespace isostat;
 
+EnsemblePlan ensemble; ///< as the command line says
+
 void run_scene(const SceneOptions &options)
 {
+  if (ensemble.asked())
+    return run_ensemble(options, ensemble);
+  if (ensemble.share.helper || ensemble.share.jobs > 1)
+    throw InputError("--jobs and --helper are of an ensemble. Give --ensemble or --records, or leave them out; ranks "
+                     "and --threads share the packings of one run.");
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
     return;
@@ -43,7 +53,11 @@ constexpr SceneProgram soil_column{
     .resolved = [](const std::string &scene,
                    const std::vector<std::string> &overrides) { return to_toml(read_column_scene(scene, overrides)); },
     .run = run_scene,
-    .guard = guarded_on_ranks};
+    .guard =
+        [](const std::function<void()> &program) {
+          return ensemble.asked() ? guarded(program) : guarded_on_ranks(program); // the members are what MPI is for
+        },
+    .more_options = [](CLI::App &line) { ensemble.add_options(line); }};
 } // namespace
 
 int main(int argc, char **argv) { return soil_column.main(argc, argv); }

@@ -27,6 +27,7 @@ void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 {
   checkpoint.put(*this);
   checkpoint.vectors["peak_gamma"] = line_gamma;
+  checkpoint.vectors["peak_line_ru"] = line_ru;
   checkpoint.vectors["peak_acceleration"] = line_acceleration;
 }
 
@@ -34,6 +35,7 @@ void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(*this);
   line_gamma = checkpoint.vector("peak_gamma");
+  line_ru = checkpoint.vector("peak_line_ru");
   line_acceleration = checkpoint.vector("peak_acceleration");
 }
 
@@ -47,6 +49,7 @@ PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLi
   if (line)
     {
       peaks.line_gamma.assign(line->points.size(), 0.0);
+      peaks.line_ru.assign(line->points.size(), 0.0);
       peaks.line_acceleration.assign(line->nodes.size(), 0.0);
     }
 }
@@ -72,7 +75,11 @@ void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<dou
     }
   if (line_)
     for (std::size_t k = 0; k < line_->points.size(); ++k)
-      peaks.line_gamma[k] = std::max(peaks.line_gamma[k], shear(gradients_[line_->points[k]]));
+      {
+        const std::size_t q = line_->points[k];
+        peaks.line_gamma[k] = std::max(peaks.line_gamma[k], shear(gradients_[q]));
+        peaks.line_ru[k] = std::max(peaks.line_ru[k], pressure[q] / vertical_stress_[q]);
+      }
 }
 
 template <int dim>

@@ -9,10 +9,11 @@ namespace isostat
 /// Largest values of a run, looked at in every step, not only in those that are recorded.
 struct ColumnPeaks
 {
-  double input = 0, surface = 0;                     ///< horizontal acceleration by size, m/s2
-  double gamma = 0, gamma_depth = 0;                 ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
-  double ru = 0, ru_depth = 0, ru_time = 0;          ///< [-], m, s
-  std::vector<double> line_gamma, line_acceleration; ///< on a ColumnLine; empty if the mesh is shared out
+  double input = 0, surface = 0;            ///< horizontal acceleration by size, m/s2
+  double gamma = 0, gamma_depth = 0;        ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
+  double ru = 0, ru_depth = 0, ru_time = 0; ///< [-], m, s
+  std::vector<double> line_gamma, line_ru;  ///< at the points of a ColumnLine; empty if the mesh is shared out
+  std::vector<double> line_acceleration;    ///< likewise at its nodes
 
   template <class Peaks, class Visit>
   static void for_each(Peaks &p, const Visit &visit)

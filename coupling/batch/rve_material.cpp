@@ -89,7 +89,7 @@ InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const
       if (!requests_.empty())
         {
           SpecimenRequest request = requests_[point];
-          request.realisation += id % settings_.realisations;
+          request.realisation = request.seed_of(id % settings_.realisations);
           const std::string &file = request.library.empty() ? settings_.library : request.library;
           NearestSpecimens &library = libraries.try_emplace(file, file).first->second;
           specimen = library.find(request, -target(1, 1), -0.5 * (target(0, 0) + target(2, 2)));

@@ -39,6 +39,18 @@ TEST(NearestEntry, IsNearestInStressOfTheDensityAndSeed)
   EXPECT_THROW(nearest_entry(entries, {0.65, 0}, 1e4, 1e4), InputError);
 }
 
+TEST(SpecimenRequest, SeedsOfAPointFollowEachOtherOrGoRoundTheMixedOnes)
+{
+  SpecimenRequest request{0.5, 3};
+  EXPECT_EQ(request.seed_of(0), 3u);
+  EXPECT_EQ(request.seed_of(4), 7u);
+  request.mixed = 3;
+  request.drawn = 2;
+  EXPECT_EQ(request.seed_of(0), 5u);
+  EXPECT_EQ(request.seed_of(1), 3u);
+  EXPECT_EQ(request.seed_of(2), 4u);
+}
+
 TEST_F(Library, ReadsEachSpecimenOnce)
 {
   test::write_library(folder / "library.h5");

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the bands of an ensemble of soil columns from what `soil_column --ensemble` left.
+
+    python3 -m figures column_ensemble RESULTS
+
+fig_ensemble_profiles.png    over the depth: largest r_u, shear strain and acceleration; black: median, shaded: 16 to
+                             84 % of the members, grey: each member
+fig_ensemble_redundancy.png  packings of grains: smallest and last redundancy index I_R over the depth, likewise
+fig_ensemble_spectra.png     response spectra of the surface, likewise (of two axes the larger)
+fig_ensemble_histories.png   acceleration and settlement of the surface, and largest r_u anywhere, likewise
+fig_ensemble_numbers.png     numbers of each member (points), their mean with its standard error (bar), and the band
+
+A band holds 16 to 84 % of the members at each depth, period or time for itself; no single member need follow it.
+"""
+import csv
+
+import numpy as np
+
+from .common import BLACK, BLUE, GREY, ORANGE, BadInput, panel_letter, plt, read_history
+from .drawing import Drawing
+from .files import read_parsed
+
+LABELS = {"max_ru": "largest $r_u$", "max_gamma": "largest shear strain (%)",
+          "max_acceleration": "largest acceleration (m/s$^2$)", "min_I_R": "smallest $I_R$",
+          "final_I_R": "$I_R$ at the end", "settlement": "settlement (mm)", "surface_ax": "$a_x$ (m/s$^2$)",
+          "surface_ay": "$a_y$ (m/s$^2$)"}
+FACTORS = {"max_gamma": 100, "settlement": 1000}
+NUMBERS = (("peak_surface", "peak surface\n(m/s$^2$)", 1), ("surface_Sa_0.3s", "$S_a$(0.3 s)\n(m/s$^2$)", 1),
+           ("arias_intensity", "Arias intensity\n(m/s)", 1), ("liquefied_thickness", "liquefied\nthickness (m)", 1),
+           ("settlement", "settlement\n(mm)", 1000), ("final_redundancy", "$I_R$\nat the end", 1))
+MEMBER_FILES = {"points": ("max_ru", "max_gamma"), "nodes": ("max_acceleration",)}
+
+
+class Ensemble:
+    """`bands`: tables by kind, each with its abscissa first; `members`: numbers by name, one for each member."""
+
+    def __init__(self, folder):
+        self.numbers = read_parsed(folder / "ensemble.json")
+        self.title = self.numbers.get("title")
+        self.bands = {path.stem.removeprefix("bands_"): read_history(path)
+                      for path in sorted(folder.glob("bands_*.csv"))}
+        if "points" not in self.bands or "history" not in self.bands:
+            raise BadInput(f"{folder}: no bands_points.csv and bands_history.csv; run the ensemble again")
+        with open(folder / "members.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.names = [row["member"] for row in rows]
+        self.members = {name.split(" (")[0]: np.array([float(row[name]) for row in rows])
+                        for name in (rows[0] if rows else {}) if name not in ("member", "packings", "record")}
+        self.folders = [folder / "members" / name for name in self.names]
+
+    def curve(self, kind, name):
+        """Abscissa and the table {mean, p16, p50, p84} of a curve, in the units of its label; None: there is none."""
+        table = self.bands.get(kind, {})
+        if f"{name}_p50" not in table:
+            return None
+        factor = FACTORS.get(name, 1)
+        return next(iter(table.values())), {key: factor * table[f"{name}_{key}"]
+                                            for key in ("mean", "p16", "p50", "p84")}
+
+    def each(self, kind, name):
+        """(abscissa, values) of every member, in the same units."""
+        factor = FACTORS.get(name, 1)
+        for folder in self.folders:
+            yield from ((x, factor * y) for x, y in member_curve(folder, kind, name))
+
+
+def member_curve(folder, kind, name):
+    """The curve of one member, or nothing where its file is not there."""
+    try:
+        if kind in MEMBER_FILES:
+            import h5py  # pylint: disable=import-outside-toplevel  (other figures do without)
+            with h5py.File(folder / "profiles.h5") as file:
+                yield (file["node_depth" if kind == "nodes" else "depth"][()], file[name.replace("max_", "peak_")][()])
+        elif kind == "spectra":
+            table = read_history(folder / "spectra.csv")
+            axes = [table[key] for key in ("surface_x", "surface_y") if key in table]
+            yield table["period"], np.max(axes, axis=0)
+        elif kind == "history":
+            table = read_history(folder / "history.csv")
+            yield table["time"], table[name]
+    except (OSError, KeyError, BadInput):
+        return
+
+
+def draw(axes, ensemble, kind, name, upright=False):
+    """Band, median and members; `upright`: the abscissa is the depth, downwards."""
+    curve = ensemble.curve(kind, name)
+    if curve is None:
+        return False
+    x, band = curve
+    for x_member, y in ensemble.each(kind, name):
+        axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6)
+    (axes.fill_betweenx if upright else axes.fill_between)(x, band["p16"], band["p84"], color=BLUE, alpha=0.25,
+                                                          linewidth=0, label="16 to 84 %")
+    axes.plot(*((band["p50"], x) if upright else (x, band["p50"])), color=BLACK, label="median")
+    return True
+
+
+def over_depth(ensemble, panels):
+    """A row of panels over the depth, or None if none of their curves is there."""
+    panels = [(kind, name) for kind, name in panels if ensemble.curve(kind, name) is not None]
+    if not panels:
+        return None
+    figure, rows = plt.subplots(1, len(panels), figsize=(2.6 * len(panels) + 0.6, 4.2), sharey=True, squeeze=False,
+                                layout="constrained")
+    for axes, (kind, name), letter in zip(rows[0], panels, "abc"):
+        draw(axes, ensemble, kind, name, upright=True)
+        axes.set_xlabel(LABELS[name])
+        axes.set_xlim(left=0)
+        panel_letter(axes, letter)
+        if name == "max_ru":
+            axes.axvline(ensemble.numbers["liquefied_ru"], color=ORANGE, linewidth=0.8, linestyle="--")
+        if name.endswith("I_R"):
+            axes.axvline(1, color=ORANGE, linewidth=0.8, linestyle="--")
+    rows[0][0].set_ylabel("Depth (m)")
+    rows[0][0].set_ylim(bottom=0)
+    rows[0][0].invert_yaxis()
+    rows[0][-1].legend(loc="lower right")
+    return figure
+
+
+def profiles(ensemble):
+    wet = np.any(ensemble.bands["points"]["max_ru_p84"] > 0)
+    return over_depth(ensemble, ([("points", "max_ru")] if wet else [])
+                      + [("points", "max_gamma"), ("nodes", "max_acceleration")])
+
+
+def redundancy(ensemble):
+    return over_depth(ensemble, [("grains", "min_I_R"), ("grains", "final_I_R")])
+
+
+def spectra(ensemble):
+    if ensemble.curve("spectra", "surface_Sa") is None:
+        return None
+    figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
+    draw(axes, ensemble, "spectra", "surface_Sa")
+    axes.set_xscale("log")
+    axes.set_xlabel("Period (s)")
+    axes.set_ylabel("$S_a$ of the surface (m/s$^2$)")
+    axes.set_ylim(bottom=0)
+    axes.legend()
+    return figure
+
+
+def histories(ensemble):
+    names = [name for name in ("surface_ax", "surface_ay", "max_ru", "settlement")
+             if ensemble.curve("history", name) is not None]
+    names = [name for name in names if np.abs(ensemble.curve("history", name)[1]["p84"]).max() > 1e-9]
+    if not names:
+        return None
+    figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
+                                layout="constrained")
+    for axes, name, letter in zip(rows[:, 0], names, "abcd"):
+        draw(axes, ensemble, "history", name)
+        axes.set_ylabel(LABELS[name])
+        panel_letter(axes, letter)
+    rows[0, 0].legend(loc="upper right", ncols=2)
+    rows[-1, 0].set_xlabel("Time (s)")
+    return figure
+
+
+def numbers(ensemble):
+    shown = [(name, label, factor) for name, label, factor in NUMBERS
+             if name in ensemble.members and np.nan_to_num(ensemble.members[name]).any()]
+    figure, row = plt.subplots(1, len(shown), figsize=(1.35 * len(shown) + 0.4, 3.4), squeeze=False,
+                               layout="constrained")
+    for axes, (name, label, factor) in zip(row[0], shown):
+        values, table = factor * ensemble.members[name], ensemble.numbers["numbers"][name]
+        axes.axhspan(factor * table["p16"], factor * table["p84"], color=BLUE, alpha=0.25, linewidth=0)
+        axes.plot(np.zeros(len(values)), values, "o", color=GREY, markersize=4, markerfacecolor="none")
+        axes.errorbar([0.25], [factor * table["mean"]], yerr=[factor * (table["standard_error"] or 0)], fmt="s",
+                      color=BLACK, markersize=4, capsize=3)
+        axes.set_xlim(-0.3, 0.5)
+        axes.set_xticks([])
+        axes.set_title(label, fontsize=8.5)
+        if values.min() >= 0:
+            axes.set_ylim(bottom=0)
+    return figure
+
+
+DRAWING = Drawing(Ensemble, {"fig_ensemble_profiles": profiles, "fig_ensemble_redundancy": redundancy,
+                             "fig_ensemble_spectra": spectra, "fig_ensemble_histories": histories,
+                             "fig_ensemble_numbers": numbers})

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/ensemble.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+/// "results/in_situ.h5", "04": "results/in_situ_04.h5".
+std::string own_cache(const fs::path &shared, const std::string &name)
+{
+  if (shared.empty())
+    return {};
+  return (shared.parent_path() / (shared.stem().string() + "_" + name + shared.extension().string())).string();
+}
+
+std::string numbered(std::size_t k) { return fmt::format("{:02d}", k); }
+
+/// The one motion of a scene that is a record.
+ColumnMotion &record_of(ColumnScene &scene)
+{
+  const auto is_record = [](const ColumnMotion &motion) { return motion.kind == MotionKind::record; };
+  if (std::ranges::count_if(scene.motions, is_record) != 1)
+    throw InputError(
+        "--records: the scene must have exactly one [[motion]] of kind = \"record\", whose place they take. "
+        "Give it one, or leave --records out.");
+  return *std::ranges::find_if(scene.motions, is_record);
+}
+
+void check_kind(const ColumnScene &scene, const EnsemblePlan &plan)
+{
+  if (scene.analysis.kind == AnalysisKind::consolidation)
+    throw InputError("--ensemble: a consolidation has neither packings nor motions that could differ. Run it alone.");
+  if (scene.mesh.distributed)
+    throw InputError("--ensemble: mesh.distributed = true leaves no profiles to compare. Give distributed = false; "
+                     "members, not parts of the mesh, are shared out then.");
+  for (const ColumnLayer &layer : scene.layers)
+    if (layer.material == LayerMaterial::user)
+      throw InputError(fmt::format("--ensemble: members run in processes of their own, which cannot have the material "
+                                   "of layer \"{}\". Run it from Python with isostat.column.run(), seed by seed.",
+                                   layer.name));
+  if (plan.members > 1 && !scene.has_grains())
+    throw InputError(fmt::format("--ensemble {}: without a layer of grains, whose seeds differ, all members would be "
+                                 "the same. Leave it out and give --records, one motion for each member.",
+                                 plan.members));
+}
+
+/// The last seed that any member may need is looked for before the first starts.
+void check_seeds(const ColumnScene &scene, std::size_t members)
+{
+  for (const ColumnLayer &layer : scene.layers)
+    {
+      if (layer.material != LayerMaterial::grains)
+        continue;
+      SpecimenRequest last = layer.grains;
+      const std::size_t per_point = scene.grains.realisations;
+      last.realisation += (last.mixed > 1 ? last.mixed : members * per_point) - 1;
+      const std::string &library = last.library.empty() ? scene.grains.library : last.library;
+      constexpr double any_stress = 1e5;
+      try
+        {
+          nearest_entry(list_library(library), last, any_stress, any_stress);
+        }
+      catch (const InputError &error)
+        {
+          throw InputError(
+              fmt::format("--ensemble {}: layer \"{}\", {}: {}", members, layer.name, library, error.what()));
+        }
+    }
+}
+} // namespace
+
+void EnsemblePlan::add_options(CLI::App &line)
+{
+  line.add_option("--ensemble", members,
+                  "run so many members, each with other packings of the library, side by side, each in a folder of its "
+                  "own, and draw the bands of all; the same command goes on with what is missing")
+      ->check(CLI::Range(1, 10000));
+  line.add_option("--records", records,
+                  "files between commas whose motions take the place of the scene's record, one after the other: so "
+                  "many members, or with --ensemble so many times as many")
+      ->delimiter(',')
+      ->allow_extra_args(false); // else it takes the scene, too
+  share.add_options(line);
+}
+
+ColumnScene member_scene(ColumnScene scene, std::size_t k)
+{
+  for (ColumnLayer &layer : scene.layers)
+    if (layer.material == LayerMaterial::grains)
+      (layer.grains.mixed > 1 ? layer.grains.lot : layer.grains.realisation) +=
+          k * (layer.grains.mixed > 1 ? 1 : scene.grains.realisations);
+  return scene;
+}
+
+std::vector<EnsembleMember> ensemble_members(const ColumnScene &scene, const EnsemblePlan &plan)
+{
+  check_kind(scene, plan);
+  const std::size_t n = std::max<std::size_t>(plan.members, 1);
+  check_seeds(scene, n);
+  std::vector<EnsembleMember> all;
+  for (std::size_t r = 0; r < std::max<std::size_t>(plan.records.size(), 1); ++r)
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        EnsembleMember member{numbered(k), k, {}, member_scene(scene, k)};
+        if (!plan.records.empty())
+          {
+            member.name = n > 1 ? fmt::format("r{}_{}", numbered(r), numbered(k)) : "r" + numbered(r);
+            member.record = fs::absolute(plan.records[r]).lexically_normal().string();
+            record_of(member.scene).file = member.record;
+            column_motions(member.scene); // reads it
+          }
+        member.scene.title += fmt::format("{}member {}", scene.title.empty() ? "" : "; ", member.name);
+        member.scene.grains.cache = own_cache(scene.grains.cache, member.name);
+        member.scene.output.folder = "members/" + member.name;
+        // through text once: what a member reads and writes is the same to the bit
+        member.scene = parse_column_scene(to_toml(member.scene), member.name);
+        all.push_back(std::move(member));
+      }
+  return all;
+}
+} // namespace isostat

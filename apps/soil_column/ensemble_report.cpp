@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Statistics over the members, and the files that hold them.
+#include "apps/soil_column/ensemble_results.hpp"
+
+#include "base/error.hpp"
+#include "base/files/json.hpp"
+#include "base/files/replace_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace isostat
+{
+namespace
+{
+/// @param sorted  not empty
+double percentile(const std::vector<double> &sorted, double part)
+{
+  const double at = part * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+/// One value of every member.
+std::vector<double> sample(const std::vector<MemberResults> &members, auto &&value)
+{
+  std::vector<double> all;
+  for (const MemberResults &member : members)
+    all.push_back(value(member));
+  return all;
+}
+
+/// A table `x, then mean, 16, 50, 84 % of each curve`.
+std::string bands_csv(const std::vector<MemberResults> &members, const std::string &kind)
+{
+  const Curves &first = members.front().curves.at(kind);
+  for (const MemberResults &member : members)
+    if (member.curves.at(kind).over.values != first.over.values)
+      throw RunFailure(fmt::format("member {}: its {} are not those of member {}; start it anew", member.name, kind,
+                                   members.front().name));
+  std::string text = fmt::format("{} ({})", first.over.name, first.over.unit);
+  for (const Measured &curve : first.curves)
+    for (const char *what : {"mean", "p16", "p50", "p84"})
+      text += fmt::format(",{}_{} ({})", curve.name, what, curve.unit);
+  text += '\n';
+  for (std::size_t i = 0; i < first.over.values.size(); ++i)
+    {
+      text += fmt::format("{:.10g}", first.over.values[i]);
+      for (std::size_t c = 0; c < first.curves.size(); ++c)
+        {
+          const Statistics s(
+              sample(members, [&](const MemberResults &m) { return m.curves.at(kind).curves[c].values[i]; }));
+          text += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g}", s.mean, s.low, s.median, s.high);
+        }
+      text += '\n';
+    }
+  return text;
+}
+
+std::string members_csv(const std::vector<MemberResults> &members)
+{
+  std::string text = "member,packings,record";
+  for (const Measured &number : members.front().numbers)
+    text += fmt::format(",{} ({})", number.name, number.unit);
+  text += '\n';
+  for (const MemberResults &member : members)
+    {
+      text += fmt::format("{},{},{}", member.name, member.packings,
+                          std::filesystem::path(member.record).filename().string());
+      for (const Measured &number : member.numbers)
+        text += fmt::format(",{:.10g}", number.values.front());
+      text += '\n';
+    }
+  return text;
+}
+
+Json to_json(const Statistics &s, const std::string &unit)
+{
+  return {{"unit", unit},    {"n", s.n},        {"mean", s.mean}, {"standard_error", s.standard_error},
+          {"p16", s.low},    {"p50", s.median}, {"p84", s.high},  {"min", s.minimum},
+          {"max", s.maximum}};
+}
+} // namespace
+
+Statistics::Statistics(std::vector<double> sample)
+{
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::erase_if(sample, [](double x) { return std::isnan(x); });
+  std::ranges::sort(sample);
+  n = sample.size();
+  mean = standard_error = low = median = high = minimum = maximum = none;
+  if (n == 0)
+    return;
+  double sum = 0, squares = 0;
+  for (const double x : sample)
+    sum += x;
+  mean = sum / static_cast<double>(n);
+  for (const double x : sample)
+    squares += (x - mean) * (x - mean);
+  if (n > 1)
+    standard_error = std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n));
+  low = percentile(sample, 0.16), median = percentile(sample, 0.5), high = percentile(sample, 0.84);
+  minimum = sample.front(), maximum = sample.back();
+}
+
+std::string write_ensemble(const std::filesystem::path &folder, const ColumnScene &scene,
+                           const std::vector<MemberResults> &members, std::size_t n_asked,
+                           const std::map<std::string, std::string> &failures)
+{
+  std::string text = fmt::format("\n{}\n  members                  {} of {} finished\n\n  {:<30}{:>12} {:>12} {:>12} "
+                                 "{:>12} {:>12} {:>3}\n",
+                                 scene.title.empty() ? "Ensemble of a soil column" : scene.title, members.size(),
+                                 n_asked, "", "mean", "+- s.e.", "16 %", "median", "84 %", "n");
+  Json numbers = Json::object();
+  for (std::size_t k = 0; k < members.front().numbers.size(); ++k)
+    {
+      const Measured &number = members.front().numbers[k];
+      const Statistics s(sample(members, [&](const MemberResults &m) { return m.numbers[k].values.front(); }));
+      numbers[number.name] = to_json(s, number.unit);
+      text += fmt::format("  {:<30}{:>12.4g} {:>12.2g} {:>12.4g} {:>12.4g} {:>12.4g} {:>3}\n",
+                          number.name + (number.unit == "-" ? "" : ", " + number.unit), s.mean, s.standard_error, s.low,
+                          s.median, s.high, s.n);
+    }
+  for (const auto &[name, why] : failures)
+    text += fmt::format("  failed: {}: {}\n", name, why);
+  for (const auto &[kind, curves] : members.front().curves)
+    write_replacing(folder / fmt::format("bands_{}.csv", kind), bands_csv(members, kind));
+  write_replacing(folder / "members.csv", members_csv(members));
+  write_json(folder / "ensemble.json", {{"title", scene.title},
+                                        {"members", members.size()},
+                                        {"asked", n_asked},
+                                        {"liquefied_ru", liquefied_ru},
+                                        {"numbers", numbers}});
+  return text;
+}
+} // namespace isostat

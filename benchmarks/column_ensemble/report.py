@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables and figures of the runs that have finished."""
+import dataclasses
+import json
+import sys
+import pathlib
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")  # files only
+from figures.common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, STYLE, panel_letter, plt, read_history  # noqa: E402
+
+from . import plan  # noqa: E402
+
+LIQUEFIED, STRAINED = 0.95, 0.01
+# name, what it is, unit, factor, digits
+QUANTITIES = (("thickness", "liquefied thickness", "m", 1, 2), ("strained", "thickness above 1 % strain", "m", 1, 2),
+              ("gamma", "largest strain", "%", 100, 1), ("onset", "first r_u > 0.95", "s", 1, 2),
+              ("pga", "peak surface below 25 Hz", "m/s2", 1, 2), ("sa", "S_a(0.3 s)", "m/s2", 1, 2),
+              ("arias", "Arias intensity", "m/s", 1, 3), ("settlement", "settlement", "mm", 1000, 1),
+              ("redundancy", "mean I_R at the end", "-", 1, 2))
+
+
+@dataclasses.dataclass
+class Result:
+    run: plan.Run
+    numbers: dict
+    depth: np.ndarray
+    max_ru: np.ndarray
+    max_gamma: np.ndarray
+    history: dict
+    seconds: float
+    height: float
+
+
+def tributary(depth, height):
+    """Thickness of the soil that is nearer to each point than to any other, m."""
+    return np.diff(np.concatenate(([0], 0.5 * (depth[1:] + depth[:-1]), [height])))
+
+
+def read(run, folder):
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    history, spectra = read_history(folder / "history.csv"), read_history(folder / "spectra.csv")
+    grains = read_history(folder / "grain_profiles/history.csv")
+    with h5py.File(folder / "profiles.h5") as file:
+        depth, ru, gamma = file["depth"][()], file["ru"][()], file["peak_gamma"][()]
+    weight, a = tributary(depth, summary["height"]), history["surface_ax"]
+    late = history["time"][history["max_ru"] > LIQUEFIED]
+    numbers = {
+        "thickness": weight[ru.max(axis=0) > LIQUEFIED].sum(), "strained": weight[gamma > STRAINED].sum(),
+        "gamma": summary["peak_gamma"], "onset": late[0] if len(late) else np.nan, "pga": summary["peak_surface_below"],
+        "sa": np.interp(0.3, spectra["period"], spectra["surface_x"]),
+        "arias": np.pi / (2 * 9.80665) * np.trapz(a**2, history["time"]), "settlement": summary["settlement"],
+        "redundancy": np.mean([grains[f"p{k}_IR"][-1] for k in range(len(depth))])}
+    times = json.loads((folder / "times.json").read_text(encoding="utf-8"))
+    return Result(run, numbers, depth, ru.max(axis=0), gamma, history, times["wall"], summary["height"])
+
+
+def finished(folder):
+    """{sample: results by member}"""
+    samples = {}
+    for run in plan.runs():
+        path = folder / "runs" / run.name
+        if (path / "summary.txt").exists():
+            samples.setdefault(run.group, []).append(read(run, path))
+    return {group: sorted(found, key=lambda r: r.run.member) for group, found in samples.items()}
+
+
+def mean_error(values):
+    """Mean and its standard error, nan for one value."""
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+    return (values.mean() if len(values) else np.nan), error
+
+
+def label(run):
+    packings = "one packing" if run.realisations == 1 else f"{run.realisations} packings"
+    viscosity = "" if run.viscosity == 0.1 else f", viscosity {run.viscosity:g} ms"
+    return f"{'other' if run.mixed else 'same'} at each depth, {run.points} points, {packings}{viscosity}"
+
+
+def table(samples):
+    heads = [f"{what}, {unit}" if unit != "-" else what for _, what, unit, _, _ in QUANTITIES]
+    yield "| column | n | " + " | ".join(heads) + " |"
+    yield "|---" * (len(QUANTITIES) + 2) + "|"
+    for results in samples.values():
+        cells = []
+        for name, _, _, factor, digits in QUANTITIES:
+            mean, error = mean_error([factor * r.numbers[name] for r in results])
+            cells.append(f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else ""))
+        yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
+
+
+def scatter(samples):
+    """Standard deviation between members: what more packings at a point should lower."""
+    yield "| column | n | " + " | ".join(what for _, what, _, _, _ in QUANTITIES) + " |"
+    yield "|---" * (len(QUANTITIES) + 2) + "|"
+    for results in samples.values():
+        if len(results) > 2:
+            cells = [f"{factor * np.std([r.numbers[name] for r in results], ddof=1):.{digits}f}"
+                     for name, _, _, factor, digits in QUANTITIES]
+            yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
+
+
+def pairs(samples, one, other):
+    """Mean difference of the members that both samples have."""
+    found = {group: {r.run.member: r for r in samples.get(group, [])} for group in (one, other)}
+    both = sorted(found[one].keys() & found[other].keys())
+    if not both:
+        return
+    yield f"| {other} less {one}, n = {len(both)} | difference | of |"
+    yield "|---|---|---|"
+    for name, what, unit, factor, digits in QUANTITIES:
+        mean, error = mean_error([factor * (found[other][k].numbers[name] - found[one][k].numbers[name]) for k in both])
+        base, _ = mean_error([factor * found[one][k].numbers[name] for k in both])
+        yield f"| {what}, {unit} | {mean:+.{digits}f} ± {error:.{digits}f} | {base:.{digits}f} |"
+
+
+SERIES = ((False, 1, 0.1, BLUE, "o-", "same packing at all depths"), (True, 1, 0.1, RED, "s-", "others at each depth"),
+          (False, 3, 0.1, GREEN, "^-", "same, 3 packings a point"), (False, 10, 0.1, ORANGE, "D-", "same, 10"),
+          (True, 3, 0.1, BLACK, "v-", "others, 3"))
+
+
+def against_mesh(samples):
+    """Numbers against the points of the mesh: means with standard errors, and the members."""
+    shown = [q for q in QUANTITIES if q[0] in ("thickness", "strained", "gamma", "sa", "settlement", "redundancy")]
+    figure, panels = plt.subplots(2, 3, figsize=(8.4, 5.4), layout="constrained")
+    for axes, (name, what, unit, factor, _), letter in zip(panels.flat, shown, "abcdef"):
+        for k, (mixed, realisations, viscosity, colour, line, text) in enumerate(SERIES):
+            rows = [results for results in samples.values() if (results[0].run.mixed, results[0].run.realisations,
+                                                                results[0].run.viscosity) ==
+                    (mixed, realisations, viscosity)]
+            rows.sort(key=lambda results: results[0].run.points)
+            if not rows:
+                continue
+            shift = 1.03**(k - 2)
+            x = [shift * results[0].run.points for results in rows]
+            numbers = [mean_error([factor * r.numbers[name] for r in results]) for results in rows]
+            axes.errorbar(x, [m for m, _ in numbers], yerr=[0 if np.isnan(e) else e for _, e in numbers], fmt=line,
+                          color=colour, markersize=4.5, capsize=2.5, label=text)
+            for at, results in zip(x, rows):
+                axes.plot([at] * len(results), [factor * r.numbers[name] for r in results], ".", color=colour,
+                          markersize=2.5, alpha=0.5)
+        axes.set_xscale("log")
+        axes.set_xticks([4, 10, 20, 40], ["4", "10", "20", "40"])
+        axes.minorticks_off()
+        axes.set_ylim(bottom=0)
+        axes.set_ylabel(what if unit == "-" else f"{what} ({unit.replace('m/s2', 'm/s$^2$')})")
+        panel_letter(axes, letter)
+    for axes in panels[1]:
+        axes.set_xlabel("points over 4 m")
+    panels[0, 0].legend(fontsize=7)
+    return figure
+
+
+def over_depth(samples):
+    """Largest r_u and strain over the depth, one packing a point: members and median."""
+    groups = [(mixed, points) for mixed in (False, True) for points in (4, 10, 20)
+              if f"{'mixed' if mixed else 'same'}_p{points}_m1_v0.1" in samples]
+    if not groups:
+        return None
+    figure, panels = plt.subplots(2, len(groups), figsize=(1.55 * len(groups) + 0.8, 5.6), sharey=True, squeeze=False,
+                                  layout="constrained")
+    for column, (mixed, points) in enumerate(groups):
+        results, colour = samples[f"{'mixed' if mixed else 'same'}_p{points}_m1_v0.1"], RED if mixed else BLUE
+        for axes, values, factor in ((panels[0, column], "max_ru", 1), (panels[1, column], "max_gamma", 100)):
+            for r in results:
+                axes.plot(factor * getattr(r, values), r.depth, color=GREY, linewidth=0.7)
+            axes.plot(factor * np.median([getattr(r, values) for r in results], axis=0), results[0].depth, color=colour)
+        panels[0, column].set_title(f"{'others' if mixed else 'same'}, {points} points\n{len(results)} members",
+                                    fontsize=8.5)
+        panels[0, column].axvline(LIQUEFIED, color=BLACK, linewidth=0.7, linestyle="--")
+        panels[0, column].set_xlim(0, 1.1)
+        panels[1, column].set_xscale("log")
+        panels[1, column].set_xlim(0.02, 40)
+        panels[0, column].set_xlabel("largest $r_u$")
+        panels[1, column].set_xlabel("largest strain (%)")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("Depth (m)")
+    panels[0, 0].set_ylim(4, 0)
+    return figure
+
+
+def viscosities(samples):
+    """Surface, largest r_u and settlement with and without the viscosity, member by member."""
+    groups = [(name, colour) for name, colour in (("same_p10_m1_v0", ORANGE), ("same_p10_m1_v0.1", BLUE),
+                                                  ("same_p10_m1_v1", GREEN)) if name in samples]
+    members = sorted(set.intersection(*({r.run.member for r in samples[name]} for name, _ in groups)))[:3]
+    if not members:
+        return None
+    figure, panels = plt.subplots(3, len(members), figsize=(2.9 * len(members) + 0.6, 5.4), sharex=True, sharey="row",
+                                  squeeze=False, layout="constrained")
+    for column, member in enumerate(members):
+        for name, colour in groups:
+            result = next(r for r in samples[name] if r.run.member == member)
+            h, text = result.history, f"{result.run.viscosity:g} ms"
+            for axes, values in zip(panels[:, column], (h["surface_ax"], h["max_ru"], 1000 * h["settlement"])):
+                axes.plot(h["time"], values, color=colour, linewidth=0.8, label=text)
+        panels[0, column].set_title(f"member {member}", fontsize=9)
+        panels[2, column].set_xlabel("Time (s)")
+    for axes, text in zip(panels[:, 0], ("$a_x$ of the surface (m/s$^2$)", "largest $r_u$", "settlement (mm)")):
+        axes.set_ylabel(text)
+    panels[0, 0].legend(title="viscosity", fontsize=7.5, title_fontsize=7.5)
+    return figure
+
+
+def write(folder, docs):
+    samples = finished(folder)
+    if not samples:
+        raise SystemExit(f"{folder}: no run has finished. Start some: column_ensemble.py BIN {folder} run")
+    everything = [r for results in samples.values() for r in results]
+    print(f"{len(everything)} runs, {sum(r.seconds for r in everything) / 60:.0f} min of wall time\n")
+    for rows in (table(samples), scatter(samples), pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v0"),
+                 pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v1")):
+        print("\n".join(rows) + "\n")
+    docs.mkdir(parents=True, exist_ok=True)
+    plt.rcParams.update(STYLE)
+    for name, draw in (("mesh", against_mesh), ("depth", over_depth), ("viscosity", viscosities)):
+        figure = draw(samples)
+        if figure is not None:
+            figure.savefig(docs / f"{name}.png", dpi=150)
+            plt.close(figure)

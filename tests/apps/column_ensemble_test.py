@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""soil_column --ensemble: members with packings or records of their own, side by side, killed and resumed, and the
+bands of all, computed anew from the members' files."""
+import csv
+import json
+import pathlib
+import signal
+import subprocess
+
+import h5py
+import numpy as np
+
+from column_support import ColumnTest, settings
+from support import PATIENCE, contents, main
+
+SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
+GRAINS = """title = "few grains"
+[mesh]
+degree = 1
+[water]
+drainage = "undrained"
+[[layer]]
+thickness = "3 m"
+cells = 3
+density = "1970 kg/m3"
+porosity = 0.41
+material = "grains"
+relative_density = 0.5
+[grains]
+library = "{cache}/library.h5"
+cache = "{cache}/in_situ.h5"
+inertial_number = 1e-3
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.6 g"
+frequency = "5 Hz"
+duration = "0.4 s"
+[load]
+surcharge = "10 kPa"
+[analysis]
+kind = "dynamic"
+duration = "0.25 s"
+safety = 0.7
+[output]
+history_interval = "0.005 s"
+profile_interval = "0.01 s"
+checkpoint = "1e-9 min"
+"""
+SAND = """title = "sand"
+[water]
+drainage = "undrained"
+[[layer]]
+thickness = "4 m"
+cells = 2
+density = "1900 kg/m3"
+material = "iwan"
+shear_velocity = "120 m/s"
+[[motion]]
+axis = "x"
+kind = "record"
+file = "first.txt"
+unit = "m/s2"
+[analysis]
+kind = "dynamic"
+duration = "0.5 s"
+[output]
+history_interval = "0.005 s"
+"""
+DIGITS = 1e-9  # tables have ten digits
+
+
+def table(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name.split(" (")[0]: [row[name] for row in rows] for name in rows[0]}
+
+
+def numbers(path):
+    return {name: np.array(cells, dtype=float) for name, cells in table(path).items() if name != "record"}
+
+
+class Ensemble(ColumnTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("grains.toml", GRAINS.format(cache=self.cache))
+        if not (self.cache / "library.h5").exists():
+            self.assert_done(self.run_app(
+                "specimen_library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
+                "-n", "6", *settings(grading__grains=120, grading__cloud_edge="2.289 mm",
+                                     specimen__density_tolerance=0.05)))
+
+    def ensemble(self, folder, *more):
+        """Three members below a folder of this test."""
+        self.assert_done(self.run_column(self.scene, "--ensemble", 3, "-o", folder, "-q", *more))
+        return self.folder / folder
+
+    def assert_same_ensemble(self, one, other):
+        def kept(folder):
+            return {name for name in contents(self.folder / folder)
+                    if not any(word in name for word in ("provenance", "times.json", "checkpoint", "logs/", "queue",
+                                                         "lock"))}
+        self.assertEqual(kept(one), kept(other))
+        self.assertIn("members/02/history.csv", kept(one))
+        for name in kept(one):
+            a, b = self.folder / one / name, self.folder / other / name
+            if name.endswith(".h5"):
+                self.assert_same_h5(a, b)
+            else:
+                self.assertEqual(a.read_bytes(), b.read_bytes(), name)
+
+    def test_same_bytes(self):
+        """One after the other, two side by side, on two ranks, and of a call that was killed."""
+        self.ensemble("one")
+        self.ensemble("two", "-j", 2)
+        self.assert_same_ensemble("one", "two")
+        result = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", *self.command(
+            "soil_column", self.scene, "--ensemble", 3, "-o", "ranks", "-q", "--no-figures")], cwd=self.folder,
+                                capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
+        self.assert_done(result)
+        self.assertIn("by this helper", result.stdout)
+        self.assert_same_ensemble("one", "ranks")
+        for with_signal, code, member in ((signal.SIGKILL, -signal.SIGKILL, "00"), (signal.SIGTERM, 130, "01")):
+            started = (self.folder / f"killed/members/{member}/checkpoint/last.h5", False)
+            self.assertEqual(self.run_and_stop(0.05, with_signal, started, self.scene, "--ensemble", 3, "-o", "killed",
+                                               program="soil_column"), code)
+        self.assertFalse((self.folder / "killed/members/02/summary.json").exists())
+        self.ensemble("killed", "--resume")
+        self.assert_same_ensemble("one", "killed")
+
+    def test_members_and_bands(self):
+        """Members are the runs of their seeds; every number and band is that of their files."""
+        self.ensemble("few")
+        before = (self.folder / "few/members/01/history.h5").stat().st_mtime_ns
+        self.assert_done(self.run_column(self.scene, "--ensemble", 5, "-o", "few", "-q"))
+        self.assertEqual((self.folder / "few/members/01/history.h5").stat().st_mtime_ns, before, "kept")
+        self.assert_done(self.run_column(self.scene, "-o", "alone", "-q", *settings(layer__0__realisation=3)))
+        self.assertEqual((self.folder / "few/members/03/history.csv").read_bytes(),
+                         (self.folder / "alone/history.csv").read_bytes())
+        few, members = self.folder / "few", [self.folder / f"few/members/{k:02d}" for k in range(5)]
+        profiles = {}
+        for name in ("peak_ru", "peak_gamma", "peak_acceleration"):
+            profiles[name] = []
+            for member in members:
+                with h5py.File(member / "profiles.h5") as file:
+                    profiles[name].append(file[name][()])
+        bands = {kind: numbers(few / f"bands_{kind}.csv")
+                 for kind in ("points", "nodes", "grains", "spectra", "history")}
+        spectra = [numbers(member / "spectra.csv")["surface_x"] for member in members]
+        time = bands["history"]["time"]
+        histories = {name: [np.interp(time, rows["time"], rows[name]) for rows in
+                            (numbers(member / "history.csv") for member in members)]
+                     for name in ("surface_ax", "max_ru")}
+        for kind, name, values in (("points", "max_ru", profiles["peak_ru"]),
+                                   ("points", "max_gamma", profiles["peak_gamma"]),
+                                   ("nodes", "max_acceleration", profiles["peak_acceleration"]),
+                                   ("spectra", "surface_Sa", spectra),
+                                   ("history", "surface_ax", histories["surface_ax"]),
+                                   ("history", "max_ru", histories["max_ru"])):
+            self.assertGreater(np.std(values, axis=0).max(), 1e-4, f"{name}: members differ")
+            for column, expected in (("mean", np.mean(values, axis=0)), ("p16", np.percentile(values, 16, axis=0)),
+                                     ("p50", np.median(values, axis=0)), ("p84", np.percentile(values, 84, axis=0))):
+                self.assert_close(bands[kind][f"{name}_{column}"], expected, DIGITS, "ten digits of the tables")
+        index = [[rows[f"p{k}_IR"] for k in range(3)] for rows in
+                 (numbers(member / "grain_profiles/history.csv") for member in members)]
+        self.assert_close(bands["grains"]["final_I_R_mean"], np.mean([[p[-1] for p in each] for each in index], axis=0),
+                          DIGITS, "ten digits of the tables")
+        found = numbers(few / "members.csv")
+        thick = np.sum(np.array(profiles["peak_ru"]) > 0.95, axis=1)  # elements of one metre
+        self.assertGreater(thick.max(), 0)
+        self.assert_near(found["liquefied_thickness"], thick, DIGITS, "ten digits of the tables")
+        arias = [np.pi / (2 * 9.80665) * np.trapz(rows["surface_ax"]**2, rows["time"]) for rows in
+                 (numbers(member / "history.csv") for member in members)]
+        self.assert_close(found["arias_intensity"], arias, DIGITS, "ten digits of the tables")
+        told = json.loads((few / "ensemble.json").read_text(encoding="utf-8"))
+        self.assertEqual((told["members"], told["asked"]), (5, 5))
+        self.assert_close(told["numbers"]["arias_intensity"]["standard_error"],
+                          np.std(arias, ddof=1) / np.sqrt(5), DIGITS, "ten digits of the tables")
+        self.assertIn("liquefied_thickness, m", (few / "summary.txt").read_text(encoding="utf-8"))
+
+    def sources(self, name):
+        """Specimens of the library that packings in situ came from."""
+        with h5py.File(self.cache / name) as file:
+            return [str(entry["provenance"].attrs["source"]) for entry in file.values()
+                    if "provenance" in entry]
+
+    def test_depths_with_packings_of_their_own(self):
+        """By lot: another member draws anew; of several at a point all differ. Otherwise all depths have the same."""
+        mixed = settings(layer__0__mixed_realisations=5, grains__realisations=2, grains__cache=self.cache / "mixed.h5")
+        self.ensemble("mixed", *mixed)
+        drawn = [sorted(self.sources(f"mixed_{member}.h5")) for member in ("00", "01", "02")]
+        for sources in drawn:
+            self.assertEqual(len(sources), 6, "two packings at three depths")
+            self.assertGreater(len(set(sources)), 2, "of several seeds")
+        self.assertGreater(len({tuple(sources) for sources in drawn}), 1)
+        scenes = [(self.folder / f"mixed/scenes/0{k}.toml").read_text(encoding="utf-8") for k in range(3)]
+        self.assertIn("lot = 2", scenes[2])
+        self.assertIn("realisation = 0", scenes[2])
+        self.ensemble("same", *settings(grains__cache=self.cache / "same.h5"))
+        for member in ("00", "01", "02"):
+            self.assertEqual(len(set(self.sources(f"same_{member}.h5"))), 1, "one seed at all depths")
+
+    def write_records(self):
+        time = np.arange(0, 0.5, 0.005)
+        for name, frequency in (("first", 4), ("second", 7)):
+            self.write(f"{name}.txt", "\n".join(f"{t:.3f} {np.sin(2 * np.pi * frequency * t):.6f}" for t in time))
+        return self.write("sand.toml", SAND)
+
+    def test_records(self):
+        """Motions instead of packings; figures and report of what they give."""
+        scene = self.write_records()
+        self.assert_done(self.run_app("soil_column", scene, "--records", "first.txt,second.txt", "-o", "out", "-q"))
+        rows = table(self.folder / "out/members.csv")
+        self.assertEqual((rows["member"], rows["record"]), (["r00", "r01"], ["first.txt", "second.txt"]))
+        self.assertNotEqual(*rows["peak_surface"])
+        for name in ("profiles", "spectra", "histories", "numbers"):
+            self.assertGreater((self.folder / f"out/figures/fig_ensemble_{name}.png").stat().st_size, 10000)
+        self.assertIn("2 of 2 have finished", (self.folder / "out/report.html").read_text(encoding="utf-8"))
+
+    def test_refusals(self):
+        def refused(scene, *arguments, parts=()):
+            self.assert_refused(self.run_column(scene, "-o", "out", *arguments), *parts)
+            self.assertFalse((self.folder / "out").exists())
+        sand = self.write_records()
+        refused(sand, "--ensemble", 2, parts=("--ensemble 2", "without a layer of grains", "--records"))
+        refused(sand, "--records", "first.txt,none.txt", parts=("none.txt",))
+        refused(self.scene, "--records", "first.txt", parts=("exactly one [[motion]]", "record"))
+        refused(self.scene, "--ensemble", 7, parts=("--ensemble 7", "6 realisations", "needs 7", "--append"))
+        refused(self.scene, "--ensemble", 4, *settings(grains__realisations=2), parts=("6 realisations", "needs 8"))
+        refused(self.scene, "--jobs", 2, parts=("--ensemble or --records",))
+        refused(self.scene, *settings(layer__0__mixed_realisations=2, grains__realisations=3),
+                parts=("layer.0.mixed_realisations", "at least grains.realisations, 3"))
+        self.ensemble("out")
+        self.assert_refused(self.run_column(self.scene, "--ensemble", 3, "-o", "out",
+                                            *settings(motion__0__amplitude="0.5 g")), "another scene", "amplitude")
+
+    def test_a_member_that_fails(self):
+        """The others are kept and compared; the message names the member and why."""
+        scene = self.write_records()
+        self.assert_done(self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q"))
+        whole = (self.folder / "out/summary.txt").read_text(encoding="utf-8")
+        kept = self.folder / "out/members/r01"
+        (kept / "summary.json").unlink()
+        for file in (kept / "checkpoint").iterdir():
+            file.write_bytes(b"no checkpoint")
+        result = self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        for part in ("1 of 2 members failed", "r01", "the same command tries again"):
+            self.assertIn(part, result.stderr)
+        self.assertIn("1 of 2 finished", (self.folder / "out/summary.txt").read_text(encoding="utf-8"))
+        self.assert_done(self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q", "--overwrite"))
+        self.assertEqual((self.folder / "out/summary.txt").read_text(encoding="utf-8"), whole)
+
+
+if __name__ == "__main__":
+    main()
