@@ -31,6 +31,14 @@ class ColumnScene(_column.ColumnScene):
     def __init__(self, source=None, /, *, set=None, **sections):
         super().__init__(*scene_source(_column.ColumnScene, source, set, sections))
 
+    def member(self, k):
+        """The k-th member of an ensemble, as `soil_column --ensemble` runs it: layers of grains have the next seeds of
+        their library, or the next lot; member 0 is the scene itself.
+
+        runs = [column.run(scene.member(k), f"results/member_{k}") for k in range(8)]
+        """
+        return type(self)(self._member(k))
+
     with_ = Scene.with_
     to_dict = Scene.to_dict
 

@@ -182,6 +182,18 @@ class ColumnTest(ToleranceTest):
         p_modulus = 2 * SHEAR * (1 - POISSON) / (1 - 2 * POISSON)
         self.assert_near(np.max(np.abs(found / [p_modulus, SHEAR] - 1)), 0, 1e-9, "directions are searched to rounding")
 
+    def test_members_of_an_ensemble(self):
+        """The next seeds, as many as a point has packings, or the next lot; other layers stay."""
+        grains = {"thickness": "2 m", "cells": 2, "material": "grains", "realisation": 1}
+        scene = column.ColumnScene(SCENE).with_(**{"grains.library": "library.h5", "grains.realisations": 3}).to_dict()
+        scene["layer"] = [grains, {**grains, "mixed_realisations": 4}, scene["layer"][1]]
+        scene = column.ColumnScene(scene)
+        self.assertEqual(scene.member(0), scene)
+        layers, before = scene.member(2).to_dict()["layer"], scene.to_dict()["layer"]
+        self.assertEqual([layer.get("realisation") for layer in layers], [7, 1, None])
+        self.assertEqual([layer.get("lot") for layer in layers], [0, 2, None])
+        self.assertEqual(layers[2], before[2])
+
     def test_mistakes(self):
         class Flat(Elastic):
             def update(self, state, gradient):

@@ -3,6 +3,7 @@
 // tested: tests/python/column_test.py
 #include "apps/common/interrupt.hpp"
 #include "apps/deposit/ranks.hpp"
+#include "apps/soil_column/ensemble.hpp"
 #include "apps/soil_column/run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
@@ -126,6 +127,7 @@ PYBIND11_MODULE(_column, module)
       .def_property_readonly(
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")
+      .def("_member", [](const ColumnScene &scene, std::size_t k) { return to_toml(member_scene(scene, k)); })
       .def(
           "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
       .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })
