@@ -19,8 +19,9 @@ double pressure(const Mat3 &stress) { return -stress.trace() / 3; }
 
 std::string described(const Mat3 &s)
 {
-  return fmt::format("sigma'_v = {:.4g} kPa, sigma'_h = {:.4g} and {:.4g} kPa", -s(1, 1) / 1e3, -s(0, 0) / 1e3,
-                     -s(2, 2) / 1e3);
+  const double shear = std::hypot(s(0, 1), s(2, 1));
+  return fmt::format("sigma'_v = {:.4g} kPa, sigma'_h = {:.4g} and {:.4g} kPa{}", -s(1, 1) / 1e3, -s(0, 0) / 1e3,
+                     -s(2, 2) / 1e3, shear > 0 ? fmt::format(", shear {:.4g} kPa", shear / 1e3) : "");
 }
 
 /// Stress between two others, w = 0 at the first: normal stresses geometrically, shear stresses linearly.
@@ -37,7 +38,8 @@ void go(Rve &rve, const MixedIncrement &step, const Mat3 &from, const Mat3 &targ
   const RveResponse response = rve.advance(step);
   if (response.outcome != RveOutcome::accepted)
     throw RunFailure(fmt::format(
-        "{}: not reached from a specimen at {}; it came to {} ({}). K0 may be beyond what the packing can carry, or "
+        "{}: not reached from a specimen at {}; it came to {} ({}). K0 or the slope may be beyond what the packing can "
+        "carry, or "
         "the stress too far from the library's: add specimens at a nearer stress with specimen_library.",
         described(target), described(from), described(response.stress), response.reason));
 }
@@ -79,6 +81,8 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &tar
   const bool sides_fixed = settings.path == InSituPath::no_lateral_strain;
   step.controlled.setConstant(!sides_fixed);
   step.controlled(1, 1) = true;
+  for (int k : {0, 2}) // a slope: simple shear in its direction
+    step.controlled(1, k) = step.controlled(k, 1) = !sides_fixed || target(1, k) != 0;
   const Eigen::Array3d ratio = target.diagonal().array() / from.diagonal().array();
   const int steps = 1 + static_cast<int>(ratio.log().abs().maxCoeff() / std::log(2.0));
   for (int k = 1; k <= steps; ++k)
@@ -103,7 +107,10 @@ std::vector<std::byte> bring_to_stress(const Snapshot &specimen, const Mat3 &tar
 void check_reached(const Mat3 &stress, const Mat3 &target, InSituPath path)
 {
   const Mat3 miss = (stress - target) / (stress.trace() / 3);
-  const double worst = path == InSituPath::all_stresses ? miss.cwiseAbs().maxCoeff() : std::abs(miss(2, 2));
+  double worst = path == InSituPath::all_stresses ? miss.cwiseAbs().maxCoeff() : std::abs(miss(2, 2));
+  for (int k : {0, 1})
+    if (target(2, k) != 0)
+      worst = std::max(worst, std::abs(miss(2, k)));
   if (!(worst <= max_miss))
     throw RunFailure(fmt::format("the stress in situ is missed by {:.2g} of p', more than {:g}: the packing is not at "
                                  "rest. Lower the tolerance of its preparation.",

@@ -7,8 +7,10 @@ namespace isostat
 /// How a specimen comes to its stress in situ.
 enum class InSituPath
 {
-  all_stresses,     ///< all six components are controlled (K0 or isotropic)
-  no_lateral_strain ///< vertical stress is controlled, sides are fixed: the packing gives the horizontal stress
+  all_stresses, ///< all six components are controlled (K0 or isotropic)
+  /// vertical stress is controlled, and a shear stress on horizontal planes where the target has one; sides are fixed:
+  /// the packing gives the horizontal stress
+  no_lateral_strain
 };
 
 struct InSituSettings

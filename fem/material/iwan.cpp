@@ -116,15 +116,43 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
       double *state = &states[i * stride_];
       state[pressure] = p;
       state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.min_pressure));
-      for (int c = 0; c < 5; ++c)
-        {
-          state[deviator + c] = s[c];
-          for (std::size_t k = 0; k < parameters_.elements; ++k)
-            state[elements + c * width_ + k] = s[c] * (yields_[k] / parameters_.strength_ratio);
-        }
+      share_out(s, p, state);
     }
   committed_ = std::move(states);
   has_trial_ = false;
+}
+
+/// Virgin loading to the shear t beside normal stresses n: each element has the share w_k x_k of n and, of t, what
+/// min(w_k G gamma, what its strength leaves beside n) gives; the sum over all is t. In that sum, gamma runs from one
+/// yield to the next.
+void Iwan::share_out(const Shear &s, double p, double *state) const
+{
+  const std::size_t n = parameters_.elements;
+  const double normal = s[0] * s[0] + s[1] * s[1], shear = std::sqrt(s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
+  const double ratio = parameters_.strength_ratio;
+  const double left = std::sqrt(std::max(0.0, 1 - normal / (ratio * p * ratio * p))); // of an element's strength
+  std::vector<double> part(n, 0.0);
+  double slope = 1, borne = 0; // of the elements that do not yield, shear of those that do
+  for (std::size_t k = 0; shear > 0 && k < n; ++k)
+    {
+      const double yields = left * p * yields_[k];
+      if (const double x = (shear - borne) / slope; weights_[k] * x <= yields || k + 1 == n) // x is G gamma
+        {
+          for (std::size_t j = k; j < n; ++j)
+            part[j] = std::min(weights_[j] * x, left * p * yields_[j]);
+          break;
+        }
+      part[k] = yields;
+      borne += yields;
+      slope -= weights_[k];
+    }
+  for (int c = 0; c < 5; ++c)
+    {
+      state[deviator + c] = s[c];
+      for (std::size_t k = 0; k < n; ++k)
+        state[elements + c * width_ + k] =
+            c < 2 ? s[c] * (yields_[k] / ratio) : (shear > 0 ? s[c] / shear * part[k] : 0);
+    }
 }
 
 void Iwan::trial(std::span<const Gradient> increments, std::span<Stress> stresses)

@@ -74,7 +74,9 @@ public:
 
   std::string name() const override { return "iwan"; }
   std::size_t n_points() const override { return n_points_; }
-  /// A deviator is shared out in proportion to the elements' strengths: no element yields at once, shear begins with G.
+  /// The deviator of the normal stresses is shared out in proportion to the elements' strengths: no element yields at
+  /// once, shear begins with G. Shear stresses (a slope) are those of virgin loading at this p': shear further on
+  /// follows the backbone, shear back begins with G and is twice as wide (Masing).
   /// @throws InputError naming the point if p' <= 0 or the deviator is above the strength
   void set_initial_stress(std::span<const Stress> effective) override;
   /// @throws RunFailure naming the point if its strain increment is not a number or above 1
@@ -119,6 +121,7 @@ private:
   void step(const double *from, const Increment &d, double *to) const;
   void change_pressure(const double *from, const Shear &flow, double volumetric, double shear, double *to) const;
   Stress stress(const double *state) const;
+  void share_out(const Shear &deviator, double pressure, double *state) const;
   Stiffness tangent(std::size_t point) const;
 
   IwanParameters parameters_;

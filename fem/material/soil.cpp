@@ -48,16 +48,31 @@ std::size_t SoilProfile::cell_at(double z) const
   return below - 1 - static_cast<std::size_t>((top - z) / height);
 }
 
-double SoilProfile::hydrostatic_pressure(double z) const { return water.density * water.gravity * (height() - z); }
-
-double SoilProfile::vertical_effective_stress(double z, double surcharge) const
+double SoilProfile::hydrostatic_pressure(double z) const
 {
-  double stress = surcharge, bottom = height();
+  return water.density * water.gravity * slope.cosine() * std::max(0.0, height() - water_table - z);
+}
+
+PlaneStress SoilProfile::in_situ(double z, double surcharge) const
+{
+  const double across = slope.cosine(), along = slope.tangent * across;
+  const double buoyancy = slope.water == SlopeWater::submerged ? water.density : 0; // of the weight along the slope
+  const double table = height() - water_table;
+  PlaneStress stress{surcharge * across, surcharge * along};
+  const auto add = [&](double density, double uplift, double downslope_uplift, double thickness) {
+    stress.normal += (density - uplift) * (water.gravity * across) * thickness;
+    stress.shear += (density - downslope_uplift) * (water.gravity * along) * thickness;
+  };
+  double bottom = height();
   for (std::size_t k = 0; k < layers.size() && bottom > z; ++k)
     {
       const double top = bottom;
       bottom -= layers[k].thickness;
-      stress += (layers[k].density - water.density) * water.gravity * (top - std::max(bottom, z));
+      const double low = std::max(bottom, z), density = layers[k].density;
+      if (top > table)
+        add(density, 0, 0, top - std::max(low, table));
+      if (low < table)
+        add(density, water.density, buoyancy, std::min(top, table) - low);
     }
   return stress;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -54,19 +55,49 @@ struct Water
   bool operator==(const Water &) const = default;
 };
 
+/// What the water in and above a slope does. Either way it has no excess pressure at rest.
+enum class SlopeWater
+{
+  seepage,  ///< it flows parallel to the surface, below a water table that is parallel, too
+  submerged ///< it is at rest and stands above the whole slope
+};
+
+/// Inclination of the surface: an infinite slope. Axes turn with it: x points down the slope, z along the normal.
+struct Slope
+{
+  double tangent = 0; ///< tan of its angle to the horizontal [-]
+  SlopeWater water = SlopeWater::seepage;
+
+  double cosine() const { return 1 / std::sqrt(1 + tangent * tangent); }
+  bool operator==(const Slope &) const = default;
+};
+
+/// Stresses in situ on a plane parallel to the surface. Pa
+struct PlaneStress
+{
+  double normal = 0; ///< effective, compression positive
+  double shear = 0;  ///< positive where what lies above pushes down the slope (sigma_xz of the continuum)
+};
+
 /// Layers from the surface down, as a borehole log reads; the one order of layers and their numbers everywhere.
-/// Heights: z = 0 at the base, upwards positive, water table at the surface.
+/// Heights and depths along z: z = 0 at the base, upwards positive, normal to the surface.
 /// tested: tests/fem/material/soil_test.cpp
 struct SoilProfile
 {
   std::vector<Layer> layers;
   Water water;
+  double water_table = 0; ///< its depth, m; soil above it has no pore pressure
+  Slope slope = {};
 
   double height() const;                ///< summed from the base up, m
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
   std::size_t cell_at(double z) const;  ///< number of the cell at a height, from the base up   @pre not on a boundary
-  double hydrostatic_pressure(double z) const; ///< of the water at rest, above the atmospheric one, Pa
-  /// Vertical effective stress of the soil's own weight and of a uniform load on the surface, compression positive. Pa
-  double vertical_effective_stress(double z, double surcharge = 0) const;
+  bool is_wet(double z) const { return z < height() - water_table; }
+  double hydrostatic_pressure(double z) const; ///< of water below its table, above the atmospheric pressure, Pa
+  /// Statics of the infinite slope, docs/theory_column.md (29): stresses of the soil's own weight and of a uniform
+  /// vertical load on the surface (Pa of the surface, inclined or not).
+  PlaneStress in_situ(double z, double surcharge = 0) const;
+  /// Its normal stress: on level ground the vertical effective stress, compression positive. Pa
+  double vertical_effective_stress(double z, double surcharge = 0) const { return in_situ(z, surcharge).normal; }
 };
 } // namespace isostat

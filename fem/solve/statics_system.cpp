@@ -86,7 +86,12 @@ void StaticsSystem::number_unknowns()
         m.unused.push_back(start + i);
   };
   find_unused(space_.displacement_vector(), space_.cell_dofs, m.n_u, 0);
-  find_unused(space_.pressure_vector(), space_.cell_pressures, m.n_p, m.n_u);
+  std::vector<unsigned> wet; // above the water table there is no equation for the pressure
+  const std::size_t n_i = space_.pressure_nodes_per_cell();
+  for (std::size_t k = 0; k < space_.cell_pressures.size(); ++k)
+    if (space_.cell_is_wet[k / n_i])
+      wet.push_back(space_.cell_pressures[k]);
+  find_unused(space_.pressure_vector(), wet, m.n_p, m.n_u);
 }
 
 /// Entries cell by cell, row by row, then the whole diagonal.

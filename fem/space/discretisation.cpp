@@ -130,6 +130,10 @@ Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &suppor
   for (Face face : supports_.drained)
     for (Index node : nodes_on_face(unknowns_->pressure_nodes(), face))
       drained_pressures.push_back(unknowns_->pressure_of_node(node));
+  if (mesh_.soil.water_table > 0)
+    for (std::size_t k = 0; k < corner.size(); ++k)
+      if (!mesh_.soil.is_wet(corner[k][2] * (1 + 1e-9))) // at the table, whatever the rounding
+        drained_pressures.push_back(cell_pressures[k]);
   sort_unique(fixed_dofs);
   sort_unique(drained_pressures);
   cell_frequency_ = cell_frequencies(*this);

@@ -22,8 +22,9 @@ public:
   MPI_Comm communicator() const { return communicator_; }
   bool shared_out() const { return shared_out_; } ///< over several ranks
 
-  std::vector<unsigned> fixed_dofs;        ///< local unknowns of Supports::fixed, owned or not, in rising order
-  std::vector<unsigned> drained_pressures; ///< local unknowns of Supports::drained, owned or not, in rising order
+  std::vector<unsigned> fixed_dofs; ///< local unknowns of Supports::fixed, owned or not, in rising order
+  /// Local unknowns of Supports::drained and at and above a water table in the soil, owned or not, in rising order.
+  std::vector<unsigned> drained_pressures;
 
   /// A zero vector of displacements / of pressures.
   Vector displacement_vector() const { return Vector(displacements_); }
@@ -48,7 +49,7 @@ public:
   /// f_Ac += int sigma_cd dN_A/dx_d, the internal force of effective stresses (N); what belongs to other ranks is
   /// brought home.   Cost: in the loop.
   void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
-  /// Pressure at all points, Pa, whatever the ghosts of p hold.
+  /// Pressure at all points, Pa, 0 above the water table, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
   /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held.   Cost: in the loop.

@@ -117,7 +117,7 @@ std::vector<double> FiniteElementSpace::point_pressures(const Vector &p) const
   whole.update_ghost_values();
   const std::size_t n_i = pressure_nodes_per_cell();
   for (std::size_t q = 0; q < pressure.size(); ++q)
-    for (std::size_t i = 0; i < n_i; ++i)
+    for (std::size_t i = 0; cell_is_wet[q / n_gauss] && i < n_i; ++i)
       pressure[q] += pressure_shape[q % n_gauss * n_i + i] * whole.local_element(cell_pressures[q / n_gauss * n_i + i]);
   return pressure;
 }

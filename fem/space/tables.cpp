@@ -106,6 +106,7 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       for (const unsigned v : cell->vertex_indices())
         t.corner.push_back(place_of<dim>(cell->vertex(v)));
       t.cell_layer.push_back(spec.soil.layer_at(cell->center()[dim - 1]));
+      t.cell_is_wet.push_back(spec.soil.is_wet(cell->center()[dim - 1]));
       if (t.shape.empty())
         {
           t.shape = shapes(u, t.n_nodes, t.n_gauss);

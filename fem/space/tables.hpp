@@ -29,6 +29,7 @@ struct CellTables
   std::vector<Place> corner;             ///< [cell][corner], x fastest
   std::vector<std::size_t> point_id;     ///< number of a point in the whole mesh, for any partition
   std::vector<unsigned> cell_layer;      ///< number of a cell's layer in MeshSpec::soil, from the surface down
+  std::vector<bool> cell_is_wet;         ///< below the water table
 
   std::size_t n_cells() const { return cell_layer.size(); }
   std::size_t n_points() const { return weight.size(); }

@@ -47,8 +47,12 @@ std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space)
   const SoilProfile &soil = space.mesh().soil;
   std::vector<PoreFluid> fluids;
   for (std::size_t q = 0; q < space.n_points(); ++q)
-    fluids.push_back(
-        pore_fluid(soil, soil.layers[space.cell_layer[q / space.points_per_cell()]], space.position[q][2]));
+    {
+      const std::size_t cell = q / space.points_per_cell();
+      fluids.push_back(pore_fluid(soil, soil.layers[space.cell_layer[cell]], space.position[q][2]));
+      if (!space.cell_is_wet[cell])
+        fluids.back().porosity = 0; // no pores that water fills
+    }
   return fluids;
 }
 
@@ -67,6 +71,8 @@ BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, st
                     dim = space.dimension;
   const Eigen::MatrixXd to_u = Eigen::MatrixXd::Zero(n_i, 3 * n_a), to_p = Eigen::MatrixXd::Zero(n_i, n_i);
   BiotCell c{to_u, to_u, to_p, to_p};
+  if (!space.cell_is_wet[cell])
+    return c;
   for (std::size_t i = 0; i < n_i; ++i)
     for (std::size_t q = 0; q < n_q; ++q)
       {

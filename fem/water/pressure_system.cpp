@@ -103,24 +103,28 @@ PetscMatrix BiotEntries::seepage() const
   return petsc_matrix(communicator, n_pressures, n_pressures, entries);
 }
 
-/// Owned pressures that are 0: drained, or not in any cell. Soil without permeability does not feel that its surface is
-/// drained.
+/// Owned pressures that are 0: drained, or not in any cell below the water table. Soil without permeability does not
+/// feel that its surface is drained.
 std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
 {
-  std::vector<bool> is_held(n_owned, true), can_flow(n_owned, false);
+  Vector wet = space.pressure_vector(), flowing = wet; // above 0: in a wet cell, in one that is permeable
   const std::size_t n_i = space.pressure_nodes_per_cell();
   for (std::size_t k = 0; k < space.cell_pressures.size(); ++k)
-    if (const unsigned p = space.cell_pressures[k]; p < n_owned)
+    if (space.cell_is_wet[k / n_i])
       {
-        is_held[p] = false;
-        can_flow[p] = can_flow[p] || space.mesh().soil.layers[space.cell_layer[k / n_i]].permeability > 0;
+        wet.local_element(space.cell_pressures[k]) = 1;
+        if (space.mesh().soil.layers[space.cell_layer[k / n_i]].permeability > 0)
+          flowing.local_element(space.cell_pressures[k]) = 1;
       }
+  wet.add_ghosts_to_owners();
+  flowing.add_ghosts_to_owners();
+  std::vector<bool> is_drained(n_owned, false);
   for (unsigned p : space.drained_pressures)
     if (p < n_owned)
-      is_held[p] = is_held[p] || can_flow[p];
+      is_drained[p] = true;
   std::vector<unsigned> held;
   for (unsigned p = 0; p < n_owned; ++p)
-    if (is_held[p])
+    if (wet.local_element(p) == 0 || (is_drained[p] && flowing.local_element(p) > 0))
       held.push_back(p);
   return held;
 }
@@ -133,6 +137,8 @@ std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vec
     flow = space.pressure_vector();
   for (std::size_t point = 0; point < space.n_points(); ++point)
     {
+      if (!space.cell_is_wet[point / n_q])
+        continue;
       const PorousLayer &layer = layers[space.cell_layer[point / n_q]];
       for (std::size_t i = 0; i < n_i; ++i)
         for (unsigned d = 0; d < space.dimension; ++d)

@@ -57,6 +57,47 @@ TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
   EXPECT_THAT(entries[0].text("source"), testing::StartsWith("s000"));
 }
 
+TEST_F(InSitu, TheShearOfASlopeIsReachedOnEveryPath)
+{
+  const std::vector<double> tangents = {0.009, 0.07, 0.18, 0.3}; // of 0.5 to 17 deg
+  std::vector<Stress> target;
+  for (double tangent : tangents)
+    target.push_back({-30e3, -30e3, -60e3, 0, 60e3 * tangent, 0});
+  for (const InSituPath path : {InSituPath::all_stresses, InSituPath::no_lateral_strain})
+    {
+      settings.in_situ.path = path;
+      RveMaterial material(std::vector<SpecimenRequest>(target.size()), settings, MPI_COMM_SELF);
+      material.set_initial_stress(target);
+      std::vector<Stress> stress(target.size());
+      material.trial(std::vector<Gradient>(target.size(), Gradient{}), stress);
+      for (std::size_t k = 0; k < target.size(); ++k)
+        {
+          const double p = -(stress[k][0] + stress[k][1] + stress[k][2]) / 3;
+          std::printf("tan %.3f: shear %.5f of p' off its target, K0 %.3f\n", tangents[k],
+                      (stress[k][4] - target[k][4]) / p, stress[k][0] / stress[k][2]);
+          EXPECT_NEAR_BECAUSE(stress[k][4], target[k][4], 0.01 * p, "what set_initial_stress() promises: 1 % of p'");
+          EXPECT_NEAR_BECAUSE(stress[k][2], target[k][2], 0.01 * p, "what set_initial_stress() promises: 1 % of p'");
+        }
+    }
+}
+
+TEST_F(InSitu, AShearBeyondTheStrengthIsNotReached)
+{
+  settings.in_situ.max_steps = 20'000;
+  RveMaterial material(std::vector<SpecimenRequest>(1), settings, MPI_COMM_SELF);
+  try
+    {
+      material.set_initial_stress(std::vector{Stress{-60e3, -60e3, -60e3, 0, 60e3, 0}});
+      FAIL() << "a slope of 45 deg stands";
+    }
+  catch (const RunFailure &failure)
+    {
+      std::printf("%s\n", failure.what());
+      EXPECT_THAT(failure.what(), HasSubstr("shear 60 kPa: not reached"));
+      EXPECT_THAT(failure.what(), HasSubstr("K0 or the slope may be beyond what the packing can carry"));
+    }
+}
+
 TEST_F(InSitu, IsAtRest)
 {
   const std::vector<Stress> target = {test::in_situ(70e3, 0.5), test::in_situ(5e3, 0.5), test::in_situ(2e3, 0.5)};

@@ -90,6 +90,47 @@ TEST(Iwan, StiffnessAndStrengthFollowThePressure)
   EXPECT_NEAR_BECAUSE(s[1][4], 0.55 * 200e3, 1e-6, "round-off of a stress of 1e5 Pa, iterated to its limit");
 }
 
+TEST(Iwan, AStaticShearIsThatOfVirginLoading)
+{
+  const double strain = Sample(dry()).iwan.reference_strain(p0);
+  for (double x : {0.005, 0.1, 0.5, 3.0, 30.0})
+    {
+      Sample loaded(dry()), placed(dry());
+      const double tau = loaded.shear(x * strain);
+      placed.iwan.set_initial_stress(std::vector{Stress{-p0, -p0, -p0, 0, tau, 0}});
+      placed.strain({});
+      EXPECT_EQ(placed.stress[4], tau);
+      double worst = 0;
+      for (const double h : {0.2, 0.5, -0.1, -0.3, -2.0, 0.4, 5.0}) // onwards, back and onwards again
+        worst = std::max(worst, std::abs(placed.shear(h * strain) - loaded.shear(h * strain)));
+      EXPECT_BELOW_BECAUSE(worst, 1e-10 * p0, "round-off of some thousand sub-steps") << x;
+    }
+}
+
+TEST(Iwan, AStaticShearBesideAK0)
+{
+  IwanParameters sand = dry();
+  sand.elements = 64;
+  Sample s(sand);
+  const double tau = 0.15e5; // sqrt(J2) of k0 = 0.5 is 0.433 p', 0.34 p' of the strength is left
+  const Stress start = {-0.75e5, -0.75e5, -1.5e5, 0, tau, 0};
+  s.iwan.set_initial_stress(std::vector{start});
+  s.strain({});
+  for (int c = 0; c < 6; ++c)
+    EXPECT_NEAR_BECAUSE(s.stress[c], start[c], 1e-9, "round-off");
+  EXPECT_BELOW_BECAUSE(s.shear(1e-7) - tau, 0.8 * 1e-7 * sand.shear_modulus, "softer on the backbone at tau_0");
+  const double before = s.stress[4];
+  EXPECT_NEAR_BECAUSE(s.shear(-1e-8), before - 1e-8 * sand.shear_modulus, 1e-9 * p0, "back with G: no element yields");
+  double last = 0;
+  for (int k = 0; k < 5000; ++k)
+    last = s.shear(1e-4);
+  EXPECT_NEAR_BECAUSE(last, 0.55 * p0, 2e-3 * p0,
+                      "all of the strength is shear in the end, as the deviator of k0 fades");
+  EXPECT_THROW(s.iwan.set_initial_stress(std::vector{Stress{-0.75e5, -0.75e5, -1.5e5, 0, 0.35e5, 0}}), InputError);
+  const double left = std::sqrt(0.55 * 0.55 - 0.1875); // p' is 1e5, the deviator of k0 0.75e5/sqrt(3)
+  EXPECT_NO_THROW(s.iwan.set_initial_stress(std::vector{Stress{-0.75e5, -0.75e5, -1.5e5, 0, left * 0.999e5, 0}}));
+}
+
 TEST(Iwan, MasingLoopsAndTheirDamping)
 {
   for (double x : {0.1, 0.3, 1.0, 3.0, 10.0})

@@ -74,6 +74,44 @@ TEST(SoilProfile, EffectiveStressIsContinuousAndItsSlopeIsTheSubmergedWeight)
     }
 }
 
+/// By hand, gravity 10: a slope with tan = 3/4, so that sin = 0.6 and cos = 0.8.
+TEST(SoilProfile, StaticsOfTheInfiniteSlopeByHand)
+{
+  SoilProfile soil = three_layers();
+  soil.slope.tangent = 0.75;
+  constexpr test::Tolerance exact{1e-9, "round-off of sums of 1e5 Pa"};
+  const auto expect = [&](double z, double normal, double shear, double surcharge = 0) {
+    const PlaneStress stress = soil.in_situ(z, surcharge);
+    EXPECT_NEAR_BECAUSE(stress.normal, normal, exact) << z;
+    EXPECT_NEAR_BECAUSE(stress.shear, shear, exact) << z;
+  };
+  expect(9, 0.8 * 8e3, 0.6 * 18e3); // seepage: buoyancy across the slope only
+  expect(4, 0.8 * 58e3, 0.6 * 118e3);
+  expect(0, 0.8 * 106e3, 0.6 * 206e3);
+  expect(4, 0.8 * 78e3, 0.6 * 138e3, 20e3); // a surcharge is vertical
+  soil.water_table = 3;                     // 1 m of silt and 2 m of sand are not under water
+  expect(9, 0.8 * 18e3, 0.6 * 18e3);
+  expect(7.5, 0.8 * 48e3, 0.6 * 48e3);
+  expect(7, 0.8 * 58e3, 0.6 * 58e3);
+  expect(4, 0.8 * 88e3, 0.6 * 118e3);
+  expect(0, 0.8 * 136e3, 0.6 * 206e3);
+  EXPECT_TRUE(soil.is_wet(6.9));
+  EXPECT_FALSE(soil.is_wet(7.1));
+  soil.water_table = 0;
+  soil.slope.water = SlopeWater::submerged; // buoyancy is vertical: as dry soil of its submerged weight
+  expect(4, 0.8 * 58e3, 0.6 * 58e3);
+  expect(0, 0.8 * 106e3, 0.6 * 106e3);
+}
+
+TEST(SoilProfile, LevelGroundCarriesNoShearAndATableIsAboutBuoyancyOnly)
+{
+  SoilProfile soil = three_layers();
+  EXPECT_EQ(soil.in_situ(4, 1e3).shear, 0);
+  soil.water_table = 3;
+  EXPECT_NEAR_BECAUSE(soil.vertical_effective_stress(0), 206e3 - 7 * 10e3, 1e-9,
+                      "total weight minus the hydrostatic pressure of 7 m");
+}
+
 TEST(Water, Mobility)
 {
   Water water;
