@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a column's scene.
-#include "apps/deposit/scene.hpp"
+#include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
@@ -68,7 +68,10 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
                     "must not be \"user\" if mesh.distributed is true, because such a material keeps its points as "
                     "a whole, which no checkpoint can share out. Give distributed = false.");
   const std::string prefix = fmt::format("layer.{}", i);
-  if (scene.water.drainage != Drainage::dry && layer.density <= scene.water.density)
+  double bottom = 0;
+  for (std::size_t k = 0; k <= i; ++k)
+    bottom += scene.layers[k].thickness;
+  if (scene.water.drainage != Drainage::dry && bottom > scene.water.table && layer.density <= scene.water.density)
     document.refuse(prefix + ".density", fmt::format("must be above that of water, {} kg/m3, or the soil floats away.",
                                                      number_text(scene.water.density)));
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
@@ -177,6 +180,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     check_layer(document, scene, i);
   check_air(document, scene);
+  check_slope(document, scene);
   check_base(document, scene.base);
   check_motions(document, scene);
   check_grains(document, scene);

@@ -97,6 +97,14 @@ void ProfileFile::forget_waiting()
     values.clear();
 }
 
+void ProfileFile::add(const char *name, std::span<const double> values, const char *unit)
+{
+  flush();
+  hdf5::File file = hdf5::File::update(path_);
+  file.root().write(name, values, unit);
+  file.commit();
+}
+
 void ProfileFile::finish(std::span<const double> peak_gamma, std::span<const double> peak_ru,
                          std::span<const double> node_depth, std::span<const double> peak_acceleration)
 {

@@ -116,7 +116,7 @@ RveMaterialSettings ColumnScene::packings(int threads) const
 
 SoilProfile soil_profile(const ColumnScene &scene)
 {
-  SoilProfile profile{{scene.layers.begin(), scene.layers.end()}, scene.water};
+  SoilProfile profile{{scene.layers.begin(), scene.layers.end()}, scene.water, scene.water.table, scene.slope};
   if (scene.water.drainage == Drainage::dry)
     profile.water.density = 0;
   return profile;

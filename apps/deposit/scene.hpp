@@ -33,6 +33,7 @@ struct ColumnMesh
 struct ColumnWater : Water
 {
   Drainage drainage = Drainage::coupled;
+  double table = 0;                    ///< its depth below the surface, m
   bool lagged_compressibility = false; ///< undrained only
 
   bool operator==(const ColumnWater &) const = default;
@@ -114,7 +115,7 @@ enum class LoadKind
 struct ColumnLoad
 {
   LoadKind kind = LoadKind::none;
-  double surcharge = 0; ///< vertical, there from the start and part of the in-situ stress, Pa
+  double surcharge = 0; ///< vertical, there from the start and part of the in-situ stress, Pa of the surface
   Axis direction = Axis::z;
   double amplitude = 0; ///< along z compression is positive, Pa
   double frequency = 0; ///< harmonic: amplitude sin(2 pi f t)
@@ -178,6 +179,7 @@ struct ColumnScene
   std::string title;
   ColumnMesh mesh;
   ColumnWater water;
+  Slope slope;
   std::vector<ColumnLayer> layers; ///< from the surface down
   Base base;
   std::vector<ColumnMotion> motions; ///< at most one per axis

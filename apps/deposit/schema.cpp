@@ -2,7 +2,7 @@
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
 // binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
 // air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings in coupling/scene/packings.cpp.
-#include "apps/deposit/scene.hpp"
+#include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"
@@ -37,7 +37,11 @@ constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
 // clang-format off
 constexpr Section sections[] = {
   {.name = "mesh", .text = "Elements of the soil. In every dimension the displacement has three components."},
-  {.name = "water", .text = "Pore water; the water table is at the surface, which drains freely."},
+  {.name = "water", .text = "Pore water. The water table, at the surface unless `table` says otherwise, drains freely."},
+  {.name = "slope",
+   .text = "The ground as an infinite slope. All axes turn with it: x points down the slope, depths are normal to the "
+           "surface, and the soil carries a static shear stress from the start. In-situ stresses, safety, large "
+           "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
            "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic "
@@ -97,6 +101,11 @@ constexpr Key ground_keys[] = {
   {.path = "water.gravity", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
    .value = "9.81 m/s2", .range = positive, .text = "Acceleration of gravity, of the soil's weight too.",
    .field = [](ColumnScene &s) -> Field { return &s.water.gravity; }},
+  {.path = "water.table", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+   .range = not_negative,
+   .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above it has "
+           "neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its moisture.",
+   .field = [](ColumnScene &s) -> Field { return &s.water.table; }},
   {.path = "water.lagged_compressibility", .kind = Kind::boolean, .value = "false",
    .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The fluid must be "
            "stiffer than the skeleton, K_f/n > M.",
@@ -121,7 +130,7 @@ constexpr Key ground_keys[] = {
    .text = "Largest height of an element; the layer gets as few as keep it.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cell_size; }},
   {.path = "layer.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "2000 kg/m3", .range = positive, .text = "Density of soil and water together; of the dry soil if there is no water.",
+   .value = "2000 kg/m3", .range = positive, .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there is no water.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.density; }},
   {.path = "layer.porosity", .value = "0.4", .range = fraction, .text = "Volume of pores over the whole.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.porosity; }},
@@ -130,7 +139,7 @@ constexpr Key ground_keys[] = {
    .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.permeability; }},
   {.path = "layer.k0", .value = "0.5", .range = {0, 5, true}, .reason = "because horizontal stress is compression too",
-   .text = "Horizontal over vertical effective stress in situ.",
+   .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.k0; }},
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
@@ -224,7 +233,8 @@ constexpr Key loading_keys[] = {
    .text = "How the traction runs in time.",
    .field = [](ColumnScene &s) -> Field { return &s.load.kind; }},
   {.path = "load.surcharge", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "0 kPa",
-   .range = not_negative, .text = "Vertical load that is there from the start and part of the in-situ effective stress.",
+   .range = not_negative, .text = "Vertical load on the unit of the surface, there from the start and part of the in-situ effective stress; on a "
+           "slope its part along x is carried by shear.",
    .field = [](ColumnScene &s) -> Field { return &s.load.surcharge; }},
   {.path = "load.direction", .kind = Kind::choice, .value = "z", .choices = axis_choices, .kinds = loaded,
    .text = "Direction of the traction; along z compression is positive.",
@@ -337,7 +347,7 @@ constexpr Key sand_keys[] = {
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
 
 constexpr Dimension dimensions[] = {
-  Dimension::length, Dimension::pressure, Dimension::rate, Dimension::density, Dimension::velocity,
+  Dimension::length, Dimension::pressure, Dimension::angle, Dimension::rate, Dimension::density, Dimension::velocity,
   Dimension::acceleration, Dimension::frequency, Dimension::duration, Dimension::interval};
 
 constexpr const char *defaults_head =
@@ -367,6 +377,7 @@ const SceneSchema &column_schema()
       ground_keys,
       splice("water", pore_fluid_keys(), 0, [](ColumnScene &s) -> Water & { return s.water; }),
       splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
+      splice("slope", slope_keys(), 0, [](ColumnScene &s) -> Slope & { return s.slope; }),
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),

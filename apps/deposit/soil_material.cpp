@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <set>
 
 namespace isostat
@@ -50,6 +51,29 @@ SpecimenRequest drawn(SpecimenRequest request, const Place &place)
   return request;
 }
 
+/// The packings of a soil.   @throws InputError  of a slope that they cannot bear: where the points are, and remedies
+void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::vector<Stress> &stresses,
+                     const CellTables &mesh, const std::vector<std::size_t> &places)
+{
+  try
+    {
+      grains.set_initial_stress(stresses);
+    }
+  catch (const RunFailure &failure)
+    {
+      if (scene.slope.tangent == 0)
+        throw;
+      std::vector<double> depths;
+      for (std::size_t place : places)
+        depths.push_back(scene.height() - mesh.position[place][2]);
+      throw InputError(
+          fmt::format("{}\n  The slope may be too steep for the packings. Give a smaller slope.angle, denser "
+                      "packings (relative_density), a k0 nearer to 1, or a deeper water.table. Points count "
+                      "from 0; their depths are {:.4g} m.",
+                      failure.what(), fmt::join(depths, ", ")));
+    }
+}
+
 void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
 {
   std::set<std::string> asked;
@@ -86,9 +110,9 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
   std::vector<Stress> stresses(mesh.n_points());
   for (std::size_t q = 0; q < stresses.size(); ++q)
     {
-      const double vertical = soil.vertical_effective_stress(mesh.position[q][2], scene.load.surcharge);
+      const auto [normal, shear] = soil.in_situ(mesh.position[q][2], scene.load.surcharge);
       const double k0 = soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
-      stresses[q] = {-k0 * vertical, -k0 * vertical, -vertical, 0, 0, 0};
+      stresses[q] = {-k0 * normal, -k0 * normal, -normal, 0, shear, 0};
     }
   return stresses;
 }
@@ -122,7 +146,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
     {
       auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
                                                   scene.mesh.distributed ? MPI_COMM_SELF : MPI_COMM_WORLD);
-      grains->set_initial_stress(stresses);
+      bring_to_stress(scene, *grains, stresses, mesh, soil.grains_places);
       soil.grains = grains.get();
       parts.push_back({std::move(grains), soil.grains_places});
     }

@@ -13,6 +13,8 @@ fig_profiles.png      largest shear strain so far, r_u, largest shear stress so 
 fig_velocity.png      velocity of shear waves of small strain over the depth at the start, where it varies
 fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
+fig_spreading.png     slope: displacement of the surface in time; at the end displacement and shear strain over the
+                      depth, beside static shear stress and normal effective stress of the start
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_expansion.png     below less permeable layers: net expansion and settlement, above the volumetric strain over depth
                       and time
@@ -31,6 +33,7 @@ from .column_consolidation import isochrones, settlement
 from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
+from .column_slope import is_slope, spreading
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
 from .drawing import Drawing
 
@@ -42,6 +45,7 @@ FIGURES = {
     "fig_velocity": velocity,
     "fig_ru_map": ru_map,
     "fig_histories": histories,
+    "fig_spreading": spreading,
     "fig_loops": loops,
     "fig_expansion": expansion,
     "fig_isochrones": isochrones,
@@ -55,8 +59,9 @@ FIGURES = {
 def kinds(column):
     """The words before captions that fit the column."""
     soil = {"one elastic layer" if column.uniform_elastic() else "other soil"}
-    return soil | {word for word, fits in (("consolidation", column.consolidation), ("wet column", is_wet(column)),
-                                           ("sinking column", sinks(column))) if fits}
+    conditions = (("consolidation", column.consolidation), ("wet column", is_wet(column)), ("slope", is_slope(column)),
+                  ("sinking column", sinks(column)))
+    return soil | {word for word, fits in conditions if fits}
 
 
 DRAWING = Drawing(Column, FIGURES, kinds=kinds)

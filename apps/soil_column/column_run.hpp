@@ -60,8 +60,10 @@ public:
           }
         write([&] { files_.write_rows(true); });
         save();
+        if (scene_.slope.tangent > 0)
+          spreading_ = spreading(scene_, space_, run_.displacement(), files_.line());
         write([&] {
-          files_.finish(follower_.peaks);
+          files_.finish(follower_.peaks, spreading_);
           finish_files();
         });
       }
@@ -113,6 +115,7 @@ protected:
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
   std::vector<double> velocities_;            ///< of shear waves at every point at the start of the whole run, m/s
+  std::optional<Spreading> spreading_;        ///< of a slope, at the end
   std::string coarse_;                        ///< what is wrong with the mesh, if something is
   ColumnInstant instant_;
   Progress progress_{request_.quiet, 5};
@@ -231,6 +234,7 @@ private:
       summary.warnings.push_back(coarse_);
     summary.last = files_.history().state;
     summary.expansions = files_.history().expansions();
+    summary.spreading = spreading_;
     summary.steps = static_cast<double>(run_.n_steps());
     add_results(summary);
     times_.material = soil_.material->seconds;

@@ -102,11 +102,17 @@ void ColumnFiles<dim>::save(ColumnCheckpoint checkpoint, const ColumnPeaks &peak
 }
 
 template <int dim>
-void ColumnFiles<dim>::finish(const ColumnPeaks &peaks)
+void ColumnFiles<dim>::finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading)
 {
   flush();
-  if (profiles_)
-    profiles_->finish(peaks.line_gamma, peaks.line_ru, line_->node_depths, peaks.line_acceleration);
+  if (!profiles_)
+    return;
+  profiles_->finish(peaks.line_gamma, peaks.line_ru, line_->node_depths, peaks.line_acceleration);
+  if (!spreading)
+    return;
+  profiles_->add("tau_0", spreading->line_shear, "Pa");
+  profiles_->add("end_gamma_xz", spreading->line_gamma, "-");
+  profiles_->add("end_displacement", spreading->line_displacement, "m");
 }
 
 template class ColumnFiles<1>;

@@ -2,6 +2,7 @@
 #pragma once
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
+#include "apps/soil_column/spreading.hpp"
 #include "base/files/pvd.hpp"
 
 #include <memory>
@@ -33,8 +34,8 @@ public:
   /// Brings all files up to date, then writes a checkpoint with what belongs to them and the peaks.
   void save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks);
   void flush();
-  /// Adds the largest values to the profiles.   @pre the last call
-  void finish(const ColumnPeaks &peaks);
+  /// Adds the largest values to the profiles, and what is left of a slope.   @pre the last call
+  void finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading);
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
   ColumnHistory<dim> &history() { return history_; }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace isostat
 {
@@ -29,6 +30,29 @@ double amplification(const ColumnPeaks &peaks) { return peaks.input > 0 ? peaks.
 double relative_residual(const ColumnState &last)
 {
   return last.max_energy > 0 ? std::abs(last.residual) / last.max_energy : 0;
+}
+
+double degrees(const Slope &slope) { return std::atan(slope.tangent) * 180 / std::numbers::pi; }
+
+std::string slope_text(const Spreading &s, const ColumnScene &scene)
+{
+  std::string text = fmt::format("  slope                    {:.4g} deg", degrees(scene.slope));
+  if (s.safety)
+    text +=
+        fmt::format(", factor of safety at the start {:.3f} at a depth of {:.2f} m", s.safety->factor, s.safety->depth);
+  return text + fmt::format("\n  moved downslope          {:.4f} m at the surface; at the end the largest shear strain "
+                            "is {:.3f} % at a depth of {:.2f} m\n",
+                            s.displacement, 100 * s.gamma, s.gamma_depth);
+}
+
+void add_slope(const Spreading &s, const ColumnScene &scene, Json &json)
+{
+  json["slope"] = degrees(scene.slope);
+  json["factor_of_safety"] = s.safety ? Json(s.safety->factor) : Json();
+  json["factor_of_safety_depth"] = s.safety ? Json(s.safety->depth) : Json();
+  json["downslope"] = s.displacement;
+  json["end_gamma"] = s.gamma;
+  json["end_gamma_depth"] = s.gamma_depth;
 }
 
 /// From the surface down.
@@ -94,6 +118,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format(
         "  net expansion            {:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end\n",
         1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
+  if (s.spreading)
+    text += slope_text(*s.spreading, scene);
   if (s.grains)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
@@ -175,6 +201,8 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"relative_energy_residual", relative_residual(s.last)},
             {"final_settlement", drains ? Json(s.final_settlement) : Json()},
             {"degree_of_consolidation", drains ? Json(s.degree) : Json()}};
+  if (s.spreading)
+    add_slope(*s.spreading, scene, json);
   if (s.grains)
     {
       json["packings"] = s.grains->packings;

@@ -2,6 +2,7 @@
 #pragma once
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
+#include "apps/soil_column/spreading.hpp"
 #include "apps/soil_column/surface_motion.hpp"
 #include "base/files/json.hpp"
 
@@ -31,6 +32,7 @@ struct ColumnSummary
   std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
   std::optional<GrainsSummary> grains;
+  std::optional<Spreading> spreading; ///< none on level ground
 };
 
 /// What the run took on this machine.

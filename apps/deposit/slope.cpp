@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/slope.hpp"
+
+#include "base/scene/document.hpp"
+#include "base/scene/ranges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr const char *water_choices[] = {"seepage", "submerged"};
+constexpr double near = 1e-6; ///< m
+
+// clang-format off
+constexpr Key keys[] = {
+  {.path = "angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "0 deg",
+   .range = {0, 60}, .reason = "because no slope of soil is steeper",
+   .text = "Inclination of the surface to the horizontal.",
+   .field = [](Slope &s) -> Field { return &s.tangent; }},
+  {.path = "water", .kind = Kind::choice, .value = "seepage", .choices = water_choices,
+   .text = "Water that flows parallel to the surface, below a water table parallel to it, and drags the soil downslope; or "
+           "a slope submerged by water at rest. Of no meaning if there is no water.",
+   .field = [](Slope &s) -> Field { return &s.water; }},
+};
+// clang-format on
+
+/// f(layer, depth, stresses there) at the ends of all stretches of uniform density and buoyancy. In a stretch stresses
+/// are linear over the depth, so that the ratio of two is largest at an end; where nothing lies above it is the same
+/// in all of the stretch.
+template <typename Visit>
+void for_each_end(const ColumnScene &scene, const Visit &f)
+{
+  const SoilProfile soil = soil_profile(scene);
+  const double height = soil.height();
+  double top = 0;
+  for (std::size_t k = 0; k < soil.layers.size(); ++k)
+    {
+      const double bottom = top + soil.layers[k].thickness;
+      for (const double depth : {top, std::clamp(soil.water_table, top, bottom), bottom})
+        if (const PlaneStress stress = soil.in_situ(height - depth, scene.load.surcharge); stress.normal > 0)
+          f(k, depth, stress);
+      top = bottom;
+    }
+}
+
+double mean_pressure(const ColumnLayer &layer, const PlaneStress &stress)
+{
+  return (1 + 2 * layer.k0) / 3 * stress.normal;
+}
+
+/// Distance of a depth to the nearest boundary between elements, and that boundary. m
+std::array<double, 2> nearest_boundary(const ColumnScene &scene, double depth)
+{
+  std::array<double, 2> best = {depth, 0};
+  double top = 0;
+  for (const ColumnLayer &layer : scene.layers)
+    {
+      for (unsigned k = 1; k <= layer.n_cells(); ++k)
+        if (const double z = top + layer.thickness * k / layer.n_cells(); std::abs(z - depth) < best[0])
+          best = {std::abs(z - depth), z};
+      top += layer.thickness;
+    }
+  return best;
+}
+
+void check_table(const SceneDocument &document, const ColumnScene &scene)
+{
+  const double table = scene.water.table;
+  if (table == 0)
+    return;
+  if (scene.water.drainage != Drainage::coupled)
+    document.refuse("water.table",
+                    fmt::format("has no meaning if water.drainage is \"{}\". Give drainage = \"coupled\" (with a "
+                                "permeability of 0 m/s if no water shall move), or remove it.",
+                                drainage_names[static_cast<int>(scene.water.drainage)]));
+  if (scene.slope.water == SlopeWater::submerged)
+    document.refuse("water.table", "must be 0 m if slope.water is \"submerged\": the water stands above the surface. "
+                                   "Remove one of them.");
+  if (table >= scene.height() - near)
+    document.refuse("water.table", fmt::format("must be less than the height of the soil, {} m. Give drainage = "
+                                               "\"dry\" if there is no water.",
+                                               number_text(scene.height())));
+  if (const auto [distance, boundary] = nearest_boundary(scene, table); distance > near)
+    document.refuse("water.table", fmt::format("must be on a boundary between elements, of which the nearest is at {} "
+                                               "m. Give that, or end a layer at the table.",
+                                               number_text(boundary)));
+}
+} // namespace
+
+SceneFragment<Slope> slope_keys() { return {keys}; }
+
+std::optional<SlopeSafety> slope_safety(const ColumnScene &scene)
+{
+  std::optional<SlopeSafety> least;
+  for_each_end(scene, [&](std::size_t k, double depth, const PlaneStress &stress) {
+    const ColumnLayer &layer = scene.layers[k];
+    if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
+      return;
+    const double factor = layer.iwan.strength_ratio * mean_pressure(layer, stress) / stress.shear;
+    if (!least || factor < least->factor)
+      least = {factor, depth, k};
+  });
+  return least;
+}
+
+void check_slope(const SceneDocument &document, const ColumnScene &scene)
+{
+  check_table(document, scene);
+  for_each_end(scene, [&](std::size_t k, double depth, const PlaneStress &stress) {
+    const ColumnLayer &layer = scene.layers[k];
+    if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
+      return;
+    const double deviator = std::hypot((1 - layer.k0) * stress.normal / std::sqrt(3.0), stress.shear);
+    if (deviator > layer.iwan.strength_ratio * mean_pressure(layer, stress))
+      document.refuse(
+          fmt::format("layer.{}.strength_ratio", k),
+          fmt::format(
+              "is too low for the slope to stand: at a depth of {:.4g} m the static shear stress is {:.4g} kPa, "
+              "at a normal effective stress of {:.4g} kPa and with k0 = {}. Give a smaller slope.angle, a "
+              "larger strength_ratio, a k0 nearer to 1, or a deeper water.table.",
+              depth, stress.shear / 1e3, stress.normal / 1e3, number_text(layer.k0)));
+  });
+}
+} // namespace isostat

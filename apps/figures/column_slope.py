@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figure of a slope: how far its surface has moved, and where the soil has sheared."""
+import numpy as np
+
+from .column_soil import depth_axis
+from .common import BLACK, BLUE, GREY, RED, panel_letter, plt
+
+LEFT = {"end_displacement", "end_gamma_xz", "tau_0", "node_depth"}
+
+
+def is_slope(column):
+    return LEFT <= column.profiles.keys()
+
+
+def spreading(column):
+    """Displacement of the surface in time; at the end displacement and shear strain over the depth, beside the static
+    shear stress at the start."""
+    if not is_slope(column):
+        return None
+    figure, panels = plt.subplot_mosaic([["time", "time", "time"], ["moved", "strain", "stress"]],
+                                        figsize=(7.2, 6.2), height_ratios=(1, 1.9), layout="constrained")
+    panels["strain"].sharey(panels["moved"])
+    panels["stress"].sharey(panels["moved"])
+    if column.has("surface_ux"):
+        panels["time"].plot(column.time, column["surface_ux"], color=BLACK)
+    panels["time"].axhline(0, color=GREY, linewidth=0.7)
+    panels["time"].set_xlim(column.time[0], column.time[-1])
+    panels["time"].set_xlabel("Time (s)")
+    panels["time"].set_ylabel("Surface, downslope (m)")
+    depth = column.profiles["depth"]
+    panels["moved"].plot(column.profiles["end_displacement"], column.profiles["node_depth"], color=BLUE)
+    panels["moved"].set_xlabel("Downslope at the end (m)")
+    panels["moved"].set_ylabel("Depth (m)")
+    panels["strain"].plot(100 * column.profiles["end_gamma_xz"], depth, color=BLACK)
+    panels["strain"].set_xlabel(r"$\gamma_{xz}$ at the end (%)")
+    panels["stress"].plot(column.profiles["tau_0"] / 1e3, depth, color=RED, label=r"$\tau_0$")
+    panels["stress"].plot(column.profiles["sigma_v0"] / 1e3, depth, color=GREY, label=r"$\sigma_{v0}^\prime$")
+    panels["stress"].set_xlabel("Stress at the start (kPa)")
+    panels["stress"].legend()
+    for (name, axes), letter in zip(panels.items(), "abcd"):
+        panel_letter(axes, letter)
+        if name != "time":
+            depth_axis(column, axes, depth)
+            axes.set_xlim(left=min(0.0, float(np.nanmin(axes.get_xlim()))))
+    return figure

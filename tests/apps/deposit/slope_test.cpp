@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sloping ground and water tables of a column's scene: what stands, and what is refused.
+#include "apps/deposit/slope.hpp"
+
+#include "tests/apps/deposit/scene_texts.hpp"
+#include "tests/support/near.hpp"
+#include "tests/support/refusal.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+constexpr double degree = std::numbers::pi / 180;
+
+std::string slope(const std::string &angle, const std::string &more = "")
+{
+  return "[slope]\nangle = \"" + angle + " deg\"\n" + more;
+}
+
+const std::string wet_sand = sand + "permeability = \"1e-5 m/s\"\n";
+
+void expect_refusal(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
+{
+  test::expect_parts(test::refusal([&] { parse_column_scene(text, "column.toml", overrides); }), parts);
+}
+
+TEST(SlopeScene, KeysComeThroughTextAndGoToTheSoil)
+{
+  const ColumnScene scene =
+      parse_column_scene(wet_sand + "[water]\ntable = \"2 m\"\n" + slope("4", "water = \"seepage\"\n") + dynamic, "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
+  const SoilProfile soil = soil_profile(scene);
+  EXPECT_EQ(soil.water_table, 2);
+  EXPECT_NEAR_BECAUSE(soil.slope.tangent, std::tan(4 * degree), 1e-15, "round-off");
+  const ColumnScene level = parse_column_scene(wet_sand + dynamic, "s");
+  EXPECT_EQ(level.slope, Slope{});
+  EXPECT_EQ(level.water.table, 0);
+}
+
+TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
+{
+  const std::string loose = sand + "k0 = 1.0\nstrength_ratio = 0.6\n"; // tan(phi) of simple shear
+  const auto factor = [](const std::string &text) { return slope_safety(parse_column_scene(text, "s"))->factor; };
+  constexpr test::Tolerance exact{1e-12, "round-off of a closed form"};
+  const double tangent = std::tan(10 * degree);
+  EXPECT_NEAR_BECAUSE(factor(loose + dry + slope("10") + dynamic), 0.6 / tangent, exact);
+  EXPECT_NEAR_BECAUSE(factor(loose + undrained + slope("10", "water = \"submerged\"\n") + dynamic), 0.6 / tangent,
+                      exact);
+  // seepage parallel to a surface that the water reaches: gamma'/gamma tan(phi)/tan(angle)
+  EXPECT_NEAR_BECAUSE(factor(loose + undrained + slope("10") + dynamic), 0.5 * 0.6 / tangent, exact);
+  const ColumnScene deep = parse_column_scene(
+      loose + "permeability = \"1e-5 m/s\"\n[water]\ntable = \"2 m\"\n" + slope("10") + dynamic, "s");
+  const SlopeSafety safety = *slope_safety(deep); // 5 m of 2000 kg/m3, water in the lower 3 m: 1 - 3/5 1000/2000
+  EXPECT_NEAR_BECAUSE(safety.factor, 0.7 * 0.6 / tangent, exact);
+  EXPECT_EQ(safety.depth, 5);
+  EXPECT_FALSE(slope_safety(parse_column_scene(loose + dry + dynamic, "level")));
+  EXPECT_FALSE(slope_safety(parse_column_scene(layer + dry + slope("10") + dynamic, "elastic")));
+}
+
+TEST(SlopeScene, WhatCannotStandIsRefused)
+{
+  const std::string loose = sand + "k0 = 1.0\nstrength_ratio = 0.6\n";
+  expect_refusal(loose + dry + slope("31") + dynamic,
+                 {"column.toml:7: layer.0.strength_ratio = 0.6; is too low for the slope to stand", "depth of 5 m",
+                  "slope.angle"});
+  EXPECT_NO_THROW(parse_column_scene(loose + dry + slope("30.9") + dynamic, "s")); // tan = 0.5985
+  expect_refusal(loose + undrained + slope("17") + dynamic, {"static shear stress is", "k0 = 1"});
+  EXPECT_NO_THROW(parse_column_scene(loose + undrained + slope("16.6") + dynamic, "s")); // tan = 0.298
+  // beside a deviator of k0 = 0.5, sqrt(0.6^2 - 0.75/3) p' is left: tan = 0.2211
+  expect_refusal(sand + "strength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
+  EXPECT_NO_THROW(parse_column_scene(sand + "strength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
+  expect_refusal(loose + dry + slope("61") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});
+  expect_refusal(loose + dry + slope("-1") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});
+}
+
+TEST(SlopeScene, WaterTablesThatAreRefused)
+{
+  const auto table = [](const std::string &depth) { return "[water]\ntable = \"" + depth + " m\"\n"; };
+  EXPECT_NO_THROW(parse_column_scene(wet_sand + table("2") + dynamic, "s"));
+  expect_refusal(wet_sand + table("2.3") + dynamic, {"column.toml:8: water.table = 2.3 m", "nearest is at 2 m"});
+  expect_refusal(wet_sand + table("5") + dynamic, {"less than the height of the soil, 5 m", "\"dry\""});
+  expect_refusal(wet_sand + table("-1") + dynamic, {"water.table", ">= 0 m"});
+  for (const char *drainage : {"dry", "undrained"})
+    expect_refusal(wet_sand + table("2") + dynamic, {"has no meaning", drainage, "\"coupled\""},
+                   {std::string("water.drainage=") + drainage});
+  expect_refusal(wet_sand + table("2") + slope("4", "water = \"submerged\"\n") + dynamic,
+                 {"must be 0 m if slope.water is \"submerged\""});
+  // light soil may lie above the table, not below it
+  EXPECT_NO_THROW(
+      parse_column_scene("[[layer]]\nthickness = \"2 m\"\ncells = 2\nmaterial = \"elastic\"\n"
+                         "shear_velocity = \"100 m/s\"\ndensity = \"900 kg/m3\"\npermeability = \"0 m/s\"\n" +
+                             wet_sand + table("2") + dynamic,
+                         "s"));
+  expect_refusal(wet_sand + "density = \"900 kg/m3\"\n" + table("2") + dynamic, {"floats away"});
+}
+} // namespace
+} // namespace isostat

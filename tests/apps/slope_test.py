@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""soil_column on a slope with a water table in the soil: what it leaves, on how many ranks and after which restarts."""
+import json
+import math
+import re
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+
+from column_support import ColumnTest, SOIL, settings
+from support import PATIENCE, main
+
+SLOPE = SOIL.replace('drainage = "coupled"', 'drainage = "coupled"\ntable = "1 m"\n[slope]\nangle = "5 deg"').replace(
+    'amplitude = "0.1 g"', 'amplitude = "0.2 g"')
+DISTRIBUTED = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=2)
+
+
+class Slope(ColumnTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("slope.toml", SLOPE)
+
+    def profiles(self, name):
+        with h5py.File(self.folder / name / "profiles.h5") as file:
+            return {key: np.asarray(values) for key, values in file.items()}
+
+    def test_what_it_leaves(self):
+        rows, summary = self.rows_of(SLOPE)
+        self.assertGreater(summary["downslope"], 0.01)
+        text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
+        self.assertRegex(text, r"slope +5 deg, factor of safety at the start \d\.\d+ at a depth of 3\.00 m")
+        self.assertRegex(text, r"moved downslope +0\.\d+ m at the surface")
+        left = self.profiles("run")
+        self.assertEqual(left["end_displacement"][0], summary["downslope"])
+        self.assertEqual(left["end_displacement"][-1], 0)
+        self.assert_near(rows["surface_ux"][-1], summary["downslope"], 0.2 * summary["downslope"],
+                         "the end is half a step and up to 10 ms after the last row")
+        self.assertEqual(np.abs(left["end_gamma_xz"]).max(), abs(summary["end_gamma"]))
+        # statics: 2000 kg/m3 everywhere, water below 1 m; sin and cos of 5 deg
+        weight = 9.81 * 2000 * left["depth"]
+        self.assert_near(left["tau_0"], weight * math.sin(math.radians(5)), 1e-9 * weight.max(), "round-off")
+        effective = weight - 9810 * np.maximum(0, left["depth"] - 1)
+        self.assert_near(left["sigma_v0"], effective * math.cos(math.radians(5)), 1e-9 * weight.max(), "round-off")
+        self.assertEqual(rows["d0_tau_xz"][0], left["tau_0"][np.argmin(abs(left["depth"] - rows["d0_depth"][0]))])
+        self.assertEqual(summary["slope"], 5)
+
+    def test_level_ground_says_nothing_of_slopes(self):
+        _, summary = self.rows_of(SOIL)
+        self.assertFalse({"slope", "downslope", "factor_of_safety"} & summary.keys())
+        self.assertNotIn("tau_0", self.profiles("run"))
+
+    def test_no_pore_pressure_above_the_table(self):
+        rows, _ = self.rows_of(SLOPE.replace('depths = ["1 m"', 'depths = ["0.5 m", "2 m"'))
+        self.assertEqual(np.abs(rows["d0_u"]).max(), 0)
+        self.assertGreater(np.abs(rows["d1_u"]).max(), 100)
+
+    def test_the_slope_at_rest_stays_still_to_the_bit(self):
+        rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", SLOPE))
+        self.assertEqual(summary["downslope"], 0)
+        for name in ("surface_ux", "surface_uz", "surface_ax", "d0_u", "d1_u"):
+            self.assertEqual(np.abs(rows[name]).max(), 0, name)
+        self.assertGreater(rows["d1_tau_xz"][0], 0)
+
+    def test_ranks_are_alike_to_the_bit(self):
+        options = settings(output__profile_interval="0.05 s", analysis__duration="0.5 s")
+        for n in (1, 2, 3):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
+            self.assert_same_files("on1", f"on{n}")
+
+    def test_one_mesh_over_ranks(self):
+        found = {}
+        for n in (1, 2, 3):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *DISTRIBUTED,
+                                               *settings(analysis__duration="0.5 s")))
+            found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
+            for key in ("downslope", "end_gamma", "end_gamma_depth", "max_ru", "settlement"):
+                self.assert_near(found[n][key], found[1][key], 1e-9 * abs(found[1][key]),
+                                 f"round-off of sums over the ranks ({key})")
+
+    def test_goes_on_where_it_was_stopped(self):
+        options = settings(output__checkpoint="1e-9 min", output__profile_interval="0.1 s", analysis__duration="4 s")
+        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
+        with subprocess.Popen(self.command("soil_column", self.scene, "-o", "parts", "--no-figures", *options),
+                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+            end = time.time() + 60 * PATIENCE
+            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGTERM)
+            self.assertIn(b"go on with --resume", process.communicate(timeout=30 * PATIENCE)[1])
+        self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
+        self.assert_same_files("whole", "parts")
+
+    def test_mistakes(self):
+        for more, words in ((settings(slope__angle="12 deg"), ("layer.0.strength_ratio", "depth of 3 m",
+                                                               "slope.angle")),
+                            (settings(water__table="1.2 m"), ("--set water.table = 1.2 m", "nearest is at 1 m")),
+                            (settings(water__drainage="undrained"), ("water.table", "\"coupled\""))):
+            result = self.run_column(self.scene, "-o", "out", *more)
+            self.assertEqual(result.returncode, 2)
+            for word in words:
+                self.assertIn(word, result.stderr)
+            self.assertFalse((self.folder / "out").exists())
+
+
+if __name__ == "__main__":
+    main()
