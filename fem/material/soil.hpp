@@ -94,7 +94,7 @@ struct SoilProfile
   std::size_t cell_at(double z) const;  ///< number of the cell at a height, from the base up   @pre not on a boundary
   bool is_wet(double z) const { return z < height() - water_table; }
   double hydrostatic_pressure(double z) const; ///< of water below its table, above the atmospheric pressure, Pa
-  /// Statics of the infinite slope, docs/theory_column.md (29): stresses of the soil's own weight and of a uniform
+  /// Statics of the infinite slope, docs/theory_column.md (32): stresses of the soil's own weight and of a uniform
   /// vertical load on the surface (Pa of the surface, inclined or not).
   PlaneStress in_situ(double z, double surcharge = 0) const;
   /// Its normal stress: on level ground the vertical effective stress, compression positive. Pa
