@@ -13,9 +13,10 @@ MIN_COMPARED = 0.01  # time factor from which the exact series is compared: earl
 
 def exact_solution(column):
     layer, load = column.uniform_elastic(), column.step_load()
-    if not layer or not load or layer["permeability"] <= 0 or layer["saturation"] < 1 or column.water["henry"] > 0:
-        return None  # the stiffness of air rises with the depth
-    return Terzaghi(layer, column.water, load)
+    if not layer or not load or layer["permeability"] <= 0 or column.water["table"] > 0:
+        return None
+    has_air = layer["saturation"] < 1 or column.water["henry"] > 0  # its stiffness rises with the depth
+    return None if has_air else Terzaghi(layer, column.water, load)
 
 
 def chosen_rows(time, exact):

@@ -144,7 +144,7 @@ class Column:
         if base.get("kind") == "compliant":
             self.base = {"density": quantity(base["density"]), "velocity": quantity(base["shear_velocity"])}
         water = scene.get("water", {})
-        self.water = {"density": quantity(water.get("density"), 1000.0),
+        self.water = {"density": quantity(water.get("density"), 1000.0), "table": quantity(water.get("table"), 0.0),
                       "gravity": quantity(water.get("gravity"), 9.81),
                       "bulk_modulus": quantity(water.get("bulk_modulus"), 2.2e9),
                       "relative_viscosity": float(water.get("relative_viscosity", 1)),

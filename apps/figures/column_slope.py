@@ -9,7 +9,8 @@ LEFT = {"end_displacement", "end_gamma_xz", "tau_0", "node_depth"}
 
 
 def is_slope(column):
-    return LEFT <= column.profiles.keys()
+    """Whether it is one that has moved."""
+    return LEFT <= column.profiles.keys() and np.abs(column.profiles["end_displacement"]).max() > 1e-6
 
 
 def spreading(column):

@@ -97,7 +97,7 @@ class Slope(ColumnTest):
     def test_mistakes(self):
         for more, words in ((settings(slope__angle="12 deg"), ("layer.0.strength_ratio", "depth of 3 m",
                                                                "slope.angle")),
-                            (settings(water__table="1.2 m"), ("--set water.table = 1.2 m", "nearest is at 1 m")),
+                            (settings(water__table="1.2 m"), ("water.table = 1.2 m", "nearest is at 1 m")),
                             (settings(water__drainage="undrained"), ("water.table", "\"coupled\""))):
             result = self.run_column(self.scene, "-o", "out", *more)
             self.assertEqual(result.returncode, 2)
