@@ -33,7 +33,7 @@ public:
         velocities_(shear_velocities(scene_, *soil_.material, space_))
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)
-      coarse_ = coarse_elements(scene_, velocities_, space_, motions_);
+      warnings_ = scene_warnings(scene_, velocities_, space_, motions_);
     if (request.use != FolderUse::resume)
       return;
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
@@ -116,7 +116,7 @@ protected:
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
   std::vector<double> velocities_;            ///< of shear waves at every point at the start of the whole run, m/s
   std::optional<Spreading> spreading_;        ///< of a slope, at the end
-  std::string coarse_;                        ///< what is wrong with the mesh, if something is
+  std::vector<std::string> warnings_;         ///< of the scene, on the soil of the start
   ColumnInstant instant_;
   Progress progress_{request_.quiet, 5};
   RunTimes times_;
@@ -230,8 +230,7 @@ private:
       summary.point_depths.push_back(point.depth);
     follower_.gather();
     summary.peaks = follower_.peaks;
-    if (!coarse_.empty())
-      summary.warnings.push_back(coarse_);
+    summary.warnings = warnings_;
     summary.last = files_.history().state;
     summary.expansions = files_.history().expansions();
     summary.spreading = spreading_;

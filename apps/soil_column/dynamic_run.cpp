@@ -72,8 +72,9 @@ private:
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
-    if (!this->coarse_.empty() && !resumed_ && ranks().first())
-      fmt::print(stderr, "warning: {}\n", this->coarse_);
+    for (const std::string &warning : this->warnings_)
+      if (!resumed_ && ranks().first())
+        fmt::print(stderr, "warning: {}\n", warning);
     soil_.material->seconds = 0;
   }
 

@@ -99,4 +99,18 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
       slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, worst,
       std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
 }
+
+std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
+                                        const CellTables &mesh, const std::array<Motion, 3> &motions)
+{
+  std::vector<std::string> warnings;
+  if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
+    warnings.push_back(std::move(coarse));
+  const auto vertical = [](const ColumnMotion &motion) { return motion.axis == Axis::z; };
+  if (scene.water.drainage == Drainage::undrained && std::ranges::any_of(scene.motions, vertical))
+    warnings.push_back(
+        "the motion along z moves the column as a rigid body: without drainage its volume is constant, and "
+        "no P wave runs in it. Set water.drainage = \"coupled\" for P waves.");
+  return warnings;
+}
 } // namespace isostat

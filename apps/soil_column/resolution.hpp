@@ -30,4 +30,9 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
 /// @return empty  enough nodes, or nothing moves     tested: tests/apps/soil_column_test.py
 std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
                             const std::array<Motion, 3> &motions);
+
+/// What a user should know before a dynamic run: coarse_elements(), and a motion along z that makes no waves.
+/// Collective.   tested: tests/apps/soil_column_test.py, tests/apps/column_water_test.py
+std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
+                                        const CellTables &mesh, const std::array<Motion, 3> &motions);
 } // namespace isostat

@@ -61,7 +61,8 @@ class Water(ColumnTest):
 
     def test_an_undrained_column_follows_its_base_along_z(self):
         text = SOIL.replace('axis = "y"', 'axis = "z"').replace('"coupled"', '"undrained"')
-        rows, _ = self.rows_of(text, "rigid")
+        rows, summary = self.rows_of(text, "rigid")
+        self.assertIn("moves the column as a rigid body", summary["warnings"][-1])
         self.assertGreater(np.abs(rows["input_az"]).max(), 0.1)
         self.assertEqual(rows["surface_az"].tobytes(), rows["input_az"].tobytes())
 

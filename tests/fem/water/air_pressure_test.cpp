@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "fem/material/elastic.hpp"
+#include "fem/material/iwan.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/support/columns.hpp"
@@ -157,6 +158,39 @@ TEST(AirPressure, GoesOnToTheBit)
     }
   EXPECT_EQ(whole.save().vectors, resumed.save().vectors);
   EXPECT_GT(*std::ranges::max_element(whole.save().vectors["pressure"]), 1);
+}
+
+/// Sand that dilates without drainage, water in which air is dissolved: without it the water takes any tension.
+TEST(AirPressure, DilatingSandDrawsAirOutOfSolution)
+{
+  const auto lowest = [](AirLaw air, double henry) {
+    const SoilProfile profile = wet_soil(1, henry, air);
+    const Discretisation<1> space({.soil = profile}, shaken_supports(false));
+    Iwan sand({.contraction = 0, .dilation = 1, .critical_pressure = 2e6}, space.n_points());
+    std::vector<Stress> initial;
+    for (const Place &at : space.position)
+      {
+        const double s = -profile.vertical_effective_stress(at[2], 50e3);
+        initial.push_back({s, s, s, 0, 0, 0});
+      }
+    sand.set_initial_stress(initial);
+    DynamicsSettings settings{.safety = 0.3, .drainage = Drainage::coupled};
+    settings.motion[0] = harmonic_motion(12, 3, 2, 0.5, 1e-3);
+    Dynamics run(space, sand, settings);
+    double p = 0;
+    while (run.time() < 2)
+      {
+        run.step();
+        p = std::min(p, std::ranges::min(run.point_pressure()));
+      }
+    return p;
+  };
+  const double tension = lowest(AirLaw::constant, 0), bounded = lowest(AirLaw::boyle, 0.02);
+  std::printf("  lowest excess pressure %.1f kPa without air, %.1f kPa with air in solution\n", 1e-3 * tension,
+              1e-3 * bounded);
+  EXPECT_LT(tension, -101325 - 9810 * height); // below zero, absolute, at any depth
+  EXPECT_GT(bounded, -101325 - 9810 * height);
+  EXPECT_LT(bounded, -20e3);
 }
 
 TEST(AirPressure, StaticsRefuseBoylesLaw)
