@@ -174,6 +174,22 @@ def liquefaction(folder):
     return write(folder, scene("recorded_motion"), {name: values[::step] for name, values in history.items()}, profiles)
 
 
+def capped(folder):
+    """The liquefaction below a cap: the uppermost point below 2 m expands, all others compress."""
+    liquefaction(folder)
+    (folder / "scene.toml").write_text(scene("silt_cap"), encoding="utf-8")
+    header, *rows = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
+    time = np.array([float(row.split(",")[1]) for row in rows])
+    rows = [f"{row},{1e-3 * t:.10g}" for row, t in zip(rows, time)]
+    (folder / "history.csv").write_text("\n".join([f"{header},expansion_0 (m)", *rows]) + "\n", encoding="utf-8")
+    with h5py.File(folder / "profiles.h5", "r+") as file:
+        depth, t = (file[name][()] for name in ("depth", "time"))
+        strain = np.where(depth < 2, 0.0, 1e-5)
+        strain[np.argmax(depth > 2)] = -1e-3
+        file["eps_zz"] = np.outer(t, strain)
+    return folder
+
+
 # --- grains ----------------------------------------------------------------------------------------------------------
 
 

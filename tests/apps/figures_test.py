@@ -158,6 +158,11 @@ class Figures(ToleranceTest):
         self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles",
                     "velocity", "ru_map", "histories", "loops")
 
+    def test_expansion_under_a_cap(self):
+        folder = fixture.capped(self.folder / "run")
+        self.assertEqual(Column(folder).capped_boundaries(), [2.0])
+        self.expect(folder, "motions", "spectra", "transfer", "profiles", "ru_map", "histories", "loops", "expansion")
+
     def test_grains(self):
         self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "velocity",
                     "ru_map", "histories", "loops", "grains_profiles", "grains_map", "grains_history")
