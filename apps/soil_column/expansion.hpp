@@ -6,7 +6,8 @@
 
 namespace isostat
 {
-/// Water that gathers under a less permeable layer: there the soil expands while all below it compresses, and
+/// Water that gathers under a less permeable layer (docs/theory_column.md, 31): there the soil expands while all below
+/// it compresses, and
 ///
 ///     E = max over z in the layer below the interface z_i of (u_z(z_i) - u_z(z)) = int eps_v dz from z to z_i >= 0, m
 ///

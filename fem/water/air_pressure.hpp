@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// The pore pressure of a time step where air in the water follows Boyle's law: docs/theory_column.md (29). In place of
+/// The pore pressure of a time step where air in the water follows Boyle's law: docs/theory_column.md (30). In place of
 /// S (3p - 4p' + p'')/(2 dt), linear, the water's equation (5) has
 ///
 ///     int N_i (3 Theta(p) - 4 Theta(p') + Theta(p''))/(2 dt)                           Theta: PoreFluid::volume()
