@@ -342,6 +342,11 @@ constexpr Key sand_keys[] = {
   {.path = "layer.lot", .kind = Kind::integer, .value = "0", .kinds = grains,
    .text = "Another number draws other seeds of the `mixed_realisations`.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.lot; }},
+  {.path = "layer.lot_length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+   .range = not_negative, .kinds = grains,
+   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies over a "
+           "length of its own, whatever the mesh; 0 m: each point draws for itself.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.lot_length; }},
 };
 
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};

@@ -15,10 +15,16 @@ class Run:
     realisations: int
     member: int
     viscosity: float = 0.1  # ms, of the skeleton
+    length: float = 0  # m; points so near to each other have the same seeds
+
+    @property
+    def sample(self):
+        return self.mixed, self.realisations, self.viscosity, self.length
 
     @property
     def group(self):
-        return f"{'mixed' if self.mixed else 'same'}_p{self.points}_m{self.realisations}_v{self.viscosity:g}"
+        depths = (f"blocks{self.length:g}" if self.length else "mixed") if self.mixed else "same"
+        return f"{depths}_p{self.points}_m{self.realisations}_v{self.viscosity:g}"
 
     @property
     def name(self):
@@ -30,26 +36,29 @@ class Run:
         keys = {"layer.0.cells": self.points // 2, "grains.realisations": self.realisations,
                 "analysis.viscosity": f"{self.viscosity:g} ms"}
         if self.mixed:
-            return {**keys, "layer.0.mixed_realisations": MIXED, "layer.0.lot": self.member}
+            return {**keys, "layer.0.mixed_realisations": MIXED, "layer.0.lot": self.member,
+                    **({"layer.0.lot_length": f"{self.length:g} m"} if self.length else {})}
         return {**keys, "layer.0.realisation": self.member * self.realisations}
 
 
-# ((mixed, points, realisations, viscosity in ms), members), the most telling first
+# (mixed, realisations, viscosity in ms, length in m); samples with their points and members, the most telling first
+SAME, OTHER, BLOCKS, WITHOUT, MORE = ((False, 1, 0.1, 0), (True, 1, 0.1, 0), (True, 1, 0.1, 0.8), (False, 1, 0, 0),
+                                       (False, 3, 0.1, 0))
 STAGES = [
-    [((False, 10, 1, 0.1), range(3)), ((True, 10, 1, 0.1), range(3)), ((False, 10, 1, 0), range(3)),
-     ((False, 4, 1, 0.1), range(3)), ((True, 4, 1, 0.1), range(3))],
-    [((False, 20, 1, 0.1), range(3)), ((True, 20, 1, 0.1), range(3)), ((False, 10, 3, 0.1), range(3))],
-    [((False, 10, 1, 0.1), range(3, 8)), ((True, 10, 1, 0.1), range(3, 8)), ((False, 10, 1, 1), range(3)),
-     ((False, 4, 1, 0.1), range(3, 8)), ((True, 4, 1, 0.1), range(3, 8))],
-    [((False, 10, 10, 0.1), range(2)), ((False, 40, 1, 0.1), range(2)), ((True, 40, 1, 0.1), range(2)),
-     ((True, 10, 3, 0.1), range(3))],
-    [((False, 20, 1, 0.1), range(3, 6)), ((True, 20, 1, 0.1), range(3, 6)), ((True, 20, 3, 0.1), range(3)),
-     ((False, 10, 3, 0.1), range(3, 6)), ((False, 10, 10, 0.1), range(2, 4))],
+    [(SAME, 10, range(3)), (OTHER, 10, range(3)), (WITHOUT, 10, range(3)), (SAME, 4, range(3)), (OTHER, 4, range(3))],
+    [(SAME, 20, range(1)), (OTHER, 20, range(1)), (BLOCKS, 10, range(3)), (MORE, 10, range(1))],
+    [(SAME, 20, range(1, 2)), (BLOCKS, 20, range(1)), (OTHER, 20, range(1, 2)), (MORE, 10, range(1, 2))],
+    [(SAME, 10, range(3, 5)), (OTHER, 10, range(3, 5)), (BLOCKS, 20, range(1, 3)), (SAME, 20, range(2, 3)),
+     (OTHER, 20, range(2, 3)), (MORE, 10, range(2, 3))],
+    [((False, 1, 1, 0), 10, range(3)), (SAME, 10, range(5, 8)), (OTHER, 10, range(5, 8)), (SAME, 4, range(3, 8)),
+     (OTHER, 4, range(3, 8)), ((True, 3, 0.1, 0), 10, range(3)), ((False, 10, 0.1, 0), 10, range(2))],
+    [(SAME, 40, range(2)), (OTHER, 40, range(2)), (BLOCKS, 40, range(2)), (SAME, 20, range(3, 6)),
+     (OTHER, 20, range(3, 6)), (MORE, 10, range(3, 6))],
 ]
 
 
 def runs():
     """Stage by stage, member by member over the samples of a stage, so that a campaign that ends early has some of
     each."""
-    return [Run(mixed, points, realisations, member, viscosity) for stage in STAGES for member in range(8)
-            for (mixed, points, realisations, viscosity), members in stage if member in members]
+    return [Run(mixed, points, realisations, member, viscosity, length) for stage in STAGES for member in range(8)
+            for (mixed, realisations, viscosity, length), points, members in stage if member in members]

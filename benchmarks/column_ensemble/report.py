@@ -81,7 +81,8 @@ def mean_error(values):
 def label(run):
     packings = "one packing" if run.realisations == 1 else f"{run.realisations} packings"
     viscosity = "" if run.viscosity == 0.1 else f", viscosity {run.viscosity:g} ms"
-    return f"{'other' if run.mixed else 'same'} at each depth, {run.points} points, {packings}{viscosity}"
+    depths = f"others every {run.length:g} m" if run.length else "others at each depth" if run.mixed else "the same"
+    return f"{depths}, {run.points} points, {packings}{viscosity}"
 
 
 def table(samples):
@@ -121,9 +122,21 @@ def pairs(samples, one, other):
         yield f"| {what}, {unit} | {mean:+.{digits}f} ± {error:.{digits}f} | {base:.{digits}f} |"
 
 
-SERIES = ((False, 1, 0.1, BLUE, "o-", "same packing at all depths"), (True, 1, 0.1, RED, "s-", "others at each depth"),
-          (False, 3, 0.1, GREEN, "^-", "same, 3 packings a point"), (False, 10, 0.1, ORANGE, "D-", "same, 10"),
-          (True, 3, 0.1, BLACK, "v-", "others, 3"))
+def meshes(samples):
+    """The same seeds on several meshes: liquefied thickness, settlement and S_a of each."""
+    found = {n: {r.run.member: r for r in samples.get(f"same_p{n}_m1_v0.1", [])} for n in (4, 10, 20, 40)}
+    found = {points: results for points, results in found.items() if results}
+    yield "| seed | " + " | ".join(f"{points} points" for points in found) + " |"
+    yield "|---" * (len(found) + 1) + "|"
+    for member in sorted(set().union(*found.values())):
+        cells = [", ".join(f"{factor * results[member].numbers[name]:.{digits}f} {unit}"
+                           for name, _, unit, factor, digits in QUANTITIES if name in ("thickness", "settlement", "sa"))
+                 if member in results else "" for results in found.values()]
+        yield f"| {member} | " + " | ".join(cells) + " |"
+
+
+SERIES = ((plan.SAME, BLUE, "o-", "same packing at all depths"), (plan.OTHER, RED, "s-", "others at each depth"),
+          (plan.BLOCKS, GREEN, "^-", "others every 0.8 m"), (plan.MORE, ORANGE, "D-", "same, 3 a point"))
 
 
 def against_mesh(samples):
@@ -131,14 +144,12 @@ def against_mesh(samples):
     shown = [q for q in QUANTITIES if q[0] in ("thickness", "strained", "gamma", "sa", "settlement", "redundancy")]
     figure, panels = plt.subplots(2, 3, figsize=(8.4, 5.4), layout="constrained")
     for axes, (name, what, unit, factor, _), letter in zip(panels.flat, shown, "abcdef"):
-        for k, (mixed, realisations, viscosity, colour, line, text) in enumerate(SERIES):
-            rows = [results for results in samples.values() if (results[0].run.mixed, results[0].run.realisations,
-                                                                results[0].run.viscosity) ==
-                    (mixed, realisations, viscosity)]
+        for k, (sample, colour, line, text) in enumerate(SERIES):
+            rows = [results for results in samples.values() if results[0].run.sample == sample]
             rows.sort(key=lambda results: results[0].run.points)
             if not rows:
                 continue
-            shift = 1.03**(k - 2)
+            shift = 1.04**(k - 1.5)
             x = [shift * results[0].run.points for results in rows]
             numbers = [mean_error([factor * r.numbers[name] for r in results]) for results in rows]
             axes.errorbar(x, [m for m, _ in numbers], yerr=[0 if np.isnan(e) else e for _, e in numbers], fmt=line,
@@ -215,7 +226,8 @@ def write(folder, docs):
         raise SystemExit(f"{folder}: no run has finished. Start some: column_ensemble.py BIN {folder} run")
     everything = [r for results in samples.values() for r in results]
     print(f"{len(everything)} runs, {sum(r.seconds for r in everything) / 60:.0f} min of wall time\n")
-    for rows in (table(samples), scatter(samples), pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v0"),
+    for rows in (table(samples), scatter(samples), meshes(samples),
+                 pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v0"),
                  pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v1")):
         print("\n".join(rows) + "\n")
     docs.mkdir(parents=True, exist_ok=True)

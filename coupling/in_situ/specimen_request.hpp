@@ -16,8 +16,9 @@ struct SpecimenRequest
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
   std::string library = {};    ///< file with the specimens of this sand; empty: that of RveMaterialSettings
   std::size_t mixed = 1;       ///< so many seeds, from `realisation` on, of which a point has some by lot; 1: no lot
-  std::size_t lot = 0;         ///< another number, another lot; draw() of who knows the place of the point
-  std::size_t drawn = 0;       ///< what the lot gave, below `mixed`
+  std::size_t lot = 0;         ///< another number, another lot
+  double lot_length = 0; ///< points of the same block, so long and wide, have the same lot; 0: each has its own, m
+  std::size_t drawn = 0; ///< what the lot gave, below `mixed`
 
   /// Which seed, as `realisation` counts, the k-th packing of the point has: after the last of the mixed ones the first
   /// follows, so that up to `mixed` packings of a point differ.

@@ -197,6 +197,10 @@ class Ensemble(ColumnTest):
         scenes = [(self.folder / f"mixed/scenes/0{k}.toml").read_text(encoding="utf-8") for k in range(3)]
         self.assertIn("lot = 2", scenes[2])
         self.assertIn("realisation = 0", scenes[2])
+        blocks = [word.replace("mixed.h5", "blocks.h5") for word in mixed] + settings(layer__0__lot_length="3 m")
+        self.assert_done(self.run_column(self.scene, "-o", "blocks", "-q", *blocks))
+        sources = self.sources("blocks.h5")
+        self.assertEqual((len(sources), len(set(sources))), (6, 2), "one lot for all three depths")
         self.ensemble("same", *settings(grains__cache=self.cache / "same.h5"))
         for member in ("00", "01", "02"):
             self.assertEqual(len(set(self.sources(f"same_{member}.h5"))), 1, "one seed at all depths")
