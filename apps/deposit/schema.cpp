@@ -331,24 +331,6 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.output.spectrum_damping; }},
 };
 
-constexpr Key sand_keys[] = {
-  {.path = "layer.library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5", .kinds = grains,
-   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.library; }},
-  {.path = "layer.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
-   .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
-           "many that differ); 1: all points have the same, brought to the stress of their depth.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.mixed; }},
-  {.path = "layer.lot", .kind = Kind::integer, .value = "0", .kinds = grains,
-   .text = "Another number draws other seeds of the `mixed_realisations`.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.lot; }},
-  {.path = "layer.lot_length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
-   .range = not_negative, .kinds = grains,
-   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies over a "
-           "length of its own, whatever the mesh; 0 m: each point draws for itself.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.lot_length; }},
-};
-
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
 
 constexpr Dimension dimensions[] = {
@@ -386,7 +368,8 @@ const SceneSchema &column_schema()
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
-      sand_keys,
+      splice("layer", drawn_specimen_keys(), grains,
+             [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       loading_keys,
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
       result_keys};

@@ -42,6 +42,24 @@ constexpr Key specimens[] = {
    .text = "Which seed of the library, counted from 0; with several realisations the first of them.",
    .field = [](SpecimenRequest &r) -> Field { return &r.realisation; }},
 };
+
+constexpr Key drawn_specimens[] = {
+  {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5",
+   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.library; }},
+  {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts,
+   .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
+           "many that differ); 1: all points have the same, brought to the stress of their depth.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},
+  {.path = "lot", .kind = Kind::integer, .value = "0",
+   .text = "Another number draws other seeds of the `mixed_realisations`.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.lot; }},
+  {.path = "lot_length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+   .range = not_negative,
+   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies over a "
+           "length of its own, whatever the mesh; 0 m: each point draws for itself.",
+   .field = [](SpecimenRequest &r) -> Field { return &r.lot_length; }},
+};
 // clang-format on
 } // namespace
 
@@ -53,6 +71,7 @@ SceneFragment<RveMaterialSettings> packing_keys()
 }
 
 SceneFragment<SpecimenRequest> specimen_keys() { return {specimens}; }
+SceneFragment<SpecimenRequest> drawn_specimen_keys() { return {drawn_specimens}; }
 
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings)
 {

@@ -14,6 +14,8 @@ class SceneDocument;
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
 SceneFragment<SpecimenRequest> specimen_keys();
+/// Sands of several kinds, and points that draw their specimens: library, mixed_realisations, lot, lot_length.
+SceneFragment<SpecimenRequest> drawn_specimen_keys();
 
 /// What the table of keys cannot say: soil of grains needs a library.
 /// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
