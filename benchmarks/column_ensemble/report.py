@@ -103,7 +103,7 @@ def scatter(samples):
     yield "|---" * (len(QUANTITIES) + 2) + "|"
     for results in samples.values():
         if len(results) > 2:
-            cells = [f"{factor * np.std([r.numbers[name] for r in results], ddof=1):.{digits}f}"
+            cells = [f"{factor * np.std([r.numbers[name] for r in results], ddof=1):.{digits}f}".replace("nan", "-")
                      for name, _, _, factor, digits in QUANTITIES]
             yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
 
@@ -126,7 +126,7 @@ def meshes(samples):
     """The same seeds on several meshes: liquefied thickness, settlement and S_a of each."""
     found = {n: {r.run.member: r for r in samples.get(f"same_p{n}_m1_v0.1", [])} for n in (4, 10, 20, 40)}
     found = {points: results for points, results in found.items() if results}
-    yield "| seed | " + " | ".join(f"{points} points" for points in found) + " |"
+    yield "| realisation | " + " | ".join(f"{points} points" for points in found) + " |"
     yield "|---" * (len(found) + 1) + "|"
     for member in sorted(set().union(*found.values())):
         cells = [", ".join(f"{factor * results[member].numbers[name]:.{digits}f} {unit}"
@@ -161,7 +161,8 @@ def against_mesh(samples):
         axes.set_xticks([4, 10, 20, 40], ["4", "10", "20", "40"])
         axes.minorticks_off()
         axes.set_ylim(bottom=0)
-        axes.set_ylabel(what if unit == "-" else f"{what} ({unit.replace('m/s2', 'm/s$^2$')})")
+        text = what.replace("S_a", "$S_a$").replace("I_R", "$I_R$")
+        axes.set_ylabel(text if unit == "-" else f"{text} ({unit.replace('m/s2', 'm/s$^2$')})")
         panel_letter(axes, letter)
     for axes in panels[1]:
         axes.set_xlabel("points over 4 m")
@@ -169,22 +170,23 @@ def against_mesh(samples):
     return figure
 
 
+KINDS = {"same": ("same", BLUE), "mixed": ("others", RED), "blocks0.8": ("blocks", GREEN)}
+
+
 def over_depth(samples):
     """Largest r_u and strain over the depth, one packing a point: members and median."""
-    groups = [(mixed, points) for mixed in (False, True) for points in (4, 10, 20)
-              if f"{'mixed' if mixed else 'same'}_p{points}_m1_v0.1" in samples]
+    groups = [(kind, points) for kind in KINDS for points in (4, 10, 20) if f"{kind}_p{points}_m1_v0.1" in samples]
     if not groups:
         return None
-    figure, panels = plt.subplots(2, len(groups), figsize=(1.55 * len(groups) + 0.8, 5.6), sharey=True, squeeze=False,
+    figure, panels = plt.subplots(2, len(groups), figsize=(1.35 * len(groups) + 0.8, 5.6), sharey=True, squeeze=False,
                                   layout="constrained")
-    for column, (mixed, points) in enumerate(groups):
-        results, colour = samples[f"{'mixed' if mixed else 'same'}_p{points}_m1_v0.1"], RED if mixed else BLUE
+    for column, (kind, points) in enumerate(groups):
+        results, (word, colour) = samples[f"{kind}_p{points}_m1_v0.1"], KINDS[kind]
         for axes, values, factor in ((panels[0, column], "max_ru", 1), (panels[1, column], "max_gamma", 100)):
             for r in results:
                 axes.plot(factor * getattr(r, values), r.depth, color=GREY, linewidth=0.7)
             axes.plot(factor * np.median([getattr(r, values) for r in results], axis=0), results[0].depth, color=colour)
-        panels[0, column].set_title(f"{'others' if mixed else 'same'}, {points} points\n{len(results)} members",
-                                    fontsize=8.5)
+        panels[0, column].set_title(f"{word}, {points} points\nn = {len(results)}", fontsize=8.5)
         panels[0, column].axvline(LIQUEFIED, color=BLACK, linewidth=0.7, linestyle="--")
         panels[0, column].set_xlim(0, 1.1)
         panels[1, column].set_xscale("log")
