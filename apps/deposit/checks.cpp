@@ -42,11 +42,26 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
 {
   constexpr const char *remedy = "has no effect if water.drainage is \"dry\" or \"undrained\" at constant volume. Give "
                                  "drainage = \"coupled\", or remove it.";
+  double bottom = 0;
+  bool has_free_air = false;
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
-    if (scene.layers[i].saturation < 1 && !feels_air(scene))
-      document.refuse(fmt::format("layer.{}.saturation", i), remedy);
+    {
+      bottom += scene.layers[i].thickness;
+      if (scene.layers[i].saturation == 1)
+        continue;
+      has_free_air = true;
+      const std::string key = fmt::format("layer.{}.saturation", i);
+      if (!feels_air(scene))
+        document.refuse(key, remedy);
+      if (constexpr double near = 1e-6; bottom <= scene.water.table + near)
+        document.refuse(key,
+                        "has no effect above the water table (water.table): there is no pore pressure. Remove it.");
+    }
   if (scene.water.henry > 0 && !feels_air(scene))
     document.refuse("water.henry", remedy);
+  if (scene.water.henry > 0 && !has_free_air && scene.water.air == AirLaw::constant)
+    document.refuse("water.henry", "has no effect in saturated soil whose air has a constant stiffness. Give "
+                                   "water.air = \"boyle\", a layer a saturation below 1, or remove it.");
   if (scene.water.air != AirLaw::boyle)
     return;
   if (!has_boyle_air(soil_profile(scene)) || !feels_air(scene))

@@ -52,6 +52,14 @@ double mean_pressure(const ColumnLayer &layer, const PlaneStress &stress)
   return (1 + 2 * layer.k0) / 3 * stress.normal;
 }
 
+/// Static shear stress that Iwan sand bears beside the deviator of its K0: docs/theory_column.md (33). Pa
+double shear_strength(const ColumnLayer &layer, const PlaneStress &stress)
+{
+  const double strength = layer.iwan.strength_ratio * mean_pressure(layer, stress),
+               normal = (1 - layer.k0) * stress.normal / std::sqrt(3.0);
+  return std::sqrt(std::max(0.0, strength * strength - normal * normal));
+}
+
 /// Distance of a depth to the nearest boundary between elements, and that boundary. m
 std::array<double, 2> nearest_boundary(const ColumnScene &scene, double depth)
 {
@@ -100,7 +108,7 @@ std::optional<SlopeSafety> slope_safety(const ColumnScene &scene)
     const ColumnLayer &layer = scene.layers[k];
     if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
       return;
-    const double factor = layer.iwan.strength_ratio * mean_pressure(layer, stress) / stress.shear;
+    const double factor = shear_strength(layer, stress) / stress.shear;
     if (!least || factor < least->factor)
       least = {factor, depth, k};
   });
@@ -114,8 +122,7 @@ void check_slope(const SceneDocument &document, const ColumnScene &scene)
     const ColumnLayer &layer = scene.layers[k];
     if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
       return;
-    const double deviator = std::hypot((1 - layer.k0) * stress.normal / std::sqrt(3.0), stress.shear);
-    if (deviator > layer.iwan.strength_ratio * mean_pressure(layer, stress))
+    if (stress.shear > shear_strength(layer, stress))
       document.refuse(
           fmt::format("layer.{}.strength_ratio", k),
           fmt::format(

@@ -169,10 +169,10 @@ class Column:
         return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
 
     def capped_boundaries(self):
-        """Of those, the ones below layers that are less permeable than the layer beneath."""
+        """Of those, the ones below the water table and layers that are less permeable than the layer beneath."""
         pairs = zip(self.layers, self.layers[1:])
         return [depth for depth, (above, below) in zip(self.boundaries(), pairs)
-                if above["permeability"] < below["permeability"]]
+                if above["permeability"] < below["permeability"] and depth > self.water["table"] + 1e-6]
 
     def uniform_elastic(self):
         """The one layer if all are elastic and alike; else None."""

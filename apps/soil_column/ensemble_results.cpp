@@ -205,6 +205,8 @@ MemberResults read_member(const EnsembleMember &of, const fs::path &folder)
                                 {liquefied_thickness(points.over.values, points.curves[0].values, scene.height())}});
     }
   number("settlement", "m");
+  if (scene.slope.tangent > 0)
+    number("downslope", "m");
   if (const fs::path grains = folder / "grain_profiles/history.csv"; fs::exists(grains))
     {
       const Curves &curves = member.curves["grains"] = grain_curves(grains);

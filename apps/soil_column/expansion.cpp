@@ -9,14 +9,16 @@ namespace isostat
 template <int dim>
 CapExpansions<dim>::CapExpansions(const ColumnScene &scene, const Discretisation<dim> &space)
 {
-  if (scene.water.drainage != Drainage::coupled || space.shared_out())
+  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed)
     return;
   double z = scene.height();
   for (std::size_t k = 0; k + 1 < scene.layers.size(); ++k)
     {
       const ColumnLayer &above = scene.layers[k], &below = scene.layers[k + 1];
       z -= above.thickness;
-      if (!(above.permeability < below.permeability))
+      constexpr double near = 1e-6;                                   // m
+      const bool wet = scene.height() - z > scene.water.table + near; // at the table itself the soil drains
+      if (!wet || !(above.permeability < below.permeability))
         continue;
       caps_.push_back(
           {.layer = above.name.empty() ? fmt::format("layer {}", k) : above.name, .depth = scene.height() - z});

@@ -23,8 +23,9 @@ struct CapExpansion
   double largest = 0, largest_time = 0; ///< of all rows, m, s
 };
 
-/// E of every interface at which the layer above is less permeable than the one below, along the line x = y = 0, of
-/// every row of the history. None unless displacement and pore pressure are coupled and the mesh is whole on this rank.
+/// E of every interface below the water table at which the layer above is less permeable than the one below, along the
+/// line x = y = 0, of every row of the history. None unless displacement and pore pressure are coupled, and none of a
+/// distributed mesh.
 /// tested: tests/apps/column_water_test.py
 template <int dim>
 class CapExpansions

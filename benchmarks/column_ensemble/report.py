@@ -92,8 +92,11 @@ def table(samples):
     for results in samples.values():
         cells = []
         for name, _, _, factor, digits in QUANTITIES:
-            mean, error = mean_error([factor * r.numbers[name] for r in results])
-            cells.append(f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else ""))
+            values = np.array([factor * r.numbers[name] for r in results], dtype=float)
+            mean, error = mean_error(values)
+            n = np.isfinite(values).sum()  # those that liquefied, say
+            cells.append(f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else "") +
+                         (f" ({n} of {len(values)})" if n < len(values) else ""))
         yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
 
 

@@ -62,6 +62,12 @@ def resistance_at(rows):
     return float(np.exp(level + slope * np.log(TARGET)))
 
 
+def outside(rows):
+    """Whether no test needed as many cycles, or none as few."""
+    n = [row["cycles"] for row in rows if np.isfinite(row["cycles"])]
+    return bool(n) and not min(n) <= TARGET <= max(n)
+
+
 def k_sigma(rows):
     """CSR at TARGET cycles over that of the same seed at 100 kPa."""
     table = []
@@ -72,7 +78,8 @@ def k_sigma(rows):
             ratios = {pressure: resistance_at(some) for pressure, some in at.items() if some}
             for pressure, ratio in ratios.items():
                 table.append({"law": law, "seed": seed, "p0' (kPa)": pressure, "e": at[pressure][0]["e"],
-                              "CSR at 15 cycles": ratio, "K_sigma": ratio / ratios.get(100, np.nan)})
+                              "CSR at 15 cycles": ratio, "extrapolated": outside(at[pressure]),
+                              "K_sigma": ratio / ratios.get(100, np.nan)})
     return table
 
 

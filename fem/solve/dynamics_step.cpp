@@ -132,6 +132,8 @@ void Dynamics::check_motion()
     throw RunFailure(fmt::format("unstable: the time step {:.6g} s is above the stable one, {:.6g} s, at step {} (t = "
                                  "{:.6g} s), because the soil has become stiffer; use a time step below it",
                                  time_step_, stable, step_, time()));
+  if (!lagged_fluids_.empty())
+    check_lagged_compression();
 }
 
 /// The water of an undrained column gives way: volume strain -dTheta = -dp/Q, taken from the step before
@@ -151,10 +153,16 @@ void Dynamics::check_lagged_compression() const
 {
   for (std::size_t q = 0; q < lagged_fluids_.size(); ++q)
     if (const double stiffness = 1 / lagged_fluids_[q].storage(lagged_pressure_[q]); !(moduli_[q].p < stiffness))
-      throw InputError(fmt::format("lagged compressibility at a height of {:.4g} m: the fluid in the pores, K_f/n = "
-                                   "{:.4g} MPa, must be stiffer than the skeleton, {:.4g} MPa, or the pressure "
-                                   "oscillates from step to step. Use coupled drainage with permeability 0.",
-                                   space_.position[q][2], 1e-6 * stiffness, 1e-6 * moduli_[q].p));
+      {
+        const std::string what =
+            fmt::format("lagged compressibility at a height of {:.4g} m: the fluid in the pores, K_f/n = {:.4g} MPa, "
+                        "must be stiffer than the skeleton, {:.4g} MPa, or the pressure oscillates from step to step. "
+                        "Use coupled drainage with permeability 0.",
+                        space_.position[q][2], 1e-6 * stiffness, 1e-6 * moduli_[q].p);
+        if (step_ == 0)
+          throw InputError(what);
+        throw RunFailure(fmt::format("{} At step {} (t = {:.6g} s)", what, step_, time()));
+      }
 }
 
 /// The strains of the step that u has made; the material follows.

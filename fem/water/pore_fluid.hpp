@@ -43,6 +43,6 @@ private:
 
 /// Whether any layer has air that follows Boyle's law.
 bool has_boyle_air(const SoilProfile &soil);
-/// Of a layer at a height z: water at rest up to the surface.
+/// Of a layer at a height z, with the hydrostatic pressure of the soil's water there.
 PoreFluid pore_fluid(const SoilProfile &soil, const Layer &layer, double z);
 } // namespace isostat

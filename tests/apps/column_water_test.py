@@ -44,6 +44,8 @@ class Water(ColumnTest):
         rows, summary = self.rows_of(SOIL)
         self.assertEqual(summary["expansions"], [], "the lower layer is the less permeable one")
         self.assertFalse([name for name in rows if name.startswith("expansion")])
+        _, summary, _ = self.run_scene("silt_cap", "dry_cap", *settings(water__table="2 m", analysis__duration="0.5 s"))
+        self.assertEqual(summary["expansions"], [], "above the water table no water gathers")
 
     def test_air_takes_up_what_water_cannot(self):
         air, _, _ = self.run_scene("three_components", "air", *settings(analysis__duration="7 s"))

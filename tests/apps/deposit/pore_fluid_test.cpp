@@ -53,6 +53,8 @@ TEST(PoreFluidOfAScene, AirNeedsAVolumeThatChanges)
                    {"accepted"});
   expect_complaint(coupled, {"water.air=boyle"}, {"water.air", "has no effect without air"});
   expect_complaint(coupled, {"water.air=boyle", "water.henry=0.02"}, {"accepted"});
+  expect_complaint(coupled, {"water.henry=0.02"}, {"has no effect in saturated soil", "water.air = \"boyle\""});
+  expect_complaint(coupled, {"water.henry=0.02", "layer.0.saturation=0.99"}, {"accepted"});
   expect_complaint(consolidation, {"water.air=boyle", "layer.0.saturation=0.99"},
                    {"must be \"constant\" in a consolidation"});
   expect_complaint(consolidation, {"layer.0.saturation=0.99"}, {"accepted"});

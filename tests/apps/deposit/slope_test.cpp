@@ -57,6 +57,9 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
   const SlopeSafety safety = *slope_safety(deep); // 5 m of 2000 kg/m3, water in the lower 3 m: 1 - 3/5 1000/2000
   EXPECT_NEAR_BECAUSE(safety.factor, 0.7 * 0.6 / tangent, exact);
   EXPECT_EQ(safety.depth, 5);
+  // beside a deviator of k0 = 0.5, sqrt(0.6^2 (2/3)^2 - 0.25/3) of the normal stress is left
+  EXPECT_NEAR_BECAUSE(factor(sand + "strength_ratio = 0.6\n" + dry + slope("10") + dynamic),
+                      std::sqrt(0.16 - 0.25 / 3) / tangent, exact);
   EXPECT_FALSE(slope_safety(parse_column_scene(loose + dry + dynamic, "level")));
   EXPECT_FALSE(slope_safety(parse_column_scene(layer + dry + slope("10") + dynamic, "elastic")));
 }
@@ -70,7 +73,7 @@ TEST(SlopeScene, WhatCannotStandIsRefused)
   EXPECT_NO_THROW(parse_column_scene(loose + dry + slope("30.9") + dynamic, "s")); // tan = 0.5985
   expect_refusal(loose + undrained + slope("17") + dynamic, {"static shear stress is", "k0 = 1"});
   EXPECT_NO_THROW(parse_column_scene(loose + undrained + slope("16.6") + dynamic, "s")); // tan = 0.298
-  // beside a deviator of k0 = 0.5, sqrt(0.6^2 - 0.75/3) p' is left: tan = 0.2211
+  // beside a deviator of k0 = 0.5: tan = 0.2769
   expect_refusal(sand + "strength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
   EXPECT_NO_THROW(parse_column_scene(sand + "strength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
   expect_refusal(loose + dry + slope("61") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});
@@ -96,6 +99,10 @@ TEST(SlopeScene, WaterTablesThatAreRefused)
                              wet_sand + table("2") + dynamic,
                          "s"));
   expect_refusal(wet_sand + "density = \"900 kg/m3\"\n" + table("2") + dynamic, {"floats away"});
+  expect_refusal("[[layer]]\nthickness = \"2 m\"\ncells = 2\nmaterial = \"elastic\"\nsaturation = 0.9\n"
+                 "shear_velocity = \"100 m/s\"\npermeability = \"0 m/s\"\n" +
+                     wet_sand + table("2") + dynamic,
+                 {"column.toml:5: layer.0.saturation = 0.9; has no effect above the water table"});
 }
 } // namespace
 } // namespace isostat
