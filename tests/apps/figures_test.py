@@ -161,7 +161,8 @@ class Figures(ToleranceTest):
     def test_expansion_under_a_cap(self):
         folder = fixture.capped(self.folder / "run")
         self.assertEqual(Column(folder).capped_boundaries(), [2.0])
-        self.expect(folder, "motions", "spectra", "transfer", "profiles", "ru_map", "histories", "loops", "expansion")
+        self.expect(folder, "motions", "spectra", "transfer", "profiles", "velocity", "ru_map",
+                    "histories", "loops", "expansion")
 
     def test_grains(self):
         self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "velocity",
