@@ -5,7 +5,7 @@
     quartz_deposit.py QUARTZ LINEAR FIGURE.png
 
 QUARTZ is a results folder of apps/scenes/column/grains_20m_quartz.toml, LINEAR one of the same scene with
-`--set grains.library=...`, specimens of the linear law. What both have seen is compared: up to the end of the shorter.
+`--set grains.library=...`, specimens of the linear law. Compared is what both have seen: up to the end of the shorter.
 """
 import pathlib
 import sys
@@ -14,7 +14,7 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 
-from paper.drawing import BLUE, ORANGE, STYLE, panels
+from paper.drawing import BLUE, ORANGE, STYLE, legend_below, panels
 from small_strain import published
 
 DENSITY, K0, VOID_RATIO = 1970, 0.5, 0.705  # of the scene and its packings
@@ -50,9 +50,9 @@ def main():
     axes[0, 0].plot(expected, depth, color="black", linestyle="--", linewidth=1, label="correlation for sand")
     axes[0, 0].fill_betweenx(depth, 0.85 * expected, 1.15 * expected, color="black", alpha=0.08, linewidth=0)
     axes[0, 0].set(xlabel="$V_s$ at the start (m/s)", ylabel="Depth (m)", xlim=(0, None), ylim=(20, 0))
-    axes[0, 0].legend()
     axes[0, 1].set(xlabel=f"Largest $r_u$ until {end:.3g} s")
     axes[0, 2].set(xlabel=rf"Largest $|\gamma|$ until {end:.3g} s (%)", xscale="log")
+    legend_below(figure, axes[0, 0], 3, 0.08)
     figure.savefig(figure_path)
 
 

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
+#include <span>
+#include <string_view>
 
 namespace isostat
 {
@@ -49,7 +51,22 @@ int guarded(const std::function<void()> &program)
     }
 }
 
-std::string command_text(int argc, char **argv) { return fmt::format("{}", fmt::join(argv, argv + argc, " ")); }
+std::string command_text(int argc, char **argv)
+{
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789%+,-./:=@_";
+  std::string text;
+  for (std::string argument : std::span(argv, static_cast<std::size_t>(argc)))
+    {
+      if (argument.empty() || argument.find_first_not_of(plain) != std::string::npos)
+        {
+          for (std::size_t at = 0; (at = argument.find('\'', at)) != std::string::npos; at += 4)
+            argument.replace(at, 1, "'\\''");
+          argument = "'" + argument + "'";
+        }
+      text += (text.empty() ? "" : " ") + argument;
+    }
+  return text;
+}
 
 std::string shipped_file(const std::filesystem::path &folder, const std::string &file)
 {

@@ -13,7 +13,8 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
 /// 130 interrupted.
 int guarded(const std::function<void()> &program);
 
-/// The command as it was typed, for the provenance.
+/// The command, for the provenance: what a shell takes as it was typed; words with anything but letters, digits and
+/// %+,-./:=@_ in quotes.
 std::string command_text(int argc, char **argv);
 
 /// The file itself, or the one of this name in a folder of the installation (base/record/installation.hpp).

@@ -156,6 +156,23 @@ void check_depths(const SceneDocument &document, const ColumnScene &scene, const
                                        number_text(scene.height()), i + 1, number_text(depths[i])));
 }
 
+void check_drawn_packings(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
+{
+  const SpecimenRequest &grains = scene.layers[i].grains;
+  const auto key = [&](const char *name) { return fmt::format("layer.{}.{}", i, name); };
+  if (grains.mixed > 1 && grains.mixed < scene.grains.realisations)
+    document.refuse(key("mixed_realisations"),
+                    fmt::format("must be 1 or at least grains.realisations, {}, because the packings of a point "
+                                "differ. Give more seeds.",
+                                scene.grains.realisations));
+  constexpr const char *no_lot = "has no effect if mixed_realisations is 1, as all points have the same seed. Give "
+                                 "mixed_realisations, or remove it.";
+  if (grains.mixed == 1 && grains.lot != 0)
+    document.refuse(key("lot"), no_lot);
+  if (grains.mixed == 1 && grains.lot_length > 0)
+    document.refuse(key("lot_length"), no_lot);
+}
+
 void check_grains(const SceneDocument &document, const ColumnScene &scene)
 {
   if (!scene.has_grains())
@@ -166,12 +183,7 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
   if (scene.needs_common_library())
     check_packings(document, "grains", scene.grains);
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
-    if (const std::size_t mixed = scene.layers[i].grains.mixed; mixed > 1 && mixed < scene.grains.realisations)
-      document.refuse(
-          fmt::format("layer.{}.mixed_realisations", i),
-          fmt::format("must be 1 or at least grains.realisations, {}, because the packings of a point differ. "
-                      "Give more seeds.",
-                      scene.grains.realisations));
+    check_drawn_packings(document, scene, i);
   check_depths(document, scene, "grains.path_depths", scene.grain_output.path_depths);
   check_depths(document, scene, "grains.snapshot_depths", scene.grain_output.snapshot_depths);
 }

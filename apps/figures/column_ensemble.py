@@ -46,6 +46,7 @@ class Ensemble:
         self.names = [row["member"] for row in rows]
         self.members = {name.split(" (")[0]: np.array([float(row[name]) for row in rows])
                         for name in (rows[0] if rows else {}) if name not in ("member", "packings", "record")}
+        self.has_records = any(row["record"] for row in rows)
         self.folders = [folder / "members" / name for name in self.names]
 
     def curve(self, kind, name):
@@ -82,18 +83,16 @@ def member_curve(folder, kind, name):
         return
 
 
-def draw(axes, ensemble, kind, name, upright=False):
-    """Band, median and members; `upright`: the abscissa is the depth, downwards."""
-    curve = ensemble.curve(kind, name)
-    if curve is None:
-        return False
-    x, band = curve
+def draw(axes, ensemble, kind, name, upright=False, alone=False):
+    """Band, median and members; `upright`: the abscissa is the depth, downwards; `alone`: members without the rest."""
+    x, band = ensemble.curve(kind, name)
     for x_member, y in ensemble.each(kind, name):
         axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6)
+    if alone:
+        return
     (axes.fill_betweenx if upright else axes.fill_between)(x, band["p16"], band["p84"], color=BLUE, alpha=0.25,
                                                           linewidth=0, label="16 to 84 %")
     axes.plot(*((band["p50"], x) if upright else (x, band["p50"])), color=BLACK, label="median")
-    return True
 
 
 def over_depth(ensemble, panels):
@@ -151,10 +150,12 @@ def histories(ensemble):
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
                                 layout="constrained")
     for axes, name, letter in zip(rows[:, 0], names, "abcd"):
-        draw(axes, ensemble, "history", name)
+        # of different motions at one moment there is no median
+        draw(axes, ensemble, "history", name, alone=ensemble.has_records and name.startswith("surface_a"))
         axes.set_ylabel(LABELS[name])
         panel_letter(axes, letter)
-    rows[0, 0].legend(loc="upper right", ncols=2)
+        if axes.get_legend_handles_labels()[0] and not figure.legends:
+            figure.legend(*axes.get_legend_handles_labels(), loc="outside upper right", ncols=2)
     rows[-1, 0].set_xlabel("Time (s)")
     return figure
 
@@ -174,7 +175,7 @@ def numbers(ensemble):
         axes.set_xticks([])
         axes.set_title(label, fontsize=8.5)
         if values.min() >= 0:
-            axes.set_ylim(bottom=0)
+            axes.set_ylim(0, 1.08 * max(axes.get_ylim()[1], values.max()))
     return figure
 
 

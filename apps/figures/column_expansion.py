@@ -9,7 +9,8 @@ from .common import BLACK, BLUE, ORANGE, panel_letter, plt
 
 def expansion(column):
     """Net expansion under each less permeable layer and settlement, above the volumetric strain over depth and time."""
-    names = [name for name in column.columns if name.startswith("expansion_")]
+    caps = dict(zip((f"expansion_{k}" for k in range(len(column.columns))), column.capped_boundaries()))
+    names = [name for name in caps if name in column.columns]
     strain = column.profile("eps_zz")
     if not names or strain is None or len(column.profiles["time"]) < 2:
         return None
@@ -19,8 +20,7 @@ def expansion(column):
     figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 5.2), sharex=True, height_ratios=(1, 2),
                                        layout="constrained")
     for name, style in zip(names, ("-", "--", ":", "-.") * len(names)):
-        above = column.capped_boundaries()[int(name.rsplit("_", 1)[1])]
-        top.plot(column.time, 1e3 * column[name], style, color=BLUE, label=f"net expansion below {above:.3g} m")
+        top.plot(column.time, 1e3 * column[name], style, color=BLUE, label=f"net expansion below {caps[name]:.3g} m")
     top.plot(column.time, 1e3 * column["settlement"], color=ORANGE, label="settlement of the surface")
     top.set_ylabel("Height (mm)")
     top.legend(loc="upper left", fontsize=8)
@@ -33,8 +33,8 @@ def expansion(column):
     figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, ticks=ticks, format="%.2g").set_label(
         "Volumetric strain (%)\ncompression     expansion")
     depth_axis(column, axes, depth)
-    for boundary in column.capped_boundaries():
-        axes.axhline(boundary, color=BLACK, linewidth=0.9)
+    for name in names:
+        axes.axhline(caps[name], color=BLACK, linewidth=0.9)
     axes.grid(False)
     axes.set_xlim(time[0], time[-1])
     axes.set_xlabel("Time (s)")

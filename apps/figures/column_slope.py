@@ -27,15 +27,16 @@ def spreading(column):
     panels["time"].axhline(0, color=GREY, linewidth=0.7)
     panels["time"].set_xlim(column.time[0], column.time[-1])
     panels["time"].set_xlabel("Time (s)")
-    panels["time"].set_ylabel("Surface, downslope (m)")
+    of_rock = column.scene.get("base", {}).get("kind") == "compliant"
+    panels["time"].set_ylabel("Surface, downslope" + (",\nwith the rock's motion (m)" if of_rock else " (m)"))
     depth = column.profiles["depth"]
     panels["moved"].plot(column.profiles["end_displacement"], column.profiles["node_depth"], color=BLUE)
-    panels["moved"].set_xlabel("Downslope at the end (m)")
+    panels["moved"].set_xlabel("Downslope of the base (m)")
     panels["moved"].set_ylabel("Depth (m)")
     panels["strain"].plot(100 * column.profiles["end_gamma_xz"], depth, color=BLACK)
     panels["strain"].set_xlabel(r"$\gamma_{xz}$ at the end (%)")
     panels["stress"].plot(column.profiles["tau_0"] / 1e3, depth, color=RED, label=r"$\tau_0$")
-    panels["stress"].plot(column.profiles["sigma_v0"] / 1e3, depth, color=GREY, label=r"$\sigma_{v0}^\prime$")
+    panels["stress"].plot(column.profiles["sigma_v0"] / 1e3, depth, color=GREY, label=r"$\sigma_{n0}^\prime$")
     panels["stress"].set_xlabel("Stress at the start (kPa)")
     panels["stress"].legend()
     for (name, axes), letter in zip(panels.items(), "abcd"):

@@ -111,7 +111,10 @@ def column_ensemble(results, _ensemble):
     found = [Verdict("Members:", f"{s['members']} of {s['asked']} have finished.",
                      GOOD if s["members"] == s["asked"] else ATTENTION)]
     thickness = s["numbers"].get("liquefied_thickness")
-    if thickness and thickness["n"] > 1:
+    if thickness and thickness["max"] == 0:
+        found.append(Verdict("Not liquefied:", f"r_u stays below {s['liquefied_ru']} in all members (largest "
+                             f"{s['numbers']['max_ru']['max']:.3g})."))
+    elif thickness and thickness["n"] > 1:
         found.append(Verdict("Liquefied:", f"a thickness of {thickness['mean']:.3g} m, standard error "
                              f"{thickness['standard_error']:.2g} m, had r_u above {s['liquefied_ru']}; the members "
                              f"range from {thickness['min']:.3g} to {thickness['max']:.3g} m."))

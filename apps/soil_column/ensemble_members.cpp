@@ -103,6 +103,12 @@ ColumnScene member_scene(ColumnScene scene, std::size_t k)
 std::vector<EnsembleMember> ensemble_members(const ColumnScene &scene, const EnsemblePlan &plan)
 {
   check_kind(scene, plan);
+  for (std::size_t r = 0; r < plan.records.size(); ++r)
+    if (plan.records[r].empty() || std::count(plan.records.begin(), plan.records.end(), plan.records[r]) > 1)
+      throw InputError(fmt::format(
+          "--records: file {} of {}, \"{}\", {}. Give files that differ between commas, such as "
+          "--records first.txt,second.AT2; they count from the working directory.",
+          r + 1, plan.records.size(), plan.records[r], plan.records[r].empty() ? "has no name" : "comes twice"));
   const std::size_t n = std::max<std::size_t>(plan.members, 1);
   check_seeds(scene, n);
   std::vector<EnsembleMember> all;

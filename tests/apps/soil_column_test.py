@@ -3,6 +3,7 @@
 """soil_column as a user runs it: its scenes, what a row holds, mistakes."""
 import json
 import re
+import shlex
 
 import h5py
 import numpy as np
@@ -53,6 +54,14 @@ class Scenes(ColumnTest):
         vtu = (folder / "paraview/column_00002.vtu").read_text(encoding="utf-8")
         self.assertIn('NumberOfPoints="120" NumberOfCells="80"', vtu)  # an element of degree 2 is two lines
         self.assertEqual((folder / "paraview/column.pvd").read_text(encoding="utf-8").count("<DataSet"), 3)
+
+    def test_the_command_is_what_a_shell_takes(self):
+        arguments = [self.write("a scene.toml", SOIL), "-o", "out", "-q", *settings(
+            title="Kramer's; $HOME", analysis__duration="0.1 s")]
+        self.assert_done(self.run_column(*arguments))
+        command = (self.folder / "out/provenance.txt").read_text(encoding="utf-8").splitlines()[0]
+        self.assertEqual(shlex.split(command.removeprefix("command")),
+                         self.command("soil_column", *arguments, "--no-figures"))
 
     def test_two_layers_compliant(self):
         summary, rows, _ = self.run_scene("two_layers_compliant", *settings(analysis__duration="2 s"))
