@@ -154,8 +154,9 @@ def histories(ensemble):
         draw(axes, ensemble, "history", name, alone=ensemble.has_records and name.startswith("surface_a"))
         axes.set_ylabel(LABELS[name])
         panel_letter(axes, letter)
-        if axes.get_legend_handles_labels()[0] and not figure.legends:
-            figure.legend(*axes.get_legend_handles_labels(), loc="outside upper right", ncols=2)
+    with_bands = [axes for axes in rows[:, 0] if axes.get_legend_handles_labels()[0]]
+    if with_bands:
+        with_bands[0].legend(loc="upper left", ncols=2)
     rows[-1, 0].set_xlabel("Time (s)")
     return figure
 

@@ -31,7 +31,7 @@ def spreading(column):
     panels["time"].set_ylabel("Surface, downslope" + (",\nwith the rock's motion (m)" if of_rock else " (m)"))
     depth = column.profiles["depth"]
     panels["moved"].plot(column.profiles["end_displacement"], column.profiles["node_depth"], color=BLUE)
-    panels["moved"].set_xlabel("Downslope of the base (m)")
+    panels["moved"].set_xlabel("Against the base,\nat the end (m)")
     panels["moved"].set_ylabel("Depth (m)")
     panels["strain"].plot(100 * column.profiles["end_gamma_xz"], depth, color=BLACK)
     panels["strain"].set_xlabel(r"$\gamma_{xz}$ at the end (%)")

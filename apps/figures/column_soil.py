@@ -123,7 +123,7 @@ def velocity(column):
     speeds = column.profiles.get("shear_velocity") if column.profiles else None
     if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
         return None
-    figure, axes = plt.subplots(figsize=(3.2, 4.0), layout="constrained")
+    figure, axes = plt.subplots(figsize=(5.2, 4.0), layout="constrained")
     depth = column.profiles["depth"]
     axes.plot(speeds, depth, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
     axes.set_xlim(left=0)
