@@ -16,9 +16,10 @@ struct SlopeSafety
   std::size_t layer = 0; ///< from the surface down
 };
 
-/// The smallest factor of safety M p'/tau_0 of the infinite slope at the stresses of its start, over all depths of the
-/// layers of iwan (of other materials no strength is known): strength in simple shear at constant p' over static shear
-/// stress. With k0 = 1, M = tan(phi) and dry soil it is tan(phi)/tan(angle). None on level ground, and without iwan.
+/// The smallest factor of safety of the infinite slope at the stresses of its start, over all depths of the layers of
+/// iwan (of other materials no strength is known): the static shear stress that the sand bears at that p' beside the
+/// deviator of its k0, docs/theory_column.md (33), over the one there is; 1 where check_slope() begins to refuse. With
+/// k0 = 1, M = tan(phi) and dry soil it is tan(phi)/tan(angle). None on level ground, and without iwan.
 /// tested: tests/apps/deposit/slope_test.cpp
 std::optional<SlopeSafety> slope_safety(const ColumnScene &scene);
 
