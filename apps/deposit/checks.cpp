@@ -31,6 +31,16 @@ void check_mesh(const SceneDocument &document, const ColumnScene &scene)
                     "of the water is part of \"coupled\". Remove it.");
 }
 
+/// Whether all of a layer lies above the water table.
+bool is_above_table(const ColumnScene &scene, std::size_t layer)
+{
+  constexpr double near = 1e-6; // m
+  double bottom = 0;
+  for (std::size_t k = 0; k <= layer; ++k)
+    bottom += scene.layers[k].thickness;
+  return scene.water.table > 0 && bottom <= scene.water.table + near;
+}
+
 /// Air matters to pressure alone, and that only where the volume of the soil may change.
 bool feels_air(const ColumnScene &scene)
 {
@@ -42,18 +52,16 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
 {
   constexpr const char *remedy = "has no effect if water.drainage is \"dry\" or \"undrained\" at constant volume. Give "
                                  "drainage = \"coupled\", or remove it.";
-  double bottom = 0;
   bool has_free_air = false;
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     {
-      bottom += scene.layers[i].thickness;
       if (scene.layers[i].saturation == 1)
         continue;
       has_free_air = true;
       const std::string key = fmt::format("layer.{}.saturation", i);
       if (!feels_air(scene))
         document.refuse(key, remedy);
-      if (constexpr double near = 1e-6; bottom <= scene.water.table + near)
+      if (is_above_table(scene, i))
         document.refuse(key,
                         "has no effect above the water table (water.table): there is no pore pressure. Remove it.");
     }
@@ -83,10 +91,7 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
                     "must not be \"user\" if mesh.distributed is true, because such a material keeps its points as "
                     "a whole, which no checkpoint can share out. Give distributed = false.");
   const std::string prefix = fmt::format("layer.{}", i);
-  double bottom = 0;
-  for (std::size_t k = 0; k <= i; ++k)
-    bottom += scene.layers[k].thickness;
-  if (scene.water.drainage != Drainage::dry && bottom > scene.water.table && layer.density <= scene.water.density)
+  if (scene.water.drainage != Drainage::dry && !is_above_table(scene, i) && layer.density <= scene.water.density)
     document.refuse(prefix + ".density", fmt::format("must be above that of water, {} kg/m3, or the soil floats away.",
                                                      number_text(scene.water.density)));
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))

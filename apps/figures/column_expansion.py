@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
-from .column_soil import depth_axis, edges
+from .column_soil import map_over_time
 from .common import BLACK, BLUE, ORANGE, panel_letter, plt
 
 
@@ -14,9 +14,6 @@ def expansion(column):
     strain = column.profile("eps_zz")
     if not names or strain is None or len(column.profiles["time"]) < 2:
         return None
-    depth, time = column.profiles["depth"], column.profiles["time"]
-    order = np.argsort(depth)
-    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
     figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 5.2), sharex=True, height_ratios=(1, 2),
                                        layout="constrained")
     for name, style in zip(names, ("-", "--", ":", "-.") * len(names)):
@@ -25,20 +22,14 @@ def expansion(column):
     top.set_ylabel("Height (mm)")
     top.legend(loc="upper left", fontsize=8)
     top.set_ylim(-0.06 * top.get_ylim()[1], 1.25 * top.get_ylim()[1])
-    expanded = -100 * strain[:, order].T  # volume strain of a column, positive in expansion
+    expanded = -100 * strain  # volume strain of a column, positive in expansion
     norm = TwoSlopeNorm(0, min(-1e-6, float(np.nanmin(expanded))), max(1e-6, float(np.nanmax(expanded))))
-    shade = axes.pcolormesh(edges(time, time[0], time[-1]), edges(depth[order], 0, bottom), expanded, cmap="RdBu",
-                            norm=norm, rasterized=True)
+    shade, _, _ = map_over_time(column, axes, expanded, cmap="RdBu", norm=norm)
     ticks = [norm.vmin, norm.vmin / 2, 0, norm.vmax / 2, norm.vmax]
     figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, ticks=ticks, format="%.2g").set_label(
         "Volumetric strain (%)\ncompression     expansion")
-    depth_axis(column, axes, depth)
     for name in names:
         axes.axhline(caps[name], color=BLACK, linewidth=0.9)
-    axes.grid(False)
-    axes.set_xlim(time[0], time[-1])
-    axes.set_xlabel("Time (s)")
-    axes.set_ylabel("Depth (m)")
     panel_letter(top, "a")
     panel_letter(axes, "b")
     return figure

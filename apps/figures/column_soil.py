@@ -156,30 +156,37 @@ def outline(axes, x, y, inside, **style):
     axes.add_collection(LineCollection(parts, capstyle="projecting", **style))
 
 
-def ru_map(column):
-    """r_u over depth and time, below the motion that makes it."""
-    ru = pore_pressure_ratio(column)
-    if column.consolidation or ru is None or len(column.profiles["time"]) < 2:
-        return None
+def map_over_time(column, axes, values, **style):
+    """Colours of a profile over depth and time, whose cells are the points' own share of both.
+    @return  the coloured cells, their borders in time and depth, values in the order of the cells"""
     depth, time = column.profiles["depth"], column.profiles["time"]
     order = np.argsort(depth)
     bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
-    figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 4.9), sharex=True, height_ratios=(1, 2.6),
-                                       layout="constrained")
-    draw_input(column, top)
     x, y = edges(time, time[0], time[-1]), edges(depth[order], 0, bottom)
-    shade = axes.pcolormesh(x, y, ru[:, order].T, cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))),
-                            rasterized=True)
-    if np.nanmax(ru) > LIQUEFIED_RU:
-        outline(axes, x, y, ru[:, order].T > LIQUEFIED_RU, colors=RED, linewidths=0.9)
-        axes.annotate(f"red: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
-                      fontsize=9, color=RED)
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
+    cells = values[:, order].T
+    shade = axes.pcolormesh(x, y, cells, rasterized=True, **style)
     depth_axis(column, axes, depth)
     axes.grid(False)
     axes.set_xlim(time[0], time[-1])
     axes.set_xlabel("Time (s)")
     axes.set_ylabel("Depth (m)")
+    return shade, (x, y), cells
+
+
+def ru_map(column):
+    """r_u over depth and time, below the motion that makes it."""
+    ru = pore_pressure_ratio(column)
+    if column.consolidation or ru is None or len(column.profiles["time"]) < 2:
+        return None
+    figure, (top, axes) = plt.subplots(2, 1, figsize=(7.2, 4.9), sharex=True, height_ratios=(1, 2.6),
+                                       layout="constrained")
+    draw_input(column, top)
+    shade, borders, cells = map_over_time(column, axes, ru, cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))))
+    if np.nanmax(ru) > LIQUEFIED_RU:
+        outline(axes, *borders, cells > LIQUEFIED_RU, colors=RED, linewidths=0.9)
+        axes.annotate(f"red: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
+                      fontsize=9, color=RED)
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
     panel_letter(top, "a")
     panel_letter(axes, "b")
     return figure

@@ -84,6 +84,10 @@ class ColumnTest(AppTest):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""
         def names(folder):
             return {n for n in contents(self.folder / folder) if n not in NO_FILES and not n.startswith("checkpoint")}
+        self.assert_same_contents(one, other, names)
+
+    def assert_same_contents(self, one, other, names):
+        """Of two folders the files `names(folder)`: HDF5 item by item, anything else byte by byte."""
         self.assertEqual(names(one), names(other))
         for name in names(one):
             a, b = self.folder / one / name, self.folder / other / name
