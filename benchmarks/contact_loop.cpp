@@ -29,7 +29,7 @@ struct Variant
   const char *name;
   LawFeatures on;
   bool energy;
-  bool hertz = false;
+  double hertz_exponent = 0; ///< 0: the linear law
 };
 constexpr Variant variants[] = {{"frictionless", {false, false, false}, false},
                                 {"sliding", {true, false, false}, false},
@@ -37,13 +37,18 @@ constexpr Variant variants[] = {{"frictionless", {false, false, false}, false},
                                 {"twisting", {true, false, true}, false},
                                 {"full", {true, true, true}, false},
                                 {"full+energy", {true, true, true}, true},
-                                {"hertz-mindlin", {true, true, true}, false, true},
-                                {"hertz-mindlin+energy", {true, true, true}, true, true}};
+                                {"hertz-mindlin", {true, true, true}, false, 1.5},
+                                {"hertz-mindlin+energy", {true, true, true}, true, 1.5},
+                                {"asperities", {true, true, true}, false, 1.65}};
 
 Law law_of(const Variant &variant)
 {
-  if (variant.hertz)
-    return HertzMindlin().with(variant.on);
+  if (variant.hertz_exponent > 0)
+    {
+      HertzMindlin law = HertzMindlin().with(variant.on);
+      law.exponent = variant.hertz_exponent;
+      return law;
+    }
   return test::paper_law().with(variant.on);
 }
 

@@ -6,6 +6,7 @@ LAWS = {
     "linear-rolling": {"young": "10 GPa"},
     "hertz-mindlin": {"law": "hertz-mindlin"},
 }
+STIFFNESS_LAWS = {**LAWS, "asperities": {"law": "hertz-mindlin", "exponent": 1.65, "asperity": 0.1}}
 DEGREES = (2, 6, 10)  # of preparation friction, in `stiffness`: dense to loose
 REDUCTION_DEGREES = 8
 GROUND = {  # of deposits: contact parameters that give shear waves of some 150 m/s in 5 m of depth
@@ -53,7 +54,8 @@ def runs(kind, seeds):
     if kind == "velocity":
         return [Run(kind, law, 10, seed, 10) for seed in range(1, seeds + 1) for law in LAWS]
     if kind == "stiffness":
-        return [Run(kind, law, degrees, seed) for seed in range(1, seeds + 1) for degrees in DEGREES for law in LAWS]
+        return [Run(kind, law, degrees, seed) for seed in range(1, seeds + 1) for degrees in DEGREES
+                for law in STIFFNESS_LAWS]
     every = [Run(kind, law, REDUCTION_DEGREES, seed, pressure, amplitude, drained, damping)
              for damping in (DAMPING, DAMPING / 2) for seed in range(1, seeds + 1) for amplitude in AMPLITUDES
              for pressure in REDUCTION_PRESSURES for law in LAWS for drained in (False, True)]

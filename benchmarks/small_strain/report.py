@@ -10,9 +10,10 @@ import numpy as np  # noqa: E402
 
 from . import plan, published  # noqa: E402
 
-COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red"}
+COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red", "asperities": "tab:green"}
 LOST = 0.05  # G/G_max below which a cycle is that of a liquid: its damping ratio means nothing
-NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Mindlin, quartz"}
+NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Mindlin, quartz",
+         "asperities": "quartz with asperities, n = 1.65"}
 
 
 def read(folder, kind):
@@ -47,7 +48,7 @@ def stiffness_table(results):
     """Rows of moduli, exponent and void ratio for each law and preparation."""
     lines = ["| law | prepared at | e at 100 kPa | Z at 100 kPa | G at 100 kPa, MPa | correlation, MPa | "
              "n, 20 to 800 kPa |", "|---|---|---|---|---|---|---|"]
-    for law in plan.LAWS:
+    for law in plan.STIFFNESS_LAWS:
         for degrees in plan.DEGREES:
             states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
             if not states:
@@ -63,8 +64,8 @@ def stiffness_table(results):
 
 def draw_stiffness(results, path):
     """G against p' for each law and density, beside the correlation at the same void ratios."""
-    figure, axes = plt.subplots(1, len(plan.LAWS), figsize=(9, 3.6), layout="constrained", sharey=True)
-    for axis, law in zip(axes, plan.LAWS, strict=True):
+    figure, axes = plt.subplots(1, len(plan.STIFFNESS_LAWS), figsize=(11, 3.6), layout="constrained", sharey=True)
+    for axis, law in zip(axes, plan.STIFFNESS_LAWS, strict=True):
         for degrees, shade in zip(plan.DEGREES, (1.0, 0.65, 0.35), strict=True):
             states = [r["states"] for r in results if (r["law"], r["degrees"]) == (law, degrees)]
             if not states:

@@ -13,7 +13,7 @@ TOLERANCE = 1e-4       # of stresses that are kept, over p'
 NORMAL = np.eye(3, dtype=bool)
 
 
-def specimen(run, cache, grains, pressure, laws=plan.LAWS):
+def specimen(run, cache, grains, pressure, laws=plan.STIFFNESS_LAWS):
     """The packing of a run, isotropically consolidated."""
     scene = isostat.Scene(
         grading={"grains": grains, "cloud_edge": f"{10 * (grains / 10000) ** (1 / 3):.3f} mm", "seed": run.seed},

@@ -32,6 +32,17 @@ TEST(HertzHardCases, ReversalsInsideTheLiquidState)
   reverse_in_liquid(rve, 0.2);
 }
 
+TEST(HertzHardCases, ReversalsOfConesInsideTheLiquidState)
+{
+  test::CellRecipe recipe = hertz(grains, 2);
+  HertzMindlin cones;
+  cones.exponent = 2; // a contact that just closes has no stiffness at all, and gains it the most slowly
+  recipe.law = cones;
+  Rve rve(test::prepare_in_cell(recipe), quick());
+  liquefy(rve, 4e-3, 1e-2);
+  reverse_in_liquid(rve, 0.2);
+}
+
 TEST(HertzHardCases, DenseConstantVolumeShearPassesTenMegapascals)
 {
   Rve rve(dense(), quick());

@@ -17,6 +17,16 @@ constexpr auto keys_of_law = with_rolling_resistance(std::array{
    .reason = "because a grain is an isotropic elastic body that does not bulge when it is pulled",
    .text = "Poisson's ratio nu of the grains; tangential over normal stiffness is 2 (1 - nu)/(2 - nu).",
    .field = law_field<&HertzMindlin::poisson>},
+  Key{.path = "exponent", .value = "1.5", .range = {1.5, 2},
+   .reason = "because 1.5 is that of spheres and 2 that of cones",
+   .text = "n of the normal force, which rises with the overlap to this power. Above 1.5 grains touch with pointed asperities: "
+           "they are softer at small forces, and the modulus of a packing rises more with pressure.",
+   .field = law_field<&HertzMindlin::exponent>},
+  Key{.path = "asperity", .value = "0.1", .range = {1e-3, 1},
+   .reason = "because an asperity is a part of its grain",
+   .text = "Radius of an asperity over R* = R1 R2/(R1 + R2): there it is as high as a sphere, nearer to the axis more pointed. Of no "
+           "effect with the exponent 1.5.",
+   .field = law_field<&HertzMindlin::asperity>},
 });
 // clang-format on
 } // namespace

@@ -5,6 +5,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "dem/contact/hertz_mindlin/asperity_loop.hpp"
 #include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/rolling_resistance-inl.hpp"
 
@@ -55,6 +56,11 @@ namespace isostat
 {
 HWY_EXPORT(add_hertz_mindlin);
 
-void HertzMindlin::add_forces(const LoopView &view) const { HWY_DYNAMIC_DISPATCH(add_hertz_mindlin)(*this, view); }
+void HertzMindlin::add_forces(const LoopView &view) const
+{
+  if (!is_spherical())
+    return add_asperity_forces(*this, view);
+  HWY_DYNAMIC_DISPATCH(add_hertz_mindlin)(*this, view);
+}
 } // namespace isostat
 #endif

@@ -290,9 +290,43 @@ TEST(HertzMindlin, MomentsShrinkWithTheContactToo)
                        "round-off");
 }
 
-TEST(HertzMindlin, WallIsThePlaneOfSymmetryOfTwoSpheres)
+/// Spheres, asperities of a power between, and cones.
+class OfExponent : public testing::TestWithParam<double>
 {
-  const HertzMindlin law;
+protected:
+  OfExponent() { law.exponent = GetParam(); }
+  HertzMindlin law;
+};
+INSTANTIATE_TEST_SUITE_P(Shapes, OfExponent, testing::Values(1.5, 1.7, 2.0));
+
+TEST_P(OfExponent, ForceIsThatOfTheElasticHalfSpace)
+{
+  // by reduction of the dimension (Popov, Hess and Willert, 2019, section 2.3): with the gap f(r),
+  // g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr, u = g(a), F = 2 E* int_0^a [u - g(x)] dx; r = x sin t
+  const double reduced = r1 * r2 / (r1 + r2), edge = law.asperity * reduced, m = 1 / (law.exponent - 1);
+  const auto slope = [&](double r) { return m * edge * edge / (2 * reduced) * std::pow(r / edge, m - 1) / edge; };
+  const int n = 4000;
+  const auto g = [&](double x) {
+    double sum = 0;
+    for (int k = 0; k < n; ++k)
+      sum += slope(x * std::sin(M_PI / 2 * (k + 0.5) / n)) * M_PI / 2 / n;
+    return x * sum;
+  };
+  for (const double radius : {0.1 * edge, edge, 3 * edge})
+    {
+      const double u = g(radius);
+      double area = 0;
+      for (int k = 0; k < 400; ++k)
+        area += (u - g(radius * (k + 0.5) / 400)) * radius / 400;
+      EXPECT_CLOSE_BECAUSE(law.normal_stiffness(r1, r2, u), 2 * law.contact_modulus() * radius, 1e-6,
+                           "midpoint rule of 4,000 parts; kn = 2 E* a");
+      EXPECT_CLOSE_BECAUSE(law.normal_force(r1, r2, u), 2 * law.contact_modulus() * area, 1e-5,
+                           "midpoint rule of 400 parts");
+    }
+}
+
+TEST_P(OfExponent, WallIsThePlaneOfSymmetryOfTwoGrains)
+{
   for (const double overlap : {1e-9, 1e-7, 1e-5})
     {
       const WallResponse wall = law.wall(r1, overlap);
@@ -303,9 +337,8 @@ TEST(HertzMindlin, WallIsThePlaneOfSymmetryOfTwoSpheres)
     }
 }
 
-TEST(HertzMindlin, StiffnessAndEnergyBelongToTheForce)
+TEST_P(OfExponent, StiffnessAndEnergyBelongToTheForce)
 {
-  const HertzMindlin law;
   const double u = 3e-7, h = 1e-4 * u;
   const double slope = (law.normal_force(r1, r2, u + h) - law.normal_force(r1, r2, u - h)) / (2 * h);
   EXPECT_CLOSE_BECAUSE(law.stiffness(r1, r2, u).normal, slope, 1e-8, "central difference with a step of 1e-4");
@@ -317,9 +350,24 @@ TEST(HertzMindlin, StiffnessAndEnergyBelongToTheForce)
                        "central difference with a step of 1e-4");
   EXPECT_CLOSE_BECAUSE(law.stiffness(r1, r2, u).shear / law.stiffness(r1, r2, u).normal, 2 * 0.88 / 1.88, 1e-14,
                        "round-off");
-  // two spheres of this pressure: fn = 4 R^2 p, modulus = kn/R
-  const double p = 1e5, x = std::pow(std::sqrt(18.0) * p / law.contact_modulus(), 2.0 / 3.0);
-  EXPECT_CLOSE_BECAUSE(law.normal_force(r1, r1, x * r1), 4 * r1 * r1 * p, 1e-14, "round-off");
-  EXPECT_CLOSE_BECAUSE(law.modulus(p), law.normal_stiffness(r1, r1, x * r1) / r1, 1e-14, "round-off");
+  // of two grains under this pressure: fn = 4 R^2 p, modulus = kn/R
+  const double p = 1e5;
+  double below = 1e-12 * r1, above = r1;
+  for (int k = 0; k < 200; ++k)
+    {
+      const double middle = std::sqrt(below * above);
+      (law.normal_force(r1, r1, middle) < 4 * r1 * r1 * p ? below : above) = middle;
+    }
+  EXPECT_CLOSE_BECAUSE(law.modulus(p), law.normal_stiffness(r1, r1, below) / r1, 1e-13, "round-off of a bisection");
+}
+
+TEST_P(OfExponent, ClosedCycleGivesBackAsMuchLessAsTheContactIsSofter)
+{
+  law.friction = 1e3; // does not slide
+  const double deep = 4e-7, shallow = 1e-7, slip = 1e-8;
+  Bench bench(law, deep);
+  const double held = bench.go(0, slip);
+  const double work = held + bench.go(shallow - deep, 0) + bench.go(0, -slip);
+  EXPECT_CLOSE_BECAUSE(work, (1 - std::pow(4, 1 - law.exponent)) * held, 1e-3, "kn ~ u^(n-1), and so the force");
 }
 } // namespace isostat
