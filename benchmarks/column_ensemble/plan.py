@@ -44,16 +44,18 @@ class Run:
 # (mixed, realisations, viscosity in ms, length in m); samples with their points and members, the most telling first
 SAME, OTHER, BLOCKS, WITHOUT, MORE = ((False, 1, 0.1, 0), (True, 1, 0.1, 0), (True, 1, 0.1, 0.8), (False, 1, 0, 0),
                                        (False, 3, 0.1, 0))
+MIXED_MORE, TEN, MIXED_TEN = (True, 3, 0.1, 0), (False, 10, 0.1, 0), (True, 10, 0.1, 0)
 STAGES = [
     [(SAME, 10, range(3)), (OTHER, 10, range(3)), (WITHOUT, 10, range(3)), (SAME, 4, range(3)), (OTHER, 4, range(3))],
-    [(SAME, 20, range(1)), (OTHER, 20, range(1)), (BLOCKS, 10, range(3)), (MORE, 10, range(1))],
-    [(SAME, 20, range(1, 2)), (BLOCKS, 20, range(1)), (OTHER, 20, range(1, 2)), (MORE, 10, range(1, 2))],
-    [(SAME, 10, range(3, 5)), (OTHER, 10, range(3, 5)), (BLOCKS, 20, range(1, 3)), (SAME, 20, range(2, 3)),
-     (OTHER, 20, range(2, 3)), (MORE, 10, range(2, 3))],
-    [((False, 1, 1, 0), 10, range(3)), (SAME, 10, range(5, 8)), (OTHER, 10, range(5, 8)), (SAME, 4, range(3, 8)),
-     (OTHER, 4, range(3, 8)), ((True, 3, 0.1, 0), 10, range(3)), ((False, 10, 0.1, 0), 10, range(2))],
-    [(SAME, 40, range(2)), (OTHER, 40, range(2)), (BLOCKS, 40, range(2)), (SAME, 20, range(3, 6)),
-     (OTHER, 20, range(3, 6)), (MORE, 10, range(3, 6))],
+    [(SAME, 20, range(3)), (OTHER, 20, range(3)), (BLOCKS, 10, range(3)), (BLOCKS, 20, range(3)), (MORE, 10, range(3))],
+    [(SAME, 10, range(3, 8)), (OTHER, 10, range(3, 8)), (BLOCKS, 10, range(3, 8)), (TEN, 10, range(1)),
+     (MIXED_MORE, 10, range(1)), (MIXED_TEN, 10, range(1)), (OTHER, 40, range(1))],
+    [(SAME, 40, range(1)), (BLOCKS, 40, range(1)), (TEN, 10, range(1, 3)), (MIXED_MORE, 10, range(1, 3)),
+     (MIXED_TEN, 10, range(1, 3)), (MORE, 10, range(3, 8)), (SAME, 20, range(3, 8)), (OTHER, 20, range(3, 8)),
+     (BLOCKS, 20, range(3, 8)), (SAME, 4, range(3, 8)), (OTHER, 4, range(3, 8))],
+    [(OTHER, 80, range(1)), (SAME, 80, range(1)), (BLOCKS, 80, range(1)), (SAME, 40, range(1, 3)),
+     (OTHER, 40, range(1, 3)), (BLOCKS, 40, range(1, 3))],
+    [((False, 1, 1, 0), 10, range(3)), (OTHER, 160, range(1)), (SAME, 160, range(1)), (BLOCKS, 160, range(1))],
 ]
 
 

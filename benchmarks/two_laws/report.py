@@ -121,7 +121,7 @@ def draw_resistance(rows, ratios, path):
         axes[0, 1].errorbar(plan.PRESSURES, [m for m, _, _ in found], [s for _, s, _ in found], color=COLOURS[law],
                             marker="o", markersize=4, linewidth=1, capsize=2, label=LABELS[law])
     plain_logarithm(axes[0, 0].xaxis)
-    axes[0, 0].set(xlabel="Cycles to liquefaction", ylabel=r"$\tau_{amp}/\sigma_{v0}^\prime$", ylim=(0.13, 0.28))
+    axes[0, 0].set(xlabel="Cycles to liquefaction", ylabel=r"$\tau_{amp}/\sigma_{v0}^\prime$", ylim=(0.13, 0.32))
     axes[0, 0].legend(fontsize=6, ncols=2, loc="upper right")
     axes[0, 1].set_xscale("log")
     axes[0, 1].xaxis.set_major_locator(FixedLocator(plan.PRESSURES))
