@@ -2,6 +2,7 @@
 #include "apps/common/drained_report.hpp"
 
 #include "base/files/csv_table.hpp"
+#include "dem/drive/stages/cycles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,28 +42,34 @@ std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, co
     y,
     z,
     p,
-    q
+    q,
+    done
   };
-  const CsvTable history(folder / "history.csv",
-                         {"stage (-)", "eps_x (-)", "eps_y (-)", "eps_z (-)", "p (Pa)", "q (Pa)"});
+  std::vector<std::string> names = {"stage (-)", "eps_x (-)", "eps_y (-)", "eps_z (-)", "p (Pa)", "q (Pa)"};
+  const bool repeated = !repeats_text(scene.stages).empty();
+  if (repeated)
+    names.push_back("done (-)");
+  const CsvTable history(folder / "history.csv", names);
   const auto stage_of = [&](std::size_t row) { return static_cast<std::size_t>(history(row, at_stage)); };
   std::vector<DrainedStage> stages;
   for (std::size_t k = 0; k < scene.stages.size(); ++k)
     if (is_drained(scene.stages[k]))
       {
         DrainedPath path;
+        double last = -1; // time that it is done
         for (std::size_t row = 0; row < history.n_rows(); ++row)
           {
             if (stage_of(row) != k)
               continue;
-            if (row > 0 && stage_of(row - 1) != k) // a stage that is repeated: its last time
-              path = {};
+            if (repeated && history(row, done) != last)
+              path = {}, last = history(row, done);
             path.axial.push_back(history(row, y));
             path.volumetric.push_back(history(row, x) + history(row, y) + history(row, z));
             path.stress_ratio.push_back(history(row, p) > 0 ? history(row, q) / history(row, p) : 0);
           }
         if (!unloads(path))
-          stages.push_back({k, drained_strength(path)});
+          stages.push_back({k, repeated ? cycle_text(scene.stages, static_cast<std::uint64_t>(last)) : std::string(),
+                            drained_strength(path)});
       }
   return stages;
 }
@@ -70,10 +77,11 @@ std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, co
 std::string to_text(const std::vector<DrainedStage> &stages)
 {
   std::string text;
-  for (const auto &[number, s] : stages)
+  for (const auto &[number, cycle, s] : stages)
     {
       const auto line = [&](const char *name, const std::string &value) {
-        text += fmt::format("\n  {:<25}{}{}", name, value, stages.size() > 1 ? fmt::format(" (stage {})", number) : "");
+        text += fmt::format("\n  {:<25}{}{}", name, value,
+                            stages.size() > 1 || !cycle.empty() ? fmt::format(" (stage {}{})", number, cycle) : "");
       };
       const bool rises = std::abs(s.end_ratio) > 0.99 * std::abs(s.peak_ratio);
       line("peak friction", fmt::format("{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %{}", s.peak_friction,
@@ -92,7 +100,7 @@ std::string to_text(const std::vector<DrainedStage> &stages)
 Json to_json(const std::vector<DrainedStage> &stages)
 {
   Json list = Json::array();
-  for (const auto &[number, s] : stages)
+  for (const auto &[number, cycle, s] : stages)
     list.push_back({{"stage", number},
                     {"q_over_p_peak", s.peak_ratio},
                     {"q_over_p_end", s.end_ratio},

@@ -7,12 +7,14 @@
 #include "dem/scene/scene.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace isostat
 {
 struct DrainedStage
 {
   std::size_t stage = 0; ///< of the scene
+  std::string cycle;     ///< which time it is, where stages are repeated (dem/drive/stages/cycles.hpp)
   DrainedStrength strength;
 };
 

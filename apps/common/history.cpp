@@ -25,6 +25,11 @@ bool has_path(const Scene &scene)
 {
   return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &stage) { return as<Path>(stage); });
 }
+/// Its numbers of stages do not tell how often each was done.
+bool has_repeat(const Scene &scene)
+{
+  return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &stage) { return as<Repeat>(stage); });
+}
 } // namespace
 
 std::vector<RecordColumn> history_columns(const Scene &scene)
@@ -44,6 +49,8 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
                                    {"sigma1_angle", "deg"}});
   else if (has_path(scene))
     columns.insert(columns.end(), {{"sigma_x", "Pa"}, {"sigma_y", "Pa"}, {"sigma_z", "Pa"}});
+  if (has_repeat(scene))
+    columns.push_back({"done", "-"});
   if (scene.output.energy)
     for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "D_contact_damping",
                              "D_free_grains", "created", "residual"})
@@ -78,6 +85,8 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
     }
   else if (has_path(scene))
     row.insert(row.end(), seen.stress.begin(), seen.stress.end());
+  if (has_repeat(scene))
+    row.push_back(static_cast<double>(state.place.done));
   if (scene.output.energy)
     {
       const EnergyBalance e = assembly.energy();

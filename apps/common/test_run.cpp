@@ -2,6 +2,7 @@
 #include "apps/common/test_run.hpp"
 
 #include "apps/common/run_output.hpp"
+#include "apps/common/stage_report.hpp"
 #include "base/error.hpp"
 
 #include <fmt/format.h>
@@ -95,8 +96,8 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   summary.steps = static_cast<double>(run.assembly->step());
   summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
   write_json(folder / "summary.json", summary);
-  for (const ControlLoss &loss : summary.losses)
-    fmt::print(stderr, "warning: control lost: {}\n", to_text(loss, scene.control));
+  for (const std::string &line : stage_warnings(run.state, scene))
+    fmt::print(stderr, "warning: {}\n", line);
   return summary;
 }
 } // namespace isostat

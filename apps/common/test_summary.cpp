@@ -140,8 +140,8 @@ bool shears_in(const Stage &stage, const ShearMode &mode)
   const auto *shear = as<ShearStage>(stage);
   return shear && &shear->mode() == &mode;
 }
-bool is_axial(const Stage &stage) { return shears_in(stage, triaxial_mode); }
 bool is_simple_shear(const Stage &stage) { return shears_in(stage, simple_shear_mode); }
+bool is_axial(const Stage &stage) { return as<ShearStage>(stage) && !is_simple_shear(stage); }
 
 std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
 {
@@ -214,37 +214,6 @@ Json shear_json(const ShearExtremes &shear)
           {"CSR", shear.requested_ratio > 0 ? Json(shear.requested_ratio) : Json()}};
 }
 
-/// "limited flow (load 12.1 to 81.0 kPa, no stress reversal); softened from ... "
-std::string response_text(const TestSummary &s)
-{
-  std::string text = fmt::format("\n  cyclic response          {} ({}, loads from {:.2f} to {:.2f} kPa)", s.response,
-                                 reverses_stress(s.cycles) ? "with stress reversal" : "without stress reversal",
-                                 s.cycles.least_load / 1e3, s.cycles.largest_load / 1e3);
-  if (const std::optional<Softening> &flow = s.cycles.flow)
-    text += fmt::format("\n  it softened              after {} reversals from {:.2f} kPa at a strain of {:.4f} %",
-                        flow->reversals, flow->peak / 1e3, 100 * flow->strain);
-  return text;
-}
-
-/// Members of summary.json that only cyclic tests have.
-Json response_json(const TestSummary &s)
-{
-  const CyclicResponse &cycles = s.cycles;
-  Json json{{"name", s.response},
-            {"stress_reversal", reverses_stress(cycles)},
-            {"load_min", cycles.least_load},
-            {"load_max", cycles.largest_load},
-            {"strain_min", cycles.least_strain},
-            {"strain_max", cycles.most_strain},
-            {"softening", nullptr}};
-  if (cycles.flow)
-    json["softening"] = {{"reversals", cycles.flow->reversals},
-                         {"strain", cycles.flow->strain},
-                         {"peak", cycles.flow->peak},
-                         {"recovered", cycles.flow->recovered}};
-  return json;
-}
-
 Json or_null(std::optional<double> value) { return value ? Json(*value) : Json(); }
 
 /// "D_r = 0.640 (e_min 0.568, e_max 0.841)"
@@ -255,20 +224,6 @@ std::string density_text(const TestSummary &s)
   const std::string limits =
       s.e_min && s.e_max ? fmt::format(" (e_min {:g}, e_max {:g})", *s.e_min, *s.e_max) : std::string();
   return fmt::format("D_r = {:.3f}{}", *s.relative_density, limits);
-}
-
-Json control_json(const std::vector<ControlLoss> &losses)
-{
-  Json list = Json::array();
-  for (const auto &[stage, quantity, deviation, share] : losses)
-    list.push_back({{"stage", stage},
-                    {"quantity", name_of(quantity)},
-                    {"target", deviation.target},
-                    {"worst", deviation.value},
-                    {"strain", deviation.began},
-                    {"step", deviation.step},
-                    {"share", share}});
-  return list;
 }
 
 Json liquefaction_json(const TestSummary &s)
@@ -310,9 +265,11 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.shear = shear_extremes(folder, scene);
   summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
   summary.losses = state.control.losses;
+  summary.stages = stages_text(state, scene);
+  summary.early_ends = told_ends(state, scene);
   for (const Stage &stage : scene.stages)
-    if (const auto *cyclic = as<CyclicConstantVolume>(stage))
-      summary.response = response_name(state.undrained, cyclic->mode());
+    if (const auto *shear = as<ShearStage>(stage); shear && shear->notes_response())
+      summary.response = response_name(state.undrained, shear->mode());
   summary.drained = drained_stages(folder, scene);
   summary.cycles = state.undrained.response;
   summary.strain_before = state.undrained.max_strain_before;
@@ -356,14 +313,11 @@ std::string to_text(const TestSummary &s, const Scene &scene)
     text += fmt::format("\n  reversals                {:.0f}, worst overshoot {:.4f} kPa", s.reversals,
                         s.worst_overshoot / 1e3);
   if (!s.response.empty())
-    text += response_text(s);
+    text += response_text(s.response, s.cycles);
   text += s.shear ? shear_text(s) : axial_text(s);
   if (s.energy_residual >= 0)
     text += fmt::format("\n  energy residual          {:.2e} of the work exchanged", s.energy_residual);
-  text += to_text(s.drained);
-  for (const ControlLoss &loss : s.losses)
-    text += "\n  control lost             " + to_text(loss, scene.control);
-  return text + "\n";
+  return text + to_text(s.drained) + s.stages + "\n";
 }
 
 void write_json(const std::filesystem::path &path, const TestSummary &s)
@@ -387,10 +341,11 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
     json.update(shear_json(*s.shear));
   json["energy_residual"] = s.energy_residual >= 0 ? Json(s.energy_residual) : Json();
   if (!s.response.empty())
-    json["cyclic_response"] = response_json(s);
+    json["cyclic_response"] = response_json(s.response, s.cycles);
   if (!s.drained.empty())
     json["drained"] = to_json(s.drained);
   json["control_lost"] = control_json(s.losses);
+  json["ended_early"] = early_ends_json(s.early_ends);
   json["liquefaction"] = liquefaction_json(s);
   write_json(path, json);
 }

@@ -2,6 +2,7 @@
 // tested: tests/apps/liquefaction_resistance_test.py
 #pragma once
 #include "apps/common/drained_report.hpp"
+#include "apps/common/stage_report.hpp"
 #include "dem/drive/drive_state.hpp"
 #include "dem/scene/scene.hpp"
 
@@ -48,6 +49,8 @@ struct TestSummary
   CyclicResponse cycles;              ///< its figures
   std::vector<DrainedStage> drained;  ///< stages that a servo drains
   std::vector<ControlLoss> losses;    ///< of control, in all stages (dem/drive/control.hpp)
+  std::vector<ToldEnd> early_ends;    ///< stages that did not end by themselves (apps/common/stage_report.hpp)
+  std::string stages;                 ///< lines about single stages
 };
 
 /// @param specimen  its figures (Specimen::numbers)

@@ -14,9 +14,13 @@ FAST_INERTIA, FAST_INDICATOR = 1e-3, 0.2
 
 
 def stage_rows(run, number):
-    """Rows of a stage of the scene, as a slice; None if it left none."""
-    rows = np.flatnonzero(run.whole["stage"] == number)
-    return slice(rows[0], rows[-1] + 1) if rows.size else None
+    """Rows of a stage of the scene, of one that is repeated the last time, as a slice, and how often it was done; None
+    if it left no rows."""
+    rows, times = np.flatnonzero(run.whole["stage"] == number), 1
+    if rows.size and "done" in run.whole:
+        done = run.whole["done"][rows]
+        rows, times = rows[done == done[-1]], len(np.unique(done))
+    return (slice(rows[0], rows[-1] + 1), times) if rows.size else None
 
 
 def steps_of(run, rows):
@@ -66,13 +70,23 @@ def limit_reached(stage, run, rows):
     return stage.get("max_steps", 0) > 0 and steps_of(run, rows) + 1 >= stage["max_steps"]
 
 
-def endings(scene, run):
+def early_endings(results):
+    """A line for each stage that its limit of steps ended, or that had nothing to do, as the summary tells them."""
+    for end in results.numbers.get("ended_early", []):
+        name, _, text = end["text"].partition(": ")
+        yield f"{name[0].upper()}{name[1:]}:", f"{text}.", "attention"
+
+
+def endings(results, run):
     """A line for each stage that shears, and for each other one that its limit of steps ended."""
-    for number, stage in enumerate(scene.get("stage", [])):
-        rows = stage_rows(run, number)
-        if rows is None:
+    told = {(end["stage"], end["times"]) for end in results.numbers.get("ended_early", [])}
+    for number, stage in enumerate(results.scene.get("stage", [])):
+        rows, times = stage_rows(run, number) or (None, 0)
+        if rows is None or (number, times) in told:
             continue
         name, limited = f"Stage {number}, {stage['kind']}:", limit_reached(stage, run, rows)
+        if times > 1:
+            name = f"Stage {number}, {stage['kind']}, the last of {times} times:"
         if stage["kind"] in SERVO:
             if limited:
                 yield name, f"ended by its limit of {stage['max_steps']} time steps, not by its balance.", "attention"
@@ -170,5 +184,5 @@ def lines(results, run):
     """(name, sentence, kind) of each verdict.   @param run  figures.common.Run, or None"""
     found = []
     if run is not None:
-        found += [*endings(results.scene, run), *liquefaction(results, run)]
+        found += [*endings(results, run), *early_endings(results), *liquefaction(results, run)]
     return [*found, *rate(results), *tolerances(results)]

@@ -42,7 +42,7 @@ constexpr ControlledQuantity all_quantities[n_controlled] = {ControlledQuantity:
 ControlLoss loss_of(DriveState &state, ControlledQuantity quantity)
 {
   ControlState &control = state.control;
-  ControlLoss loss{state.place.stage, quantity, control.of(quantity), 0};
+  ControlLoss loss{state.place.stage, state.place.done, quantity, control.of(quantity), 0};
   loss.share = control.strain > 0 ? loss.deviation.strain / control.strain : 0;
   return loss;
 }
@@ -116,18 +116,18 @@ const char *name_of(ControlledQuantity quantity)
   return names[static_cast<std::size_t>(quantity)];
 }
 
-std::string to_text(const ControlLoss &loss, const ControlSpec &spec)
+std::string to_text(const ControlLoss &loss, const ControlSpec &spec, const std::string &cycle)
 {
+  const std::string stage = fmt::format("stage {}{}", loss.stage, cycle);
   const Deviation &d = loss.deviation;
   const std::string where =
       fmt::format("for {:.3g} % of the strain so far, first at a strain of {:.3g} % (step {} of the stage)",
                   100 * loss.share, 100 * d.began, d.step);
   if (loss.quantity == ControlledQuantity::indicator)
-    return fmt::format("stage {}: quasi-static indicator above {:g}, {:.3g} at worst, {}", loss.stage,
-                       spec.indicator_tolerance, d.worst, where);
-  return fmt::format("stage {}: {} off its target by more than {:g} %, {:.4g} kPa instead of {:.4g} kPa at "
+    return fmt::format("{}: quasi-static indicator above {:g}, {:.3g} at worst, {}", stage, spec.indicator_tolerance,
+                       d.worst, where);
+  return fmt::format("{}: {} off its target by more than {:g} %, {:.4g} kPa instead of {:.4g} kPa at "
                      "worst, {}",
-                     loss.stage, name_of(loss.quantity), 100 * spec.stress_tolerance, d.value / 1e3, d.target / 1e3,
-                     where);
+                     stage, name_of(loss.quantity), 100 * spec.stress_tolerance, d.value / 1e3, d.target / 1e3, where);
 }
 } // namespace isostat

@@ -45,7 +45,8 @@ std::vector<std::string> close_control(const ControlSpec &spec, DriveState &stat
 
 /// "stage 0: sigma_x off its target of 200 kPa, 0.12 kPa at worst, for 71 % of the strain, from a strain
 /// of 0.31 % (step 8123) on"
-std::string to_text(const ControlLoss &loss, const ControlSpec &spec);
+/// @param cycle  which one it was of a stage that is repeated (dem/drive/stages/repeat.hpp), after its number
+std::string to_text(const ControlLoss &loss, const ControlSpec &spec, const std::string &cycle = {});
 /// Its name in messages and files: "sigma_x", "tau_xy", "indicator".
 const char *name_of(ControlledQuantity quantity);
 } // namespace isostat

@@ -174,8 +174,40 @@ struct RecordedState
   double p = 0, load = 0, strain = 0; ///< Pa, Pa, [-]
   std::optional<std::uint64_t> step;
   double snapshot_strain = 0;
+  Vec3 stress = Vec3::Zero(), strains = Vec3::Zero(); ///< along x, y, z, Pa and [-]
+  double tau = 0, gamma = 0;                          ///< of a cell, Pa and [-]
 
-  ISOSTAT_FIELDS(p, load, strain, step, snapshot_strain)
+  ISOSTAT_FIELDS(p, load, strain, step, snapshot_strain, stress, strains, tau, gamma)
+};
+
+/// What a stage had come to when it ended, as far as its conditions of ending look at it.
+struct StageFigures
+{
+  double driven = 0;                            ///< strain driven in the stage, amount [-]
+  double strain = 0;                            ///< the driven one since the start of shearing, amount [-]
+  double volumetric = 0;                        ///< of the stage if it is a path, amount [-]
+  double p = 0, q = 0;                          ///< Pa
+  double unbalanced = 0;                        ///< force ratio [-]
+  double stress_error = 0;                      ///< of stresses that are brought to a target, relative [-]
+  double place = 0;                             ///< share of a path's course [-]
+  std::uint64_t reversals = 0;                  ///< of the test
+  std::uint64_t own_reversals = 0;              ///< of the stage
+  std::optional<std::uint64_t> since_liquefied; ///< reversals; none: it has not liquefied
+
+  ISOSTAT_FIELDS(driven, strain, volumetric, p, q, unbalanced, stress_error, place, reversals, own_reversals,
+                 since_liquefied)
+};
+
+/// A stage that did not come to its end by itself (dem/drive/stages/early_end.hpp).
+struct EarlyEnd
+{
+  std::uint64_t stage = 0, done = 0; ///< its number, and the stages that were over then, each as often as repeated
+  std::uint64_t step = 0;            ///< of the run
+  std::uint64_t times = 0;           ///< that it ended so in all, where it is repeated; the rest is of the first time
+  bool at_once = false;              ///< in its first step, because what is to end it was met; else by max_steps
+  StageFigures figures;
+
+  ISOSTAT_FIELDS(stage, done, step, times, at_once, figures)
 };
 
 /// What a stage is to have under control (dem/drive/control.hpp).
@@ -205,12 +237,12 @@ struct Deviation
 /// Control that a stage lost.
 struct ControlLoss
 {
-  std::uint64_t stage = 0;
+  std::uint64_t stage = 0, done = 0; ///< its number, and the stages that were over then, each as often as repeated
   ControlledQuantity quantity = ControlledQuantity::sigma_x;
   Deviation deviation;
   double share = 0; ///< of the stage's strain that was driven meanwhile [-]
 
-  ISOSTAT_FIELDS(stage, quantity, deviation, share)
+  ISOSTAT_FIELDS(stage, done, quantity, deviation, share)
 };
 
 /// Control in the present stage, and what was lost in those before.
@@ -249,7 +281,8 @@ struct DriveState
   UndrainedRecord undrained;
   RecordedState recorded;
   ControlState control;
+  std::vector<EarlyEnd> early_ends;
 
-  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control)
+  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control, early_ends)
 };
 } // namespace isostat

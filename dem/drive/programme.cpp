@@ -3,6 +3,8 @@
 
 #include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
+#include "dem/drive/stages/cycles.hpp"
+#include "dem/drive/stages/early_end.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
 
@@ -41,6 +43,8 @@ public:
         record_if_due(seen, verdict);
         if (stage_.drives())
           look_at_control(seen, finished);
+        if (finished)
+          look_at_end(seen, verdict);
         move(seen, finished);
         state_.place.steps += 1;
         if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
@@ -58,6 +62,8 @@ private:
     state_.servo.balanced_checks = 0;
     state_.control.restart();
     state_.pace.rate = 0; // of a shear stage: when it begins to shear
+    if (const std::string cycle = cycle_text(programme_.stages, state_.place.done); !cycle.empty())
+      observer_.event(fmt::format("stage {} ({}){}", state_.place.stage, stage_.kind(), cycle));
     stage_.begin(context_);
   }
 
@@ -81,13 +87,33 @@ private:
     const bool always = state_.place.steps == 0 || verdict.finished || verdict.notable;
     if (!always && last.step && seen.step - *last.step < spec.record_steps &&
         std::abs(seen.p - last.p) < spec.record_stress && std::abs(load - last.load) < spec.record_stress &&
-        std::abs(strain - last.strain) < spec.record_strain)
+        std::abs(strain - last.strain) < stage_.row_strain(spec.record_strain) &&
+        !(stage_.rows_by_any_component() && any_component_moved(seen)))
       return;
     const bool by_strain =
         spec.snapshots == "strain" && std::abs(strain - last.snapshot_strain) >= spec.snapshot_strain;
     const bool snapshot = stage_.shears() && spec.snapshots != "none" && (always || by_strain);
-    last = {seen.p, load, strain, seen.step, snapshot ? strain : last.snapshot_strain};
+    last = {seen.p,      load,        strain,   seen.step, snapshot ? strain : last.snapshot_strain,
+            seen.stress, seen.strain, seen.tau, seen.gamma};
     observer_.record(assembly_, state_, seen, snapshot);
+  }
+
+  bool any_component_moved(const Observation &seen) const
+  {
+    const RecordSpec &spec = programme_.record;
+    const RecordedState &last = state_.recorded;
+    const double stress = std::max((seen.stress - last.stress).cwiseAbs().maxCoeff(), std::abs(seen.tau - last.tau)),
+                 strain =
+                     std::max((seen.strain - last.strains).cwiseAbs().maxCoeff(), std::abs(seen.gamma - last.gamma));
+    return stress >= spec.record_stress || strain >= spec.record_strain;
+  }
+
+  /// Of the last step of a stage.
+  void look_at_end(const Observation &seen, const Verdict &verdict)
+  {
+    const bool at_once = state_.place.steps == 0 && !verdict.limited;
+    if ((verdict.limited || at_once) && note_early_end(stage_, context_, seen, at_once))
+      observer_.event(to_text(state_.early_ends.back(), programme_.stages));
   }
 
   void look_at_control(const Observation &seen, bool finished)

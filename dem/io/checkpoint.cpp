@@ -11,9 +11,9 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-checkpoint";
-// 5: nothing about control, repeats and paths; 4: no window of the slope;
-// 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
-constexpr std::uint64_t schema_version = 6;
+// 6: nothing about early ends, rows by any component; 5: nothing about control, repeats and paths;
+// 4: no window of the slope; 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
+constexpr std::uint64_t schema_version = 7;
 
 Checkpoint read_file(const std::filesystem::path &path)
 {

@@ -76,6 +76,40 @@ void check_pressure(const SceneDocument &document, const Scene &scene)
                                 most / 1e3, scene.contact->young / 1e9));
 }
 
+/// The pressure of the isotropic consolidation after which a stage begins for the first time, Pa; none: it begins after
+/// something else, or the scene does not tell.
+std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
+{
+  while (stage-- > 0)
+    if (const auto *servo = as<ServoStage>(scene.stages[stage]))
+      return servo->isotropic_pressure(scene.specimen.pressure);
+    else if (behaviour(scene.stages[stage]).takes_steps()) // a repeat ends with what stands before it
+      return std::nullopt;
+  const bool prepared = scene.specimen.file.empty() && scene.specimen.consolidation == "isotropic";
+  return prepared ? std::optional(scene.specimen.pressure) : std::nullopt;
+}
+
+/// Refuses loads that do not hold q = 0 and tau = 0, where these are known before the run. A campaign gives what its
+/// scene leaves out.
+void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i)
+{
+  constexpr double tolerance = 0.01; // of the pressure, on the stresses of a consolidation
+  const auto *shear = as<ShearStage>(scene.stages[i]);
+  const std::optional<double> pressure = shear ? isotropic_before(scene, i) : std::nullopt;
+  if (!pressure)
+    return;
+  const std::optional<LoadRange> loads = shear->required_loads(*pressure);
+  if (!loads || (loads->low <= tolerance * *pressure && loads->high >= -tolerance * *pressure))
+    return;
+  const char *turn = loads->low > 0 ? "turn.low" : "turn.high";
+  for (const auto &[given, blamed] :
+       {std::pair{"deviator_amplitude", "deviator_average"}, {"stress_ratio", "static_stress_ratio"}, {turn, turn}})
+    if (document.find(fmt::format("stage.{}.{}", i, given)))
+      document.refuse(fmt::format("stage.{}.{}", i, blamed),
+                      fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3,
+                                  shear->refusal(0, *pressure)));
+}
+
 void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
@@ -89,6 +123,7 @@ void check_stages(const SceneDocument &document, const Scene &scene)
                         fmt::format("there are {} stages before this one. Give as many or fewer.", i));
       if (behaviour(scene.stages[i]).needs_cell())
         need_cell(document, scene.specimen, kind, "change the kind");
+      check_static_bias(document, scene, i);
     }
 }
 

@@ -157,7 +157,9 @@ constexpr Key output_keys[] = {
    .text = "A row of the history is due whenever p' or q (in simple shear p' or tau) has moved by this much.",
    .field = [](Scene &s) -> Field { return &s.output.record_stress; }},
   {.path = "output.record_strain", .value = "1e-4", .range = positive,
-   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much.",
+   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much, in a path "
+           "that turns at a strain by 1/25 of that if it is less; in a path that drives nothing whenever any stress has moved "
+           "by `record_stress` or any strain by this much.",
    .field = [](Scene &s) -> Field { return &s.output.record_strain; }},
   {.path = "output.record_steps", .kind = Kind::integer, .value = "5000", .range = {1, 1e18},
    .text = "A row of the history is due after so many time steps at the latest.",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Running a scene, with a look at the packing on the way.   tested: tests/python/run_test.py
 #include "apps/common/run_output.hpp"
+#include "apps/common/stage_report.hpp"
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
@@ -193,6 +194,8 @@ void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Resul
 {
   watcher.keep_rows = true;
   result.finished = run_programme(request.scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
+  for (const std::string &line : stage_warnings(run.state, request.scene))
+    fmt::print(stderr, "warning: {}\n", line);
   result.columns = history_columns(request.scene);
   result.rows = std::move(watcher.rows);
 }

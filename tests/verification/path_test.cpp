@@ -6,8 +6,8 @@
 #include "dem/drive/programme.hpp"
 #include "dem/measure/stress.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/path_runs.hpp"
 #include "tests/support/periodic.hpp"
-#include "tests/support/specimens.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <fstream>
@@ -17,59 +17,7 @@ namespace isostat
 {
 namespace
 {
-/// Keeps what a test looks at.
-struct Watcher : RunObserver
-{
-  struct Row
-  {
-    Observation seen;
-    double volume;
-    std::uint64_t stage, reversals;
-    double time, place;
-  };
-  void record(const Assembly &a, const DriveState &state, const Observation &seen, bool) override
-  {
-    rows.push_back({seen, a.volume(), state.place.stage, state.undrained.reversals, a.time(), state.progress.place});
-  }
-  bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
-
-  std::vector<Row> rows;
-  std::uint64_t stop_at = 0;
-};
-
-struct Result
-{
-  Watcher watcher;
-  DriveState state;
-  Snapshot end;
-  const Watcher::Row &last() const { return watcher.rows.back(); }
-};
-
-Programme programme(std::vector<Stage> stages, std::uint64_t records = 100)
-{
-  return {.record = {.record_steps = records}, .stages = std::move(stages)};
-}
-
-Result run(std::vector<Stage> stages, const Snapshot &initial)
-{
-  Result result;
-  Assembly assembly(initial);
-  run_programme(programme(std::move(stages)), assembly, result.state, result.watcher);
-  result.end = assembly.checkpoint();
-  return result;
-}
-
-const Snapshot &box() { return test::specimen(1000, 8); }
-const Snapshot &cell() { return test::periodic_specimen(500, 8); }
-
-Path keeping(PathCondition x, PathCondition z, double strain)
-{
-  Path path;
-  path.components[0].keep = x;
-  path.components[2].keep = z;
-  path.end.strain = strain;
-  return path;
-}
+using namespace test;
 
 double b_of(const Vec3 &s) { return (s[2] - s[0]) / (s[1] - s[0]); }
 

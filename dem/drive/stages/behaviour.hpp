@@ -24,6 +24,7 @@ struct Observation
 struct Verdict
 {
   bool finished = false;
+  bool limited = false;   ///< finished by its limit of steps, before any condition of its own
   bool notable = false;   ///< record a row and, if requested, a snapshot
   std::string event = {}; ///< one line for the log; empty: nothing happened
 };
@@ -89,12 +90,22 @@ public:
   virtual double load(const Observation &seen) const { return seen.q; }
   virtual double strain(const Observation &seen) const { return seen.axial; }
 
+  /// Strains in which rows lie at most, where `asked` is what the output asks for [-].
+  virtual double row_strain(double asked) const { return asked; }
+  /// A row is due when any component of stress or strain has moved, and not only those that it drives.
+  virtual bool rows_by_any_component() const { return false; }
+
   /// Stresses that it is to keep at this moment, and the amount of driven strain at which it ends, 0 if that is not
   /// known: for the control (dem/drive/control.hpp) of a stage that shears.
   virtual KeptStresses kept_stresses(const StageContext &) const { return {}; }
   /// What a deviation of them is judged against where their targets are lower, Pa.
   virtual double stress_scale(const StageContext &) const { return 0; }
   virtual double planned_strain() const { return 0; }
+
+  /// Conditions of its own that end it, with what was reached: "strain = 5 % (1.2 % reached), ..."; empty: it has none.
+  virtual std::string conditions(const StageFigures &) const { return {}; }
+  /// What they look at.   cost a pass over contacts and grains
+  virtual StageFigures figures(const StageContext &c, const Observation &seen) const;
 
   /// How much of it is done, 0..1; nothing if that cannot be told.
   virtual std::optional<double> fraction_done(const DriveState &) const { return std::nullopt; }
@@ -110,8 +121,8 @@ public:
   Verdict judge(const StageContext &c, const Observation &seen) const final
   {
     Verdict verdict = reached(c, seen);
-    if (max_steps > 0 && c.state.place.steps + 1 >= max_steps)
-      verdict.finished = true;
+    if (!verdict.finished && max_steps > 0 && c.state.place.steps + 1 >= max_steps)
+      verdict.finished = verdict.limited = true;
     return verdict;
   }
 

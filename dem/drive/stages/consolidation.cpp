@@ -35,6 +35,31 @@ Verdict BalancedStage::reached(const StageContext &c, const Observation &) const
   return {.finished = checks >= 2};
 }
 
+std::string BalancedStage::conditions(const StageFigures &reached) const
+{
+  return fmt::format("balance = {:g} ({:.3g} reached)", balance, reached.unbalanced);
+}
+
+std::string ServoStage::conditions(const StageFigures &reached) const
+{
+  return fmt::format("{}, stresses within {:g} % of their target ({:.3g} % reached)",
+                     BalancedStage::conditions(reached), 100 * stress_tolerance(), 100 * reached.stress_error);
+}
+
+StageFigures ServoStage::figures(const StageContext &c, const Observation &seen) const
+{
+  StageFigures now = BalancedStage::figures(c, seen);
+  now.stress_error = stress_error(c.assembly, target(c), axes());
+  return now;
+}
+
+std::optional<double> ServoStage::isotropic_pressure(double standard) const
+{
+  if (axes() != std::array{true, true, true} || max_steps > 0)
+    return std::nullopt;
+  return pressure > 0 ? pressure : standard;
+}
+
 bool ServoStage::on_target(const StageContext &c) const
 {
   return stress_error(c.assembly, target(c), axes()) < stress_tolerance();

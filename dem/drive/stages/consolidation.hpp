@@ -28,6 +28,7 @@ public:
   double balance = 1e-4; ///< unbalanced-force ratio that ends it [-]
 
   bool operator==(const BalancedStage &) const = default;
+  std::string conditions(const StageFigures &reached) const override;
 
 protected:
   Verdict reached(const StageContext &c, const Observation &) const final;
@@ -55,6 +56,10 @@ public:
 
   /// The axes whose stress is brought to `pressure`; the others keep their strain.
   virtual std::array<bool, 3> axes() const { return {true, true, true}; }
+  /// The pressure that it leaves isotropically, Pa.   @param standard  of the servo; none: another stress, or unknown
+  std::optional<double> isotropic_pressure(double standard) const;
+  std::string conditions(const StageFigures &reached) const final;
+  StageFigures figures(const StageContext &c, const Observation &seen) const final;
 
 protected:
   bool on_target(const StageContext &c) const final;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/constant_volume.hpp"
 
-#include "base/error.hpp"
 #include "dem/drive/stages/cyclic_response.hpp"
 
 #include <algorithm>
@@ -52,16 +51,24 @@ double CyclicConstantVolume::turning_load(const DriveState &state) const
 void CyclicConstantVolume::begin_shear(const StageContext &c, const Mat3 &stress) const
 {
   ConstantVolume::begin_shear(c, stress);
-  const double sigma_v = c.state.path.lateral_target[1], load = c.state.loading.window_load;
-  const double lower = average(sigma_v) - amplitude(sigma_v), upper = average(sigma_v) + amplitude(sigma_v);
-  const bool biased = average(sigma_v) != 0; // without a bias a specimen outside turns at once, as it always did
-  if (biased && (load < lower || load > upper))
-    throw InputError(fmt::format(
-        "stage {} ({}): {} = {:.4g} kPa when it begins, outside of the loads {} = {:.4g} and {:.4g} kPa between which "
-        "it is "
-        "to turn. Bring the specimen between them first (docs/user_guide.md, \"Static bias\"), or change the loads.",
-        c.state.place.stage, kind(), mode().load_name, load / 1e3, limits_text(), lower / 1e3, upper / 1e3));
-  begin_response(load, c.state);
+  begin_response(c.state.loading.window_load, c.state);
+}
+
+std::optional<LoadRange> CyclicConstantVolume::required_loads(double sigma_v) const
+{
+  const double middle = average(sigma_v), low = middle - amplitude(sigma_v), high = middle + amplitude(sigma_v);
+  if (middle == 0)
+    return std::nullopt;
+  return LoadRange{low, high, fmt::format("{} = {:.4g} and {:.4g} kPa", limits_text(), low / 1e3, high / 1e3)};
+}
+
+std::string CyclicConstantVolume::conditions(const StageFigures &reached) const
+{
+  const std::string after = reached.since_liquefied ? std::to_string(*reached.since_liquefied) : "not liquefied";
+  return fmt::format("until.cycles = {} ({:g} reached), until.reversals_after_liquefaction = {} ({}), until.strain = "
+                     "{:g} % ({:.4g} %)",
+                     max_cycles, static_cast<double>(reached.reversals) / 2, reversals_after_liquefaction, after,
+                     100 * max_strain, 100 * reached.strain);
 }
 
 Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &seen) const

@@ -65,7 +65,10 @@ public:
   bool operator==(const CyclicConstantVolume &) const = default;
   double inertial_number() const final { return 7e-4; }
   std::optional<double> fraction_done(const DriveState &state) const final;
-  /// @throws InputError  the specimen stands outside of the two loads when the stage begins
+  std::string conditions(const StageFigures &reached) const final;
+  /// With a bias alone: without one a specimen outside turns at once, as it always did.
+  std::optional<LoadRange> required_loads(double sigma_v) const final;
+  bool notes_response() const final { return true; }
   void begin_shear(const StageContext &c, const Mat3 &stress) const final;
 
   /// The loads between which it turns, Pa.   @param sigma_v  vertical stress when the stage begins, Pa

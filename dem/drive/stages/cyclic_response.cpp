@@ -25,9 +25,9 @@ void begin_response(double load, DriveState &state)
   begin_half_cycle(load, state);
 }
 
-void turn_response(double load, DriveState &state)
+void turn_response(double load, DriveState &state, bool at_load)
 {
-  if (std::optional<Softening> &flow = state.undrained.response.flow)
+  if (std::optional<Softening> &flow = state.undrained.response.flow; flow && at_load)
     flow->recovered = true;
   begin_half_cycle(load, state);
 }

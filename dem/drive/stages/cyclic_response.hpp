@@ -28,8 +28,8 @@ constexpr double accumulated_gamma = 0.075; ///< at which tests without liquefac
 
 /// At the start of a cyclic stage.   @param load  driven, Pa
 void begin_response(double load, DriveState &state);
-/// At a turn.
-void turn_response(double load, DriveState &state);
+/// At a turn.   @param at_load  the load reached its turning point; false: the strain did, before it
+void turn_response(double load, DriveState &state, bool at_load = true);
 /// Each step; adds an event to the verdict when the specimen begins to flow.
 /// @param strain  driven, since the start of shearing [-]   @param amplitude  of the load, Pa
 void follow_response(double load, double strain, double amplitude, const ShearMode &mode, std::uint64_t step,

@@ -4,40 +4,40 @@
 #include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
+#include "dem/drive/stages/cyclic_response.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
 
 namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t rest_interval = 200, hopeless_steps = 20'000'000;
-constexpr double rest_tolerance = 0.005; ///< relative, on the stresses at the end of a path that is not driven
 constexpr std::size_t xy = 3;
+constexpr double rows_between_turns = 50;
 constexpr PathQuantity stresses[] = {PathQuantity::sigma_x, PathQuantity::sigma_y, PathQuantity::sigma_z,
                                      PathQuantity::tau};
 constexpr PathQuantity strains[] = {PathQuantity::strain_x, PathQuantity::strain_y, PathQuantity::strain_z,
                                     PathQuantity::gamma};
-
-bool follows_stress(const PathComponent &component) { return component.keep >= PathCondition::stress; }
 
 bool prescribes_shear(const PathTable &table)
 {
   return table.prescribes(PathQuantity::tau) || table.prescribes(PathQuantity::gamma);
 }
 
-/// The value has been passed since the stage began.
-bool passed(const std::optional<double> &value, double start, double now)
-{
-  return value && (start - *value) * (now - *value) <= 0;
-}
 } // namespace
 
-const ShearMode &Path::mode() const { return drive == DrivenComponent::xy ? simple_shear_mode : triaxial_mode; }
+const ShearMode &Path::mode() const
+{
+  if (drive == DrivenComponent::x || drive == DrivenComponent::z)
+    return lateral_mode;
+  return drive == DrivenComponent::xy ? simple_shear_mode : triaxial_mode;
+}
 
 bool Path::needs_cell() const
 {
@@ -45,11 +45,7 @@ bool Path::needs_cell() const
          (read_.table && prescribes_shear(*read_.table));
 }
 
-double Path::load(const Observation &seen) const
-{
-  const bool lateral = drive == DrivenComponent::x || drive == DrivenComponent::z;
-  return lateral ? -seen.q : seen.*mode().load;
-}
+double Path::load(const Observation &seen) const { return &mode() == &lateral_mode ? -seen.q : seen.*mode().load; }
 
 double Path::strain(const Observation &seen) const
 {
@@ -68,11 +64,29 @@ bool Path::keeps_volume() const
     {
       if (is_driven(k))
         continue;
-      if (follows_stress(components[k]) || table().prescribes(strains[k]))
+      if (components[k].follows_stress() || table().prescribes(strains[k]))
         return false;
       sum += components[k].strain_ratio;
     }
   return drive != DrivenComponent::none && std::abs(sum) < 1e-12;
+}
+
+double Path::row_strain(double asked) const
+{
+  return turn.strain > 0 ? std::min(asked, 2 * turn.strain / rows_between_turns) : asked;
+}
+
+std::optional<LoadRange> Path::required_loads(double) const
+{
+  if (!turn.low && !turn.high)
+    return std::nullopt;
+  std::vector<std::string> text;
+  if (turn.low)
+    text.push_back(fmt::format("turn.low = {:.4g} kPa", *turn.low / 1e3));
+  if (turn.high)
+    text.push_back(fmt::format("turn.high = {:.4g} kPa", *turn.high / 1e3));
+  constexpr double any = std::numeric_limits<double>::infinity();
+  return LoadRange{turn.low.value_or(-any), turn.high.value_or(any), fmt::format("{}", fmt::join(text, " and "))};
 }
 
 double Path::turning_load(const DriveState &state) const
@@ -89,14 +103,6 @@ double Path::turning_strain(const DriveState &state) const
 void Path::begin_shear(const StageContext &c, const Mat3 &stress) const
 {
   ShearStage::begin_shear(c, stress);
-  const double present = c.state.loading.window_load;
-  const double low = turn.low.value_or(present), high = turn.high.value_or(present);
-  if (present < low || present > high)
-    throw InputError(
-        fmt::format("stage {} (path): the load is {:.4g} kPa when it begins, outside of turn.low = {:.4g} and "
-                    "turn.high = {:.4g} kPa between which it is to turn. Bring the specimen between them "
-                    "first, or change the loads.",
-                    c.state.place.stage, present / 1e3, low / 1e3, high / 1e3));
   PathProgress &progress = c.state.progress;
   progress = {};
   progress.stress = -stress.diagonal();
@@ -104,6 +110,8 @@ void Path::begin_shear(const StageContext &c, const Mat3 &stress) const
   progress.volume = c.assembly.volume();
   progress.reversals = c.state.undrained.reversals;
   progress.table = table_hash();
+  if (notes_response())
+    begin_response(c.state.loading.window_load, c.state);
 }
 
 Vec3 Path::stress_targets(const DriveState &state, const Mat3 &stress) const
@@ -166,9 +174,9 @@ KeptStresses Path::kept_stresses(const StageContext &c) const
   KeptStresses kept;
   const Vec3 targets = stress_targets(c.state, c.assembly.stress());
   for (std::size_t k = 0; k < 3; ++k)
-    if (follows_stress(components[k]))
+    if (components[k].follows_stress())
       kept[k] = targets[static_cast<int>(k)];
-  if (follows_stress(components[xy]))
+  if (components[xy].follows_stress())
     kept[xy] = tau_target(c.state);
   return kept;
 }
@@ -256,7 +264,7 @@ RigidBox Path::next_box(const StageContext &c, const Observation &seen) const
   const std::array<double, 4> prescribed = prescribed_steps(c, seen);
   std::array<bool, 3> controlled = {};
   for (std::size_t k = 0; k < 3; ++k)
-    controlled[k] = follows_stress(components[k]);
+    controlled[k] = components[k].follows_stress();
   const Vec3 reference = c.state.path.reference.edges();
   Vec3 edges = servo_edges(c.assembly, stress_targets(c.state, c.assembly.stress()), controlled,
                            servo_rate_factor * c.state.pace.rate, c.state.servo);
@@ -275,8 +283,8 @@ Mat3 Path::next_gradient(const StageContext &c, const Observation &seen) const
   const std::array<double, 4> prescribed = prescribed_steps(c, seen);
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
   for (int k = 0; k < 3; ++k)
-    controlled(k, k) = follows_stress(components[k]);
-  controlled(0, 1) = controlled(1, 0) = follows_stress(components[xy]);
+    controlled(k, k) = components[k].follows_stress();
+  controlled(0, 1) = controlled(1, 0) = components[xy].follows_stress();
   Mat3 target = (-stress_targets(c.state, c.assembly.stress())).asDiagonal();
   target(0, 1) = target(1, 0) = tau_target(c.state);
   const Mat3 served = stress_servo(c.assembly, target, controlled, servo_rate_factor * c.state.pace.rate,
@@ -291,50 +299,6 @@ Mat3 Path::next_gradient(const StageContext &c, const Observation &seen) const
   return gradient;
 }
 
-bool Path::at_rest(const StageContext &c) const
-{
-  const bool any_stress = std::any_of(components.begin(), components.end(), follows_stress);
-  if (!any_stress)
-    return true;
-  const std::uint64_t steps = c.state.place.steps;
-  if (steps % rest_interval != 0)
-    return false;
-  const KeptStresses kept = kept_stresses(c);
-  const Mat3 stress = c.assembly.stress();
-  const double p = c.state.progress.stress.mean();
-  double worst = 0;
-  for (int k = 0; k < 3; ++k)
-    if (kept[static_cast<std::size_t>(k)])
-      worst = std::max(worst, std::abs(-stress(k, k) - *kept[static_cast<std::size_t>(k)]) / p);
-  if (kept[xy])
-    worst = std::max(worst, std::abs(stress(0, 1) - *kept[xy]) / p);
-  if (steps > hopeless_steps)
-    throw RunFailure(
-        fmt::format("step {}: stage 'path' is not in balance after {} steps (stresses off by {:.3g} of p', "
-                    "unbalanced {:.3g}, requested {:.3g})",
-                    c.assembly.step(), steps, worst, c.assembly.unbalanced_force_ratio(), balance));
-  std::uint64_t &checks = c.state.servo.balanced_checks;
-  checks = worst < rest_tolerance && c.assembly.unbalanced_force_ratio() < balance ? checks + 1 : 0;
-  return checks >= 2;
-}
-
-bool Path::ends(const StageContext &c, const Observation &seen) const
-{
-  const PathProgress &progress = c.state.progress;
-  const StressInvariants start = invariants(Vec3(-progress.stress));
-  const auto ratio = [](double q, double p) { return p > 0 ? q / p : 0; };
-  if ((end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain) || passed(end.q, start.q, seen.q) ||
-      passed(end.p, start.p, seen.p) || passed(end.stress_ratio, ratio(start.q, start.p), ratio(seen.q, seen.p)))
-    return true;
-  if (end.volumetric_strain > 0 && std::abs(std::log(c.assembly.volume() / progress.volume)) >= end.volumetric_strain)
-    return true;
-  if (end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * end.cycles)
-    return true;
-  const PathTable &knots = table();
-  const bool walked = knots.at.empty() || progress.place >= knots.at.back();
-  return drive == DrivenComponent::none && walked && at_rest(c);
-}
-
 void Path::turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const
 {
   DriveState &state = c.state;
@@ -343,6 +307,8 @@ void Path::turn_round(const StageContext &c, const Observation &seen, Verdict &v
     state.undrained.worst_overshoot = std::max(state.undrained.worst_overshoot, over);
   state.undrained.reversals += 1;
   state.loading.direction = opposite(state.loading.direction);
+  if (notes_response())
+    turn_response(now, state, over >= 0);
   load_from_rest(c, now);
   verdict.notable = true;
   verdict.event =
@@ -360,21 +326,16 @@ Verdict Path::reached(const StageContext &c, const Observation &seen) const
                     c.state.place.stage, file));
   if (shears() && keeps_volume())
     note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);
+  if (notes_response())
+    follow_response(load(seen), strain(seen), (*turn.high - *turn.low) / 2, mode(), seen.step, c.state, verdict);
   const double direction = sign(c.state.loading.direction);
   if (turns() && (direction * load(seen) >= direction * turning_load(c.state) ||
                   direction * c.state.loading.strain >= direction * turning_strain(c.state)))
     turn_round(c, seen, verdict);
   verdict.finished = ends(c, seen);
+  if (!verdict.finished)
+    fail_if_hopeless(c, seen);
   return verdict;
 }
 
-std::optional<double> Path::fraction_done(const DriveState &state) const
-{
-  if (end.cycles > 0)
-    return static_cast<double>(state.undrained.reversals - state.progress.reversals) /
-           (2.0 * static_cast<double>(end.cycles));
-  if (drive == DrivenComponent::none && !table().at.empty())
-    return std::min(state.progress.place / table().at.back(), 1.0);
-  return end.strain > 0 ? std::optional(std::abs(state.loading.strain) / end.strain) : std::nullopt;
-}
 } // namespace isostat

@@ -41,6 +41,8 @@ struct PathComponent
   std::optional<double> stress; ///< target of the condition stress, Pa; none: as when the stage began
 
   bool operator==(const PathComponent &) const = default;
+  /// A servo moves it.
+  bool follows_stress() const { return keep >= PathCondition::stress; }
 };
 
 enum class DrivenComponent
@@ -52,7 +54,8 @@ enum class DrivenComponent
   xy
 };
 
-/// Where a path ends: at whichever comes first. Stresses are passed from either side.
+/// Where a path ends: at whichever comes first. Stresses are passed from either side; one that is there when the stage
+/// begins, within 0.1 % of p', ends it at once.
 struct PathEnd
 {
   double strain = 0;                  ///< driven in this stage, amount [-]; 0: does not end it
@@ -64,7 +67,8 @@ struct PathEnd
   bool operator==(const PathEnd &) const = default;
 };
 
-/// Where the driven component turns. Loads are q of y, -q of x and z, tau of xy.
+/// Where the driven component turns: each way at whichever of load and strain comes first. Loads are q of y, -q of x
+/// and z, tau of xy.
 struct PathTurn
 {
   double strain = 0;               ///< amplitude of the driven strain about where the stage began [-]; 0: none
@@ -74,6 +78,8 @@ struct PathTurn
 };
 
 /// @throws InputError  when it begins: outside of its loads, or a stress that is no compression
+/// @throws RunFailure  driven to 100 % of strain with nothing that ends it for sure: no until.strain, turn.strain and
+///         max_steps; or not in balance after 2e7 steps
 /// tested: tests/dem/drive/stages/path_test.cpp, tests/verification/path_test.cpp
 class Path : public ShearStage, public LiquefactionLimit
 {
@@ -104,6 +110,14 @@ public:
   double load(const Observation &seen) const override;
   double strain(const Observation &seen) const override;
   std::optional<double> fraction_done(const DriveState &state) const override;
+  std::string conditions(const StageFigures &reached) const override;
+  StageFigures figures(const StageContext &c, const Observation &seen) const override;
+  std::optional<LoadRange> required_loads(double sigma_v) const override;
+  /// Undrained cycles between two loads.
+  bool notes_response() const override { return shears() && turn.low && turn.high && keeps_volume(); }
+  /// At least 50 rows from one turn at a strain to the next.
+  double row_strain(double asked) const override;
+  bool rows_by_any_component() const override { return drive == DrivenComponent::none; }
 
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
   RigidBox next_box(const StageContext &c, const Observation &seen) const override;
@@ -135,6 +149,9 @@ private:
   bool is_driven(std::size_t k) const { return static_cast<std::size_t>(drive) == k + 1; }
   bool ends(const StageContext &c, const Observation &seen) const;
   bool at_rest(const StageContext &c) const;
+  /// Largest |stress - target| over p' when the stage began.
+  double target_error(const StageContext &c) const;
+  void fail_if_hopeless(const StageContext &c, const Observation &seen) const;
   void turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const;
   void walk(const StageContext &c) const;
   std::uint64_t table_hash() const { return table(), read_.hash; }

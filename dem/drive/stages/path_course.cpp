@@ -74,6 +74,9 @@ std::string Path::contradiction() const
     return "mean_stress needs an axis with keep = \"p\"";
   if (turns() && drive == DrivenComponent::none)
     return "turn needs a driven component";
+  if (turn.low.has_value() != turn.high.has_value() && turn.strain == 0)
+    return fmt::format("turn.{} alone turns it once and never back; give turn.{}, or turn.strain for the other side",
+                       turn.low ? "low" : "high", turn.low ? "high" : "low");
   if (turn.low && turn.high && *turn.low >= *turn.high)
     return "turn.low must be below turn.high";
   const bool one_way_end = end.strain > 0 || end.volumetric_strain > 0 || end.q || end.p || end.stress_ratio;
@@ -85,6 +88,10 @@ std::string Path::contradiction() const
                                                       [](const PathComponent &c) { return c.stress.has_value(); });
   if (!file.empty() && has_targets)
     return "a table excludes stress and mean_stress: give them as columns of it";
+  if (drive == DrivenComponent::none && file.empty() && !has_targets && n_b == 0)
+    return "drive = \"none\", but nothing is prescribed; drive a component, give a stress, mean_stress or table, or "
+           "wait "
+           "for balance in a stage of kind \"hold\"";
   return "";
 }
 

@@ -83,7 +83,7 @@ constexpr std::array<Key, 4> xy = component<3>("xy", "xy.keep", "xy.strain_ratio
 constexpr Key first[] = {
   {.path = "drive", .kind = Kind::choice, .value = "y", .choices = drives, .kinds = of_path,
    .text = "The component whose strain is driven, at the rate of the rate control: an axis (compression first), or xy, the "
-           "shear of simple shear (periodic-cell only). none: stresses or the table lead.",
+           "shear of simple shear (periodic-cell only). none: stresses or the table lead; one of them must be given.",
    .field = Drive{}},
 };
 constexpr Key others[] = {
@@ -111,7 +111,8 @@ constexpr Key others[] = {
     {.path = "balance", .value = "1e-3", .range = ranges::fraction,
      .text = "Unbalanced-force ratio at which a stage that drives nothing ends, with its stresses within 0.5 % of p'."}),
   {.path = "turn", .kind = Kind::table, .presence = Presence::optional, .value = "{ strain = 0.01 }", .kinds = of_path,
-   .text = "Where the driven component turns: cyclic tests.", .field = Nowhere{}},
+   .text = "Where the driven component turns, each way at whichever of load and strain comes first: cyclic tests. One load alone "
+           "needs `turn.strain` for the other side.", .field = Nowhere{}},
   {.path = "turn.strain", .presence = Presence::optional, .value = "0.01", .range = ranges::to_ten,
    .reason = "because this is a strain, not percent", .kinds = of_path,
    .text = "Amplitude of the driven strain, about where the stage began.",
@@ -125,7 +126,9 @@ constexpr Key others[] = {
    .field = InPart<&Path::turn, &PathTurn::high>{}},
   {.path = "until", .kind = Kind::table, .presence = Presence::optional, .value = "{ strain = 0.05 }", .kinds = of_path,
    .text = "When the stage ends: at whichever of its conditions comes first. A stage that drives nothing ends by itself, where "
-           "its path does.",
+           "its path does. One that drives a component and has neither `until.strain` nor `turn.strain` nor `max_steps` "
+           "fails at 100 % of driven strain. A stress that is within 0.1 % of p' of its value when the stage begins ends "
+           "the stage at once, with a warning.",
    .field = Nowhere{}},
   {.path = "until.strain", .presence = Presence::optional, .value = "0.05", .range = ranges::to_ten,
    .reason = "because this is a strain, not percent", .kinds = of_path, .text = "Driven strain of the stage, its amount.",

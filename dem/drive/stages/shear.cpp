@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/shear.hpp"
 
+#include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/measure/stiffness.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -28,6 +30,13 @@ const ShearMode triaxial_mode{
     .needs_cell = false,
     .constant_volume = [](double step) -> Mat3 { return isochoric(step).asDiagonal(); },
 };
+
+const ShearMode lateral_mode = [] {
+  ShearMode mode = triaxial_mode;
+  mode.load_name = "-q";
+  mode.strain_name = "lateral strain";
+  return mode;
+}();
 
 const ShearMode simple_shear_mode{
     .load = &Observation::tau,
@@ -60,6 +69,23 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
   set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
   load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
+  if (const std::string why = refusal(c.state.loading.window_load, path.lateral_target[1]); !why.empty())
+    throw InputError(fmt::format("stage {} ({}): {}", c.state.place.stage, kind(), why));
+}
+
+std::string ShearStage::refusal(double load, double sigma_v) const
+{
+  const std::optional<LoadRange> range = required_loads(sigma_v);
+  if (!range || (load >= range->low && load <= range->high))
+    return "";
+  return fmt::format("{} = {:.4g} kPa when it begins, outside of the loads {} between which it is to turn. Bring the "
+                     "specimen between them first (docs/user_guide.md, \"Static bias\"), or change the loads.",
+                     mode().load_name, load / 1e3, range->text);
+}
+
+std::string ShearStage::conditions(const StageFigures &reached) const
+{
+  return fmt::format("strain = {:g} % ({:.4g} % reached)", 100 * strain_end, 100 * reached.driven);
 }
 
 void ShearStage::load_from_rest(const StageContext &c, double present) const

@@ -16,8 +16,16 @@ struct ShearMode
   bool needs_cell;
   Mat3 (*constant_volume)(double step); ///< displacement gradient of constant volume for a step of driven strain
 };
+extern const ShearMode lateral_mode;      ///< -q against the strain of another axis
 extern const ShearMode triaxial_mode;     ///< q against axial (y) strain; laterally half of it in extension
 extern const ShearMode simple_shear_mode; ///< tau = sigma_xy against gamma_xy; nothing else moves
+
+/// Loads between which a specimen must stand when a stage begins.
+struct LoadRange
+{
+  double low, high; ///< Pa; of infinite amount: any
+  std::string text; ///< "turn.low = 20 kPa and turn.high = 60 kPa"
+};
 
 /// A stage that drives a strain at the rate of the rate control (dem/drive/rate_control.hpp), with ramps. It goes one
 /// way to a strain unless it turns.
@@ -37,11 +45,19 @@ public:
   bool needs_cell() const override { return mode().needs_cell; }
   bool shears() const override { return true; }
   void begin(const StageContext &c) const override;
+  /// @throws InputError  the specimen stands outside of required_loads()
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
   double load(const Observation &seen) const override { return seen.*mode().load; }
   double strain(const Observation &seen) const override { return seen.*mode().strain; }
   double planned_strain() const override { return strain_end; }
   std::optional<double> fraction_done(const DriveState &state) const override;
+  std::string conditions(const StageFigures &reached) const override;
+  /// @param sigma_v  vertical stress when it begins, Pa
+  virtual std::optional<LoadRange> required_loads(double /*sigma_v*/) const { return std::nullopt; }
+  /// Why it cannot begin at a load, Pa, as the end of a sentence; empty: it can.
+  std::string refusal(double load, double sigma_v) const;
+  /// What the specimen does under its cycles of load is noted and has a name (cyclic_response.hpp).
+  virtual bool notes_response() const { return false; }
 
 protected:
   /// Begins to load from rest, with half the affine modulus as the slope that is expected.

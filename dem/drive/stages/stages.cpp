@@ -84,7 +84,8 @@ constexpr Key keys[] = {
              "says."}),
   of<&SteppedStage::max_steps>(
     {.path = "max_steps", .kind = Kind::integer, .value = "0",
-     .text = "Ends the stage after so many time steps; 0: no limit."}),
+     .text = "Ends the stage after so many time steps; 0: no limit. A stage that has not met its own conditions by then is warned "
+             "of, with what was reached."}),
   of<&Repeat::stages>(
     {.path = "stages", .kind = Kind::integer, .value = "1", .range = {1, 1e3},
      .text = "So many stages before this one are done again, in their order; a repeat among them counts as one."}),

@@ -63,9 +63,70 @@ TEST(PathKeys, ThatMakeNoPathAreRefused)
            {until + "mean_stress = \"1 kPa\"", "mean_stress needs an axis"},
            {until + "drive = \"none\"\nturn.strain = 0.1", "turn needs a driven component"},
            {until + "turn = { low = \"2 kPa\", high = \"1 kPa\" }", "turn.low must be below"},
+           {until + "turn.low = \"-2 kPa\"",
+            "turn.low alone turns it once and never back; give turn.high, or turn.strain"},
+           {until + "turn.high = \"2 kPa\"", "turn.high alone turns it once and never back; give turn.low"},
+           {"drive = \"none\"", "nothing is prescribed"},
+           {until + "drive = \"none\"\nx.keep = \"stress\"\nmax_steps = 10", "nothing is prescribed"},
+           {until + "drive = \"none\"\nx.keep = \"p\"\ny.keep = \"p\"", "nothing is prescribed"},
            {"until.cycles = 2\nuntil.strain = 0.1", "until.cycles needs turn"},
            {until + "table = \"a.csv\"\nx = { keep = \"stress\", stress = \"1 kPa\" }", "a table excludes"}})
     EXPECT_NE(complaint(stage).find(part), std::string::npos) << stage << "\n" << complaint(stage);
+}
+
+TEST(PathKeys, OfOneLoadAndAStrainOrOfAnIntermediateStressMakeAPath)
+{
+  for (const char *stage :
+       {"turn = { low = \"-20 kPa\", strain = 0.01 }\nuntil.cycles = 3", "turn.strain = 0.01\nuntil.cycles = 3",
+        "drive = \"none\"\nmean_stress = \"300 kPa\"\nx.keep = \"p\"",
+        "drive = \"none\"\ny.keep = \"stress\"\nz.keep = \"b\"\nb = 0.5"})
+    EXPECT_EQ(complaint(stage), "") << stage;
+}
+
+/// Loads that do not hold q = 0 or tau = 0 are refused where the scene says that these are what a stage begins with.
+TEST(StaticBias, ThatIsotropicConsolidationCannotGiveIsRefusedAtReading)
+{
+  const std::string
+      triaxial = "[[stage]]\nkind = \"undrained-cyclic\"\ndeviator_average = \"80 kPa\"\n"
+                 "deviator_amplitude = \"40 kPa\"\n",
+      shear = "[[stage]]\nkind = \"undrained-cyclic-simple-shear\"\nstatic_stress_ratio = -0.3\n"
+              "stress_ratio = 0.1\n",
+      path = "[[stage]]\nkind = \"path\"\nturn = { low = \"10 kPa\", high = \"50 kPa\" }\nuntil.cycles = 3\n",
+      compress = "[[stage]]\nkind = \"compress\"\npressure = \"100 kPa\"\n",
+      friction = "[[stage]]\nkind = \"friction\"\nfriction = \"9 deg\"\n",
+      anisotropic = "[[stage]]\nkind = \"path\"\ndrive = \"none\"\ny = { keep = \"stress\", stress = \"300 kPa\" }\n",
+      hold = "[[stage]]\nkind = \"hold\"\n", k0 = "[[stage]]\nkind = \"k0-compress\"\n",
+      limited = compress + "max_steps = 10\n";
+  const auto message = [](const std::string &stages, const std::vector<std::string> &set = {}) -> std::string {
+    const std::string head = "[contact]\nfriction = \"18 deg\"\n[specimen]\npreparation_friction = \"10 deg\"\n"
+                             "domain = \"periodic-cell\"\n"; // six lines with the last stage's first
+    try
+      {
+        parse_scene(head + stages, "s.toml", set);
+        return "";
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+  };
+  EXPECT_EQ(message(triaxial).find("s.toml:8: stage.0.deviator_average = 80 kPa; cannot be held after isotropic "
+                                   "consolidation to 200 kPa: q = 0 kPa when it begins, outside of the loads"),
+            0u)
+      << message(triaxial);
+  EXPECT_NE(message(shear).find("s.toml:8: stage.0.static_stress_ratio"), std::string::npos) << message(shear);
+  EXPECT_NE(message(path).find("s.toml:8: stage.0.turn.low = 10 kPa; cannot"), std::string::npos) << message(path);
+  for (const std::string &before :
+       {compress, compress + friction, compress + "[[stage]]\nkind = \"repeat\"\ntimes = 2\n"})
+    EXPECT_NE(message(before + triaxial).find("to 100 kPa"), std::string::npos) << before << message(before + triaxial);
+  for (const std::string &before :
+       {anisotropic, compress + hold, compress + k0, limited, compress + anisotropic + friction})
+    EXPECT_EQ(message(before + triaxial), "") << before;
+  for (const char *set : {"specimen.consolidation=k0", "specimen.file=a.h5", "stage.0.deviator_average=0 kPa",
+                          "stage.0.deviator_average=40.5 kPa", "stage.0.deviator_amplitude=90 kPa"})
+    EXPECT_EQ(message(triaxial, {set}), "") << set;
+  EXPECT_EQ(message("[[stage]]\nkind = \"undrained-cyclic\"\ndeviator_average = \"80 kPa\"\n"), "")
+      << "a campaign gives the amplitude";
 }
 
 TEST(PathKeys, ShearNeedsTheCell)
@@ -90,7 +151,8 @@ TEST(PathTurn, ASpecimenOutsideOfItsLoadsIsRefused)
     }
   catch (const InputError &error)
     {
-      EXPECT_NE(std::string(error.what()).find("outside of turn.low = 20"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("outside of the loads turn.low = 20"), std::string::npos)
+          << error.what();
     }
 }
 } // namespace

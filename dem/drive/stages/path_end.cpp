@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a path ends, how far it has come, and what it says when it does not get there.
+#include "base/error.hpp"
+#include "dem/drive/stages/path.hpp"
+#include "dem/measure/stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::uint64_t rest_interval = 200, hopeless_steps = 20'000'000;
+constexpr double rest_tolerance = 0.005;  ///< relative to p', on the stresses at the end of a path that is not driven
+constexpr double start_tolerance = 0.001; ///< relative to p', on a stress that ends the path and is there already
+constexpr double hopeless_strain = 1;     ///< driven, where nothing ends the path for sure [-]
+constexpr std::size_t xy = 3;
+
+/// The value has been passed since the stage began, or was there then.
+bool passed(const std::optional<double> &value, double start, double now, double tolerance)
+{
+  return value && (std::abs(start - *value) <= tolerance || (start - *value) * (now - *value) <= 0);
+}
+
+double ratio_of(double q, double p) { return p > 0 ? q / p : 0; }
+
+double volumetric_strain(const StageContext &c)
+{
+  return std::abs(std::log(c.assembly.volume() / c.state.progress.volume));
+}
+} // namespace
+
+double Path::target_error(const StageContext &c) const
+{
+  const KeptStresses kept = kept_stresses(c);
+  const Mat3 stress = c.assembly.stress();
+  const double p = c.state.progress.stress.mean();
+  double worst = 0;
+  for (int k = 0; k < 3; ++k)
+    if (kept[static_cast<std::size_t>(k)])
+      worst = std::max(worst, std::abs(-stress(k, k) - *kept[static_cast<std::size_t>(k)]) / p);
+  if (kept[xy])
+    worst = std::max(worst, std::abs(stress(0, 1) - *kept[xy]) / p);
+  return worst;
+}
+
+bool Path::at_rest(const StageContext &c) const
+{
+  const bool any_stress =
+      std::any_of(components.begin(), components.end(), [](const PathComponent &k) { return k.follows_stress(); });
+  if (!any_stress)
+    return true;
+  const std::uint64_t steps = c.state.place.steps;
+  if (steps % rest_interval != 0)
+    return false;
+  const double worst = target_error(c);
+  if (steps > hopeless_steps)
+    throw RunFailure(
+        fmt::format("step {}: stage 'path' is not in balance after {} steps (stresses off by {:.3g} of p', "
+                    "unbalanced {:.3g}, requested {:.3g})",
+                    c.assembly.step(), steps, worst, c.assembly.unbalanced_force_ratio(), balance));
+  std::uint64_t &checks = c.state.servo.balanced_checks;
+  checks = worst < rest_tolerance && c.assembly.unbalanced_force_ratio() < balance ? checks + 1 : 0;
+  return checks >= 2;
+}
+
+bool Path::ends(const StageContext &c, const Observation &seen) const
+{
+  const PathProgress &progress = c.state.progress;
+  const StressInvariants start = invariants(Vec3(-progress.stress));
+  const double near = start_tolerance * start.p;
+  if ((end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain) || passed(end.q, start.q, seen.q, near) ||
+      passed(end.p, start.p, seen.p, near) ||
+      passed(end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
+    return true;
+  if (end.volumetric_strain > 0 && volumetric_strain(c) >= end.volumetric_strain)
+    return true;
+  if (end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * end.cycles)
+    return true;
+  const PathTable &knots = table();
+  const bool walked = knots.at.empty() || progress.place >= knots.at.back();
+  return drive == DrivenComponent::none && walked && at_rest(c);
+}
+
+void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) const
+{
+  const bool ends_for_sure = drive == DrivenComponent::none || end.strain > 0 || turn.strain > 0 || max_steps > 0;
+  if (ends_for_sure || std::abs(c.state.loading.strain) < hopeless_strain)
+    return;
+  throw RunFailure(fmt::format(
+      "step {}: stage {} (path) has driven {:.4g} % of strain and has not come to its end: {}. "
+      "Give until.strain or max_steps, or values that the specimen can reach.",
+      seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain), conditions(figures(c, seen))));
+}
+
+StageFigures Path::figures(const StageContext &c, const Observation &seen) const
+{
+  StageFigures now = ShearStage::figures(c, seen);
+  now.volumetric = volumetric_strain(c);
+  now.own_reversals = now.reversals - c.state.progress.reversals;
+  now.stress_error = target_error(c);
+  now.place = table().at.empty() ? 1 : std::min(c.state.progress.place / table().at.back(), 1.0);
+  return now;
+}
+
+std::string Path::conditions(const StageFigures &reached) const
+{
+  std::vector<std::string> all;
+  const auto add = [&](bool given, const char *key, double value, double now, const char *unit, double scale) {
+    if (given)
+      all.push_back(fmt::format("until.{} = {:g}{} ({:.4g}{} reached)", key, value / scale, unit, now / scale, unit));
+  };
+  add(end.strain > 0, "strain", end.strain, reached.driven, " %", 0.01);
+  add(end.volumetric_strain > 0, "volumetric_strain", end.volumetric_strain, reached.volumetric, " %", 0.01);
+  add(end.q.has_value(), "q", end.q.value_or(0), reached.q, " kPa", 1e3);
+  add(end.p.has_value(), "p", end.p.value_or(0), reached.p, " kPa", 1e3);
+  add(end.stress_ratio.has_value(), "stress_ratio", end.stress_ratio.value_or(0), ratio_of(reached.q, reached.p), "",
+      1);
+  add(end.cycles > 0, "cycles", static_cast<double>(end.cycles), static_cast<double>(reached.own_reversals) / 2, "", 1);
+  if (drive == DrivenComponent::none)
+    all.push_back(fmt::format("the end of its course ({:.3g} % of it gone), stresses within {:g} % of p' of their "
+                              "targets ({:.3g} % reached), balance = {:g} ({:.3g} reached)",
+                              100 * reached.place, 100 * rest_tolerance, 100 * reached.stress_error, balance,
+                              reached.unbalanced));
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+std::optional<double> Path::fraction_done(const DriveState &state) const
+{
+  if (end.cycles > 0)
+    return static_cast<double>(state.undrained.reversals - state.progress.reversals) /
+           (2.0 * static_cast<double>(end.cycles));
+  if (drive == DrivenComponent::none && !table().at.empty())
+    return std::min(state.progress.place / table().at.back(), 1.0);
+  return end.strain > 0 ? std::optional(std::abs(state.loading.strain) / end.strain) : std::nullopt;
+}
+} // namespace isostat

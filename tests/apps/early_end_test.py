@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A stage that its limit of steps ends, or whose condition is met when it begins, says so in summary, on stderr, in
+summary.json and in the report; a driven path that has no end fails; a resumed run says the same; cycles are counted."""
+import csv
+import json
+import signal
+
+from support import AppTest, main, tiny_scene
+
+PATH = '[[stage]]\nkind = "path"\nx.keep = "stress"\nz.keep = "stress"\n'
+LIMITED = PATH + 'max_steps = 400\nuntil = { strain = 0.05, q = "150 kPa" }\n'
+TEXT = ("stage 0 (path): ended by max_steps = 400 before any of its conditions was met: until.strain = 5 % (")
+REST = '[[stage]]\nkind = "hold"\nbalance = 0.05\n'
+CYCLIC_PATH = """[[stage]]
+kind = "path"
+x.keep = "volume"
+z.keep = "volume"
+turn = { low = "-30 kPa", high = "30 kPa" }
+until = { cycles = 2, strain = 0.1 }
+"""
+
+
+class EarlyEnd(AppTest):
+    def scene(self, name, stages):
+        return self.write(f"{name}.toml", tiny_scene(stages=stages))
+
+    def numbers(self, folder):
+        return json.loads((self.folder / folder / "summary.json").read_text())
+
+    def test_a_stage_that_its_limit_ended_says_so(self):
+        result = self.run_app("element_test", self.scene("limited", LIMITED + REST), "-o", "limited")
+        self.assert_done(result)
+        self.assertIn("warning: " + TEXT, result.stderr)
+        self.assertIn("ended early              " + TEXT, result.stdout)
+        (end,) = self.numbers("limited")["ended_early"]
+        self.assertEqual((end["stage"], end["times"], end["at_once"]), (0, 1, False))
+        self.assertIn("until.q = 150 kPa (", end["text"])
+        report = (self.folder / "limited/report.html").read_text(encoding="utf-8")
+        self.assertIn("ended by max_steps = 400 before any of its conditions was met", report)
+
+    def test_a_stage_that_comes_to_its_end_says_nothing(self):
+        stages = PATH + 'max_steps = 400\nuntil.strain = 1e-4\n' + PATH + "max_steps = 50\n"
+        result = self.run_test(self.scene("whole", stages), "-o", "whole")
+        self.assert_done(result)
+        self.assertNotIn("ended", result.stderr)
+        self.assertEqual(self.numbers("whole")["ended_early"], [])
+
+    def test_a_condition_that_is_met_when_it_begins_is_told(self):
+        result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
+        self.assert_done(result)
+        self.assertIn("warning: stage 0 (path): ended in its first step, because what ends it was met when it began: "
+                      "until.p = 200 kPa (", result.stderr)
+        self.assertTrue(self.numbers("met")["ended_early"][0]["at_once"])
+
+    def test_a_path_without_an_end_fails(self):
+        stages = PATH.replace('"stress"', '"p"') + 'until.q = "900 kPa"\nstrain_rate = "500 1/s"\n'
+        result = self.run_test(self.scene("endless", stages), "-o", "endless")
+        self.assertEqual(result.returncode, 1, result.stdout)
+        for part in ("failed: step ", "stage 0 (path) has driven 100", "until.q = 900 kPa (", "Give until.strain",
+                     "checkpoint"):
+            self.assertIn(part, result.stderr)
+
+    def test_a_resumed_run_says_the_same(self):
+        stages, often = LIMITED + PATH + "until.strain = 0.02\n", ("--set", "output.checkpoint=1e-9 min")
+        scene = self.scene("resumed", stages)
+        self.assert_done(self.run_test(scene, "-o", "whole", *often))
+        self.run_and_stop(0.05, signal.SIGKILL, (self.folder / "parts/checkpoint/last.h5", True), scene, "-o", "parts",
+                          *often)
+        self.assert_done(self.run_test(scene, "-o", "parts", "--resume", *often))
+        self.assertEqual(self.numbers("parts")["ended_early"], self.numbers("whole")["ended_early"])
+        self.assertEqual(len(self.numbers("parts")["ended_early"]), 1)
+
+    def test_cycles_of_a_path_have_a_response(self):
+        result = self.run_test(self.scene("cyclic", CYCLIC_PATH), "-o", "cyclic")
+        self.assert_done(result)
+        self.assertIn("  cyclic response          ", result.stdout)
+        response = self.numbers("cyclic")["cyclic_response"]
+        self.assertIn(response["name"],
+                      ("flow", "limited flow", "cyclic mobility", "plastic strain accumulation", "no failure"))
+        self.assertTrue(response["stress_reversal"])
+        self.assert_near(response["load_max"], 30e3, 3e3, "what a step of 200 grains adds at a turn")
+
+    def test_a_bias_that_cannot_hold_is_refused_when_the_scene_is_read(self):
+        scene = self.scene("bias", CYCLIC_PATH.replace("-30 kPa", "10 kPa"))
+        self.assert_refused(self.run_app("element_test", scene, "--validate"), "bias.toml:",
+                            "stage.0.turn.low = 10 kPa", "isotropic consolidation to 200 kPa", "turn.high = 30 kPa")
+
+    def test_cycles_of_stages_are_counted(self):
+        stages = (PATH + "until.strain = 2e-4\n" + PATH +
+                  'direction = "extension"\nuntil.strain = 2e-4\nmax_steps = 5\n'
+                  '[[stage]]\nkind = "repeat"\nstages = 2\ntimes = 3\n')
+        result = self.run_app("element_test", self.scene("cycles", stages), "-o", "cycles")
+        self.assert_done(result)
+        for part in ("stage 0 (path), cycle 2 of 3 of stages 0 to 1", "repeated                 stages 0 to 1, 3 times",
+                     "stage 1 (path), cycle 1 of 3 of stages 0 to 1: ended by max_steps = 5", "3 times in all"):
+            self.assertIn(part, result.stderr + result.stdout)
+        with open(self.folder / "cycles/history.csv", newline="", encoding="utf-8") as file:
+            rows = [(float(row["done (-)"]), float(row["stage (-)"])) for row in csv.DictReader(file)]
+        self.assertEqual(sorted(set(rows)), [(0, 0), (1, 1), (2, 0), (3, 1), (4, 0), (5, 1)])
+        self.assertIn("Stage 0, path, the last of 3 times:",
+                      (self.folder / "cycles/report.html").read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main()
