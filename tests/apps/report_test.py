@@ -106,7 +106,7 @@ class Reports(ReportTest):
 
     def test_cyclic(self):
         words = self.assert_whole("cyclic")
-        self.assertIn("ended by its limit of 2000 time steps", words)
+        self.assertIn("ended by max_steps = 2000 before any of its conditions was met", words)
         self.assertIn("(a) q against p', (b) q against axial strain. ", words)
         self.assertNotIn("simple shear", words)
         self.assertIn("Rate: fixed at 2 1/s, not controlled.", words)
@@ -177,7 +177,8 @@ class Reports(ReportTest):
         (self.folder / "cyclic/report.html").mkdir()
         result = self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume")
         self.assert_done(result)
-        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        lines = [line for line in result.stderr.splitlines() if "ended by max_steps" not in line]
+        self.assertEqual(len(lines), 1, result.stderr)
         self.assertIn("report.html: not written", result.stderr)
         self.assertIn("figures in cyclic/figures", result.stdout)
         self.assertNotIn("one page", result.stdout)
