@@ -94,12 +94,15 @@ constexpr Key test_keys[] = {
    .text = "Of the residual over the force scale, which is confinement times width or more. Grains need one above their "
            "noise, some 1e-2.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.tolerance; }},
-  {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25", .range = counts,
-   .text = "Of a sub-step; then it is halved.",
+  {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25",
+   .text = "Of Newton's method in a sub-step; 0: relaxation alone, for packings and past a peak.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.max_iterations; }},
   {.path = "newton.iterations_per_tangent", .kind = Kind::integer, .value = "1", .range = counts,
    .text = "1: Newton; more: the tangent is kept for so many iterations of a sub-step.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.iterations_per_tangent; }},
+  {.path = "newton.relaxation_iterations", .kind = Kind::integer, .value = "0",
+   .text = "Of relaxation, which takes over a sub-step that Newton's method has not solved; 0: none. Then the sub-step is halved.",
+   .field = [](BiaxialScene &s) -> Field { return &s.newton.relaxation_iterations; }},
   {.path = "newton.max_halvings", .kind = Kind::integer, .value = "8", .range = {0, 40},
    .text = "The smallest sub-step is the step times 2 to the power of minus this.",
    .field = [](BiaxialScene &s) -> Field { return &s.newton.max_halvings; }},
@@ -138,6 +141,10 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     check_packings(document, "soil", scene.grains);
   if (scene.soil.material == LayerMaterial::iwan)
     check_iwan(document, "soil", scene.soil.iwan);
+  if (scene.newton.max_iterations == 0 && scene.newton.relaxation_iterations == 0)
+    document.refuse("newton.max_iterations",
+                    "and newton.relaxation_iterations = 0; one of both must be at least 1, "
+                    "or nothing looks for equilibrium. Set newton.relaxation_iterations = 200.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

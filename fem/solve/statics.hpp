@@ -54,9 +54,11 @@ struct StaticsEffort
 /// without flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett &
 /// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps.
 ///
-/// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where Newton
-/// fails or the material refuses, the step is halved, and doubled again after each success; loads and given
-/// displacements go linearly from those of the state to those at the step's end, so a jump is shared out too.
+/// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where it fails,
+/// relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium leads over larger
+/// residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
+/// success; loads and given displacements go linearly from those of the state to those at the step's end, so a jump is
+/// shared out too.
 ///
 /// Converged (17) when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as
 /// forces by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
@@ -64,7 +66,8 @@ struct StaticsEffort
 ///
 /// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
 /// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
-/// mandel_test.cpp, statics_state_test.cpp, statics_failure_test.cpp, statics_ranks_test.cpp
+/// mandel_test.cpp, statics_state_test.cpp, statics_failure_test.cpp, statics_ranks_test.cpp,
+/// statics_relaxation_test.cpp
 class Statics
 {
 public:
@@ -112,8 +115,10 @@ private:
   std::vector<unsigned> unknowns_of(FaceComponent of) const;
   // statics_newton.cpp
   bool solve_substep(double duration);
+  bool newton_substep(double duration);
   void start_substep(double duration);
   bool iterate(unsigned iteration);
+  void find_step();
   bool search_line(double merit_before);
   void set_part(double part);
   bool evaluate();
@@ -121,6 +126,10 @@ private:
   double merit(double moved_part) const;
   double squares(const Vector &residual, const Vector &moved, double moved_part, const std::vector<char> &held) const;
   bool on_every_rank(bool good) const;
+  // statics_relaxation.cpp
+  bool relax_substep(double duration);
+  void set_metric();
+  double power() const;
   // statics.cpp
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);

@@ -46,8 +46,10 @@ void Statics::check_settings() const
     throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.newton.tolerance));
   if (!(settings_.min_force >= 0))
     throw InputError(fmt::format("smallest force = {} N; must be >= 0", settings_.min_force));
-  if (settings_.newton.max_iterations == 0 || settings_.newton.iterations_per_tangent == 0)
-    throw InputError("max iterations and iterations per tangent must be >= 1");
+  if (settings_.newton.max_iterations == 0 && settings_.newton.relaxation_iterations == 0)
+    throw InputError("neither iterations of Newton's method nor of relaxation; one of both must be >= 1");
+  if (settings_.newton.iterations_per_tangent == 0)
+    throw InputError("iterations per tangent must be >= 1");
   if (settings_.newton.max_halvings > 40)
     throw InputError(fmt::format("max halvings = {}; must be <= 40", settings_.newton.max_halvings));
 }

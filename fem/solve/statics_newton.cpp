@@ -22,6 +22,16 @@ bool Statics::on_every_rank(bool good) const
 /// True if it found equilibrium; else reason_ says why not.
 bool Statics::solve_substep(double duration)
 {
+  if (settings_.newton.max_iterations > 0 && newton_substep(duration))
+    return true;
+  if (settings_.newton.relaxation_iterations == 0)
+    return false;
+  material_.rollback();
+  return relax_substep(duration);
+}
+
+bool Statics::newton_substep(double duration)
+{
   start_substep(duration);
   for (unsigned iteration = 0; iteration <= settings_.newton.max_iterations; ++iteration)
     {
@@ -78,6 +88,15 @@ bool Statics::iterate(unsigned iteration)
     }
   if (!on_every_rank(good))
     return false;
+  find_step();
+  start_du_ = du_;
+  start_dp_ = dp_;
+  return search_line(merit(1));
+}
+
+/// step_u_, step_p_ of the residual and of what held unknowns have left.
+void Statics::find_step()
+{
   for (unsigned i : held_u_)
     step_u_.local_element(i) = target_u_.local_element(i) - u_.local_element(i) - du_.local_element(i);
   if (flow_)
@@ -85,9 +104,6 @@ bool Statics::iterate(unsigned iteration)
       step_p_.local_element(i) = -p_.local_element(i) - dp_.local_element(i);
   system_->solve(r_u_, r_p_, step_u_, step_p_, moved_u_, moved_p_);
   ++effort_.iterations;
-  start_du_ = du_;
-  start_dp_ = dp_;
-  return search_line(merit(1));
 }
 
 /// Backtracking (18) with the parabola through the merit's squares at both ends and the slope at the start, which for a

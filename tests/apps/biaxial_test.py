@@ -121,6 +121,15 @@ class Biaxial(AppTest):
         self.assertEqual(len(self.history()["step"]), 1)
         self.assertIn('"complete": false', (self.folder / "run/summary.json").read_text(encoding="utf-8"))
 
+    def test_relaxation_finds_the_equilibrium_of_newtons_method(self):
+        iwan = ELASTIC.format(degree=1).replace('"elastic"', '"iwan"')
+        self.assert_done(self.run_block(iwan))
+        self.assert_done(self.run_block(iwan, "--set", "newton.max_iterations=0", "--set",
+                                        "newton.relaxation_iterations=2000", name="relaxed"))
+        newton, relaxed = self.history()["axial_stress"], self.history("relaxed")["axial_stress"]
+        self.assert_near(np.abs(relaxed / newton - 1).max(), 0, 1e-4, "tolerance of 1e-6 over a tangent far below M")
+        self.assert_refused(self.run_block(iwan, "--set", "newton.max_iterations=0"), "newton.max_iterations")
+
     def test_scene_is_read_back_and_refused(self):
         shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")
         self.assert_done(shown)

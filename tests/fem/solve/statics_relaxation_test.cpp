@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Equilibrium past the peak, where Newton's line search finds no way: a column with a weak layer, sheared by its surface,
+// against the closed form of a series of springs.
+#include "fem/material/composite.hpp"
+#include "fem/solve/statics.hpp"
+#include "tests/fem/solve/secant_material.hpp"
+#include "tests/support/near.hpp"
+
+#include <cstdio>
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double modulus = 5e7, peak = 1e5, residual = 0.3e5, fall = 1e-2, weakness = 0.95; // Pa; strain of the fall
+
+/// G gamma to the strength, then (peak - residual) exp[-(gamma - gamma_p)/fall] + residual; strengths times `factor`.
+double softening_stress(double gamma, double factor)
+{
+  const double at_peak = factor * peak / modulus;
+  return gamma <= at_peak ? modulus * gamma
+                          : factor * (residual + (peak - residual) * std::exp(-(gamma - at_peak) / fall));
+}
+
+SecantMaterial::Law softening(double factor)
+{
+  return [=](double gamma) {
+    const double at_peak = factor * peak / modulus;
+    if (gamma <= at_peak)
+      return SecantMaterial::Secant{modulus, 0};
+    const double tau = softening_stress(gamma, factor);
+    const double slope = -(tau - factor * residual) / fall;
+    return SecantMaterial::Secant{tau / gamma, (slope - tau / gamma) / gamma};
+  };
+}
+
+/// Stress of a column of four layers, the lowest of them weak and softening, the others on their way back.
+double stress_past_peak(double displacement)
+{
+  double below = weakness * residual, above = weakness * peak;
+  for (int k = 0; k < 100; ++k)
+    {
+      const double tau = (below + above) / 2;
+      double low = weakness * peak / modulus, high = 1;
+      for (int i = 0; i < 100; ++i)
+        (softening_stress((low + high) / 2, weakness) > tau ? low : high) = (low + high) / 2;
+      (0.25 * low + 0.75 * tau / modulus > displacement ? below : above) = tau; // more strain: less stress
+    }
+  return below;
+}
+
+struct Column
+{
+  explicit Column(NewtonSettings newton, bool pore_water = false) : space(mesh(pore_water), supports(pore_water))
+  {
+    std::vector<CompositeMaterial::Part> parts(2);
+    for (std::size_t q = 0; q < space.n_points(); ++q)
+      parts[space.position[q][2] < 0.25 ? 1 : 0].places.push_back(q);
+    parts[0].material = std::make_unique<SecantMaterial>(1e8, softening(1), parts[0].places.size());
+    parts[1].material = std::make_unique<SecantMaterial>(1e8, softening(weakness), parts[1].places.size());
+    soil = std::make_unique<CompositeMaterial>(std::move(parts));
+    StaticsSettings settings;
+    settings.pore_water = pore_water;
+    settings.newton = newton;
+    settings.displacements = {{{Face::surface, 0}, [](double t, const Place &) { return t; }}};
+    statics.emplace(space, *soil, settings);
+  }
+  double stress() const { return statics->reaction({Face::surface, 0}); }
+
+  Discretisation<1> space;
+  std::unique_ptr<CompositeMaterial> soil;
+  std::optional<Statics> statics;
+
+private:
+  static MeshSpec mesh(bool pore_water)
+  {
+    MeshSpec spec = sheared_column_mesh();
+    spec.degree = pore_water ? 2 : 1; // of degree 1: a layer softens as a whole
+    return spec;
+  }
+  static Supports supports(bool water)
+  {
+    Supports s = fixed_base();
+    s.fixed.push_back({Face::surface, 0});
+    if (!water)
+      s.drained.clear();
+    return s;
+  }
+};
+
+constexpr NewtonSettings relaxed = {.tolerance = 1e-7, .max_iterations = 0, .relaxation_iterations = 2000};
+} // namespace
+
+TEST(StaticsRelaxation, PassesThePeakInAnyStep)
+{
+  for (const int steps : {1, 4, 40})
+    {
+      Column column(relaxed);
+      unsigned iterations = 0;
+      for (int k = 1; k <= steps; ++k)
+        {
+          column.statics->step(0.01 / steps);
+          iterations += column.statics->effort().iterations;
+          EXPECT_EQ(column.statics->effort().rejected, 0u);
+        }
+      std::printf("%d steps: %u iterations, stress %.6g Pa, exact %.6g Pa\n", steps, iterations, column.stress(),
+                  stress_past_peak(0.01));
+      EXPECT_CLOSE_BECAUSE(column.stress(), stress_past_peak(0.01), 1e-5,
+                           "tolerance of 1e-7 over a column that is some tens of times as soft as its parts");
+    }
+}
+
+/// All layers on the way down together are in equilibrium too, but one that gives a little more takes all of the motion.
+TEST(StaticsRelaxation, LeavesAnEquilibriumThatNoSoilKeeps)
+{
+  Column newton({.tolerance = 1e-7}), relaxation(relaxed);
+  newton.statics->step(0.01);
+  relaxation.statics->step(0.01);
+  std::printf("Newton %.5g Pa, relaxation %.5g Pa\n", newton.stress(), relaxation.stress());
+  EXPECT_GT(newton.stress(), 0.9 * softening_stress(0.01, 1)) << "as steep as it is, the residual leads there";
+  EXPECT_CLOSE_BECAUSE(relaxation.stress(), stress_past_peak(0.01), 1e-5, "tolerance of 1e-7");
+}
+
+TEST(StaticsRelaxation, TakesOverWhereNewtonGivesUp)
+{
+  Column column({.tolerance = 1e-7, .max_iterations = 1, .relaxation_iterations = 2000, .max_halvings = 0});
+  column.statics->step(0.01);
+  EXPECT_GT(column.statics->effort().iterations, 2u);
+  EXPECT_CLOSE_BECAUSE(column.stress(), stress_past_peak(0.01), 1e-5, "tolerance of 1e-7");
+}
+
+TEST(StaticsRelaxation, SaysWhenItDoesNotComeToRest)
+{
+  NewtonSettings few = relaxed;
+  few.relaxation_iterations = 3, few.max_halvings = 0;
+  Column column(few);
+  EXPECT_THAT([&] { column.statics->step(0.01); },
+              ThrowsMessage<RunFailure>(HasSubstr("relaxation has not come to rest in 3 iterations")));
+  EXPECT_EQ(column.statics->time(), 0);
+}
+} // namespace isostat
