@@ -76,6 +76,7 @@ constexpr Key test_keys[] = {
    .text = "Of stiffness, and of the strength of iwan; of no meaning to grains.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
+   .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
    .text = "D_r of its packings; left out: that of the soil.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.relative_density; }},
   {.path = "weak.realisation", .kind = Kind::integer, .value = "0", .text = "Seed of its packings.",

@@ -18,7 +18,7 @@ constexpr double near = 1e-6; ///< m
 // clang-format off
 constexpr Key keys[] = {
   {.path = "angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "0 deg",
-   .range = {0, 60}, .reason = "because no slope of soil is steeper",
+   .range = {0, 60}, .reason = "because x points down the slope, and no slope of soil is steeper than 60 deg",
    .text = "Inclination of the surface to the horizontal.",
    .field = [](Slope &s) -> Field { return &s.tangent; }},
   {.path = "water", .kind = Kind::choice, .value = "seepage", .choices = water_choices,

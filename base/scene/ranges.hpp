@@ -13,5 +13,6 @@ inline constexpr Range fraction{0, 1, true, true};      ///< (0, 1)
 inline constexpr Range to_one{0, 1, true, false};       ///< (0, 1]
 inline constexpr Range to_ten{0, 10, true, false};      ///< (0, 10]
 inline constexpr Range right_angle{0, 90, false, true}; ///< degrees
+inline constexpr const char *one_or_more = "because there is at least one, and a million is beyond any use";
 inline constexpr const char *because_tan = "because tan() is used";
 } // namespace isostat::ranges

@@ -26,9 +26,10 @@ constexpr Key packings[] = {
            "`layer.k0` say it), or, without lateral strain, at the horizontal stress that they give themselves.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.in_situ.path; }},
   {.path = "realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
+   .reason = "because a point has at least one packing, and a thousand run a thousand times as long",
    .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.realisations; }},
-  {.path = "min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6},
+  {.path = "min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6}, .reason = one_or_more,
    .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in one or "
            "two, before the grains find their places.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.min_steps; }},
@@ -36,6 +37,7 @@ constexpr Key packings[] = {
 
 constexpr Key specimens[] = {
   {.path = "relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2},
+   .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
    .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
    .field = [](SpecimenRequest &r) -> Field { return &r.relative_density; }},
   {.path = "realisation", .kind = Kind::integer, .value = "0",
@@ -47,7 +49,7 @@ constexpr Key drawn_specimens[] = {
   {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5",
    .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
    .field = [](SpecimenRequest &r) -> Field { return &r.library; }},
-  {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts,
+  {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
    .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
            "many that differ); 1: all points have the same, brought to the stress of their depth.",
    .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},

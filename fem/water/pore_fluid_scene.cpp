@@ -21,7 +21,8 @@ constexpr Key of_water[] = {
            "pressure of the moment, stiffer and at last dissolved when the pressure rises, softer when it falls "
            "(cavitation). A consolidation takes constant alone.",
    .field = [](Water &w) -> Field { return &w.air; }},
-  {.path = "henry", .value = "0", .range = {0, 0.1}, .reason = "because air in water at 20 C has 0.02",
+  {.path = "henry", .value = "0", .range = {0, 0.1},
+   .reason = "because water dissolves no less than nothing, and of air 0.02 at 20 C",
    .text = "Volume of air, at its pressure, that a volume of water dissolves at once: 0.02 at 20 C; 0: none, as if the "
            "shaking were too short for it.",
    .field = [](Water &w) -> Field { return &w.henry; }},
@@ -34,7 +35,7 @@ constexpr Key of_water[] = {
 
 constexpr Key of_layers[] = {
   {.path = "saturation", .value = "1", .range = {0.8, 1},
-   .reason = "because air of less saturated soil has a pressure of its own",
+   .reason = "because water fills no more than the pores, and below 0.8 their air has a pressure of its own",
    .text = "Volume of water over that of the pores in situ; the rest is air: 1/K_f = S/K_w + (1 - S)/p_abs (Wood), p_abs "
            "the absolute pressure of the water at rest.",
    .field = [](Layer &l) -> Field { return &l.saturation; }},

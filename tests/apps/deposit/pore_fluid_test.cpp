@@ -34,8 +34,10 @@ TEST(PoreFluidOfAScene, IsRead)
 
 TEST(PoreFluidOfAScene, RangesHaveReasons)
 {
-  expect_complaint(coupled, {"layer.0.saturation=0.7"}, {"must be in [0.8, 1] because air of less saturated soil"});
-  expect_complaint(coupled, {"layer.0.saturation=1.01"}, {"must be in [0.8, 1]"});
+  expect_complaint(coupled, {"layer.0.saturation=0.7"},
+                   {"must be in [0.8, 1] because water fills no more than the pores"});
+  expect_complaint(coupled, {"layer.0.saturation=1.01"},
+                   {"must be in [0.8, 1] because water fills no more than the pores"});
   expect_complaint(coupled, {"water.relative_viscosity=0"}, {"must be > 0 because it divides the permeability"});
   expect_complaint(coupled, {"water.henry=0.2"}, {"must be in [0, 0.1]"});
   expect_complaint(coupled, {"water.atmospheric_pressure=2 kPa"}, {"must be >= 5 kPa because water boils"});

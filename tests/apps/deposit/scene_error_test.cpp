@@ -2,9 +2,11 @@
 // What a column's scene file or an override can have wrong, and what the user is told.
 #include "apps/deposit/scene.hpp"
 #include "base/error.hpp"
+#include "base/scene/schema.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -54,6 +56,15 @@ TEST(ColumnSceneError, Layers)
   expect_complaint(layer + "porosity = 1.0\n" + dry + dynamic, {"column.toml:6: layer.0.porosity", "in (0, 1)"});
   expect_complaint(layer + "density = \"900 kg/m3\"\n" + undrained + dynamic, {"column.toml:6:", "floats away"});
   EXPECT_EQ(complaint(layer + "density = \"900 kg/m3\"\n" + dry + dynamic), "accepted");
+}
+
+TEST(ColumnSceneError, RangesOfTwoSidesHaveReasons)
+{
+  for (const Key &key : column_schema().keys)
+    {
+      const bool two_sided = std::isfinite(key.range.low) && std::isfinite(key.range.high);
+      EXPECT_TRUE(!two_sided || std::string_view(key.reason).starts_with("because ")) << key.path;
+    }
 }
 
 TEST(ColumnSceneError, Materials)
