@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where soil expands and where it compresses while its water moves: figure of a column under a less permeable layer."""
 import numpy as np
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import SymLogNorm
 
 from .column_soil import map_over_time
 from .common import BLACK, BLUE, ORANGE, panel_letter, plt
@@ -23,11 +23,15 @@ def expansion(column):
     top.legend(loc="upper left", fontsize=8)
     top.set_ylim(-0.06 * top.get_ylim()[1], 1.25 * top.get_ylim()[1])
     expanded = -100 * strain  # volume strain of a column, positive in expansion
-    norm = TwoSlopeNorm(0, min(-1e-6, float(np.nanmin(expanded))), max(1e-6, float(np.nanmax(expanded))))
+    largest = max(1e-6, float(np.nanmax(np.abs(expanded))))
+    linear = float(f"{largest / 50:.1g}")
+    norm = SymLogNorm(linear, vmin=-largest, vmax=largest)  # one for both sides: where water gathers they are far apart
     shade, _, _ = map_over_time(column, axes, expanded, cmap="RdBu", norm=norm)
-    ticks = [norm.vmin, norm.vmin / 2, 0, norm.vmax / 2, norm.vmax]
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, ticks=ticks, format="%.2g").set_label(
-        "Volumetric strain (%)\ncompression     expansion")
+    decades = [linear * 10**k for k in range(3) if linear * 10**k < 0.7 * largest]
+    ticks = [-largest, *(-x for x in reversed(decades)), 0, *decades, largest]
+    bar = figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, ticks=ticks, format="%.2g")
+    bar.ax.minorticks_off()
+    bar.set_label(f"Volumetric strain (%), logarithmic beyond {linear:g} %\ncompression     expansion", fontsize=8.5)
     for name in names:
         axes.axhline(caps[name], color=BLACK, linewidth=0.9)
     panel_letter(top, "a")

@@ -17,7 +17,7 @@ fig_spreading.png     slope: displacement of the surface in time; at the end dis
                       depth, beside static shear stress and normal effective stress of the start
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_expansion.png     below less permeable layers: net expansion and settlement, above the volumetric strain over depth
-                      and time
+                      and time, on one scale for both signs
 fig_isochrones.png    consolidation: excess pore pressure over the depth, beside Terzaghi's series if it applies
 fig_settlement.png    consolidation: settlement against time, beside Terzaghi's if it applies
 fig_grains_profiles.png   packings of grains: redundancy index I_R, coordination number, fabric over the depth

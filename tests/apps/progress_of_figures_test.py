@@ -15,6 +15,7 @@ from matplotlib.colors import PowerNorm  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "apps"), str(ROOT / "scripts")]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
+from figures.column_expansion import expansion  # noqa: E402
 from figures.column_motion import motions, peak_text  # noqa: E402
 from figures.column_results import Column  # noqa: E402
 from figures.column_soil import time_bar  # noqa: E402
@@ -76,6 +77,18 @@ class Panels(AppTest):
             self.addCleanup(plt.close, figure)
             time_bar(figure, panels, PowerNorm(1.0, 0, 0.87), last)
             self.assertEqual(figure.axes[-1].get_ylabel(), said)
+
+
+class Expansion(AppTest):
+    def test_both_sides_have_one_scale(self):
+        """Expansion and compression of one size are equally far from white, and the label says how the scale runs."""
+        figure = expansion(Column(fixture.capped(self.folder / "run")))
+        self.addCleanup(plt.close, figure)
+        norm = figure.axes[1].collections[0].norm
+        self.assertEqual(norm.vmin, -norm.vmax)
+        for strain in norm.vmax, 0.3 * norm.vmax, 0.01 * norm.vmax:
+            self.assert_near(norm(strain) + norm(-strain), 1, 1e-12, DIGITS)
+        self.assertIn(f"logarithmic beyond {norm.linthresh:g} %", figure.axes[-1].get_ylabel())
 
 
 class Peaks(AppTest):
