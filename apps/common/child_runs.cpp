@@ -182,10 +182,18 @@ Launch launch()
   return {};
 }
 
+int jobs_of_all_cores()
+{
+  return launch().size > 1 ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 void CampaignShare::add_options(CLI::App &line)
 {
-  line.add_option("-j,--jobs", jobs, "runs side by side in this process, each on one thread (default 1)")
-      ->check(CLI::Range(1, 1024));
+  line.add_option_function<int>(
+          "-j,--jobs", [this](int n) { jobs = n == 0 ? jobs_of_all_cores() : n; },
+          "runs side by side in this process, each on one thread (default 1); 0: as many as the machine has cores, of "
+          "ranks one each. Results do not depend on it")
+      ->check(CLI::Range(0, 1024));
   line.add_flag("--helper", helper,
                 "do runs of the same command that another process has begun, on this machine or on one that sees the "
                 "same folder; ranks of mpirun and srun above 0 do so by themselves");

@@ -43,6 +43,9 @@ struct Launch
 };
 Launch launch();
 
+/// What `--jobs 0` stands for: as many runs as the machine has cores; of several ranks, which share them, one each.
+int jobs_of_all_cores();
+
 /// How much of a campaign a process does, as its command line says.
 struct CampaignShare
 {

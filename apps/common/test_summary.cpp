@@ -6,6 +6,7 @@
 #include "dem/drive/programme.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/stages/cyclic_response.hpp"
+#include "dem/prepare/relative_density.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -223,7 +224,7 @@ std::string density_text(const TestSummary &s)
     return "D_r unknown (no e_min and e_max)";
   const std::string limits =
       s.e_min && s.e_max ? fmt::format(" (e_min {:g}, e_max {:g})", *s.e_min, *s.e_max) : std::string();
-  return fmt::format("D_r = {:.3f}{}", *s.relative_density, limits);
+  return fmt::format("D_r = {:.3f}{}{}", *s.relative_density, limits, density_remark(*s.relative_density));
 }
 
 Json liquefaction_json(const TestSummary &s)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/resolution.hpp"
 
+#include "dem/prepare/relative_density.hpp"
 #include "fem/motion/low_pass.hpp"
 
 #include <algorithm>
@@ -111,6 +112,10 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
     warnings.push_back(
         "the motion along z moves the column as a rigid body: without drainage its volume is constant, and "
         "no P wave runs in it. Set water.drainage = \"coupled\" for P waves.");
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (const auto &[material, density] = std::pair(scene.layers[k].material, scene.layers[k].grains.relative_density);
+        material == LayerMaterial::grains && density && !density_remark(*density).empty())
+      warnings.push_back(fmt::format("layer.{}.relative_density = {:g}{}", k, *density, density_remark(*density)));
   return warnings;
 }
 } // namespace isostat

@@ -19,6 +19,7 @@
 #include "base/units.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/io/specimen_library.hpp"
+#include "dem/prepare/relative_density.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <charconv>
@@ -26,7 +27,6 @@
 #include <fmt/format.h>
 #include <numbers>
 #include <set>
-#include <thread>
 
 namespace
 {
@@ -189,6 +189,9 @@ void print_library(const fs::path &path)
 {
   const std::vector<LibraryEntry> entries = list_library(path);
   fmt::print("{}: {} specimens\n{}", path.string(), entries.size(), library_table(entries));
+  for (const LibraryEntry &entry : entries)
+    if (const double density = entry.number("relative_density"); !density_remark(density).empty())
+      fmt::print(stderr, "warning: {}: D_r = {:.3f}{}\n", entry.name, density, density_remark(density));
 }
 
 void report_failures(const std::vector<Task> &tasks)
@@ -218,8 +221,8 @@ void make_library(const Options &options)
   const fs::path path = options.output.empty() ? scene.output.folder + ".h5" : options.output;
   PreparationShare share = options.share;
   share.helper = share.helper || launch().rank > 0;
-  if (share.jobs == 0) // ranks have a core each
-    share.jobs = launch().size > 1 ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (share.jobs == 0)
+    share.jobs = jobs_of_all_cores();
   if (!share.helper)
     check_output(path, options);
   std::error_code ignored;

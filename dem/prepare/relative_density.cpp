@@ -106,4 +106,14 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
                     target, tolerance, search.best.void_ratio, degrees(search.best.friction)));
   return search.best;
 }
+
+std::string density_remark(double relative_density)
+{
+  constexpr const char *limits = "Do e_min and e_max belong to this grading and contact law?";
+  if (relative_density < -0.1)
+    return fmt::format(": far looser than e_max. {}", limits);
+  if (relative_density > 1.1)
+    return fmt::format(": far denser than e_min. {}", limits);
+  return {};
+}
 } // namespace isostat

@@ -14,6 +14,11 @@ inline double void_ratio_at(double relative_density, double e_min, double e_max)
   return e_max - relative_density * (e_max - e_min);
 }
 
+/// What to say of a D_r below -0.1 or above 1.1: on which side it is, and what to look at; empty in between. Packings
+/// that rolling resistance holds up may be a little looser than e_max, small ones a little denser than e_min.
+/// tested: tests/dem/prepare/relative_density_test.cpp
+std::string density_remark(double relative_density);
+
 /// A compacted packing and the friction that made it.
 struct PreparedDensity
 {

@@ -5,6 +5,7 @@ bands of all, computed anew from the members' files."""
 import csv
 import json
 import pathlib
+import shutil
 import signal
 import subprocess
 
@@ -199,6 +200,18 @@ class Ensemble(ColumnTest):
         for member in ("00", "01", "02"):
             self.assertEqual(len(set(self.sources(f"same_{member}.h5"))), 1, "one seed at all depths")
 
+    def test_a_density_far_from_its_limits(self):
+        """Packings are taken as the library has them; the summary says that they cannot be."""
+        shutil.copy(self.cache / "library.h5", self.folder / "loose.h5")
+        with h5py.File(self.folder / "loose.h5", "r+") as file:
+            for entry in file.values():
+                entry["numbers"].attrs["relative_density"] = -0.5
+        result = self.run_column(self.scene, "-o", "out", "-q", *settings(
+            grains__library=self.folder / "loose.h5", layer__0__relative_density=-0.5, analysis__duration="0.01 s"))
+        self.assert_done(result)
+        for text in result.stderr, (self.folder / "out/summary.txt").read_text(encoding="utf-8"):
+            self.assertIn("warning: layer.0.relative_density = -0.5: far looser than e_max", text)
+
     def write_records(self):
         time = np.arange(0, 0.5, 0.005)
         for name, frequency in (("first", 4), ("second", 7)):
@@ -208,7 +221,8 @@ class Ensemble(ColumnTest):
     def test_records(self):
         """Motions instead of packings; figures and report of what they give."""
         scene = self.write_records()
-        self.assert_done(self.run_app("soil_column", scene, "--records", "first.txt,second.txt", "-o", "out", "-q"))
+        self.assert_done(self.run_app("soil_column", scene, "--records", "first.txt,second.txt", "-j", 0, "-o", "out",
+                                      "-q"))
         rows = table(self.folder / "out/members.csv")
         self.assertEqual((rows["member"], rows["record"]), (["r00", "r01"], ["first.txt", "second.txt"]))
         self.assertNotEqual(*rows["peak_surface"])

@@ -52,6 +52,20 @@ class SceneMistakes(AppTest):
     def test_unknown_option(self):
         self.assertEqual(self.run_test("scene.toml", "--overwite").returncode, 2)
 
+    def test_jobs(self):
+        """0 is as many as there are cores, in every program; then the scene is looked for."""
+        for program in ("calibrate", "liquefaction_resistance", "soil_column", "specimen_library"):
+            if not (BIN / program).exists():
+                continue
+            for n in (-1, 1025):
+                result = self.run_app(program, "none.toml", "--jobs", n)
+                self.assertEqual(result.returncode, 2, program)
+                self.assertIn("0 to 1024", result.stderr)
+            result = self.run_app(program, "none.toml", "--jobs", 0)
+            self.assertEqual(result.returncode, 2, program)
+            self.assertNotIn("range", result.stderr)
+            self.assertIn("0: as many as the machine has cores", self.run_app(program, "--help").stdout)
+
     def test_validate_writes_nothing(self):
         scene = self.write("scene.toml", tiny_scene())
         self.assert_done(self.run_app("element_test", scene, "--validate"))

@@ -30,6 +30,11 @@ class Library(AppTest):
             return {entry: (dict(group["numbers"].attrs), dict(group["provenance"].attrs),
                             group["snapshot/grains/position"][()].tobytes()) for entry, group in file.items()}
 
+    def test_densities_far_from_their_limits_are_warned_of(self):
+        result = self.make("-o", "loose.h5", "-q", "--set", "specimen.e_min=0.2", "--set", "specimen.e_max=0.3")
+        self.assert_done(result)
+        self.assertRegex(result.stderr, r"warning: s0001: D_r = -\d\.\d+: far looser than e_max\. Do e_min and e_max")
+
     def test_make_append_list(self):
         two = ("-n", "2", "-o", "library.h5", "--jobs", "2")
         result = self.make(*two)
