@@ -13,6 +13,9 @@ inline constexpr std::array stopping = {SIGINT, SIGTERM, SIGUSR1};
 inline std::array<struct sigaction, stopping.size()> second = {}; ///< what takes the second signal of each kind
 } // namespace detail
 
+/// Those that catch_signals() catches.
+inline constexpr const auto &stopping_signals = detail::stopping;
+
 /// From here on SIGINT, SIGTERM and SIGUSR1 only raise a flag; the run stops after the step it is in and writes a
 /// checkpoint. A second signal of the kind ends the program at once. SIGUSR1 is the one that mpirun hands on to the
 /// ranks without ending them itself.

@@ -2,11 +2,13 @@
 #include "apps/common/result_folder.hpp"
 
 #include "apps/common/child_runs.hpp"
+#include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
 #include "dem/contact/loop.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <fmt/chrono.h>
@@ -137,8 +139,12 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   const fs::path log = folder / "figures.log";
   const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m report leave {} {} > {} 2>&1",
                                           quoted(shared_folder()), program, quoted(folder), quoted(log));
-  const int status = std::system(command.c_str());
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : EXIT_FAILURE;
+  const int status = std::system(command.c_str()); // Ctrl-C ends that process, not this one
+  const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  if (std::ranges::any_of(stopping_signals, [&](int signal) { return code == 128 + signal; }))
+    throw Interrupted(fmt::format("interrupted while its figures were drawn; all other results are complete. Draw the "
+                                  "figures with: isostat report {}",
+                                  quoted(folder)));
   if (code != 0 && code != without_report)
     return fmt::format("figures were not drawn: {} ({})", last_line(log), log.string());
   if (code == without_report)

@@ -47,10 +47,13 @@ void write_provenance(const std::filesystem::path &folder, const Scene &scene, c
 
 /// Draws the figures of a results folder and leaves report.html there, with the Python packages `figures` and `report`.
 /// A report that fails is one line on stderr.   @param program  that left the folder
-/// @return a line for the summary; never fails a run   tested: tests/apps/report_test.py
+/// @return a line for the summary; what else goes wrong never fails a run
+/// @throws Interrupted  a signal ended the drawing, but not this program: says how to draw them
+/// tested: tests/apps/report_test.py, tests/apps/figures_interrupt_test.py
 std::string draw_figures(const std::filesystem::path &folder, const std::string &program);
 
 /// Leaves summary.txt, prints it and `times`, and leaves figures and report of this program unless `figures` is false.
+/// @throws Interrupted  as draw_figures()
 void leave_summary(const std::filesystem::path &folder, const std::string &text, const std::string &times,
                    const char *program, bool figures);
 } // namespace isostat

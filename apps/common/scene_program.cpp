@@ -99,15 +99,24 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
         (folder / "scene.toml").string()));
 }
 
+void tell_finished(const std::filesystem::path &folder, const char *program, bool figures)
+{
+  fmt::print("{}: this run has finished, there is nothing to resume; its results are in summary.txt.", folder.string());
+  if (figures && !std::filesystem::exists(folder / "report.html"))
+    {
+      fmt::print(" Its figures are missing, they are drawn now.\n");
+      std::fflush(stdout);
+      fmt::print("  {}\n", draw_figures(folder, program));
+    }
+  else
+    fmt::print(" Start it anew with --overwrite.\n");
+}
+
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene)
 {
   if (use != FolderUse::resume || !std::filesystem::exists(folder / "summary.json"))
     return false;
   check_same_scene(folder, read_scene_text((folder / "scene.toml").string()), scene);
-  fmt::print(
-      "{}: this run has finished, there is nothing to resume; its results are in summary.txt. Start it anew with "
-      "--overwrite.\n",
-      folder.string());
   return true;
 }
 

@@ -59,10 +59,14 @@ std::string first_difference(const std::string &one, const std::string &other);
 /// A run is resumed with the scene of its checkpoint only.   @throws InputError  the scenes differ
 void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene);
 
-/// Whether a run that --resume asks for has finished: its summary is there. Says so on stdout then.
-/// @throws InputError  it was another scene
+/// Whether a run that --resume asks for has finished: its summary is there.   @throws InputError  it was another scene
 /// tested: tests/apps/kill_resume_test.py, tests/apps/soil_column_resume_test.py
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene);
+
+/// What there is to do about it: says so on stdout, and draws what is missing of its figures and report, if `figures`.
+/// @throws Interrupted  as draw_figures()
+/// tested: tests/apps/figures_interrupt_test.py
+void tell_finished(const std::filesystem::path &folder, const char *program, bool figures);
 
 /// A line for a failure: where the last good checkpoint is.
 std::string last_checkpoint(const std::filesystem::path &folder);

@@ -32,7 +32,11 @@ void run_scene(const SceneOptions &options)
                      "and --threads share the packings of one run.");
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
-    return;
+    {
+      if (ranks().first())
+        tell_finished(request.folder, "soil_column", !options.no_figures);
+      return;
+    }
   const RunResult result = run_column(request);
   if (ranks().first())
     leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",

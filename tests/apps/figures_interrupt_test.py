@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ctrl-C while figures are drawn: the run has finished, and the next call draws what is missing."""
+import contextlib
+import os
+import signal
+import subprocess
+import time
+
+from column_support import ColumnTest, settings
+from support import BIN, PATIENCE, MONOTONIC, contents, main, tiny_scene
+
+
+class Interrupted(ColumnTest):
+    def stop_drawing(self, *command, with_signal=signal.SIGINT):
+        """Runs it in a terminal of its own, and stops all in it when the figures have been begun. Returns what it said
+        on stderr."""
+        log = self.folder / "out/figures.log"
+        with subprocess.Popen(self.command(*command, "-o", "out", "-q"), cwd=self.folder, start_new_session=True,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            end = time.time() + 60 * PATIENCE
+            while process.poll() is None and not log.exists() and time.time() < end:
+                time.sleep(0.005)
+            time.sleep(0.1)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, with_signal)
+            said = process.communicate(timeout=60 * PATIENCE)[1]
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("interrupted while its figures were drawn; all other results are complete", said)
+        self.assertIn("isostat report 'out'", said)
+        self.assertFalse((self.folder / "out/report.html").exists())
+        return said
+
+    def numbers(self):
+        return {name: data for name, data in contents(self.folder / "out").items()
+                if not name.startswith("figures") and name != "report.html"}
+
+    def assert_drawn_by_resume(self, *command):
+        before = self.numbers()
+        result = self.run_app(*command, "-o", "out", "--resume", "--no-figures")
+        self.assert_done(result)
+        self.assertFalse((self.folder / "out/report.html").exists())
+        result = self.run_app(*command, "-o", "out", "--resume")
+        self.assert_done(result)
+        self.assertIn("this run has finished", result.stdout)
+        self.assertIn("Its figures are missing, they are drawn now", result.stdout)
+        self.assertNotIn("--overwrite", result.stdout)
+        self.assertTrue((self.folder / "out/report.html").exists())
+        self.assertEqual(self.numbers(), before)
+        again = self.run_app(*command, "-o", "out", "--resume")
+        self.assertIn("Start it anew with --overwrite", again.stdout)
+
+    def test_column(self):
+        column = ("soil_column", self.scene, *settings(analysis__duration="0.05 s"))
+        for with_signal in (signal.SIGINT, signal.SIGTERM):
+            self.stop_drawing(*column, *(["--overwrite"] if with_signal == signal.SIGTERM else []),
+                              with_signal=with_signal)
+            (self.folder / "out/figures.log").unlink()
+        self.assert_drawn_by_resume(*column)
+
+    def test_element_test(self):
+        test = ("element_test", self.write("tiny.toml", tiny_scene(stages=MONOTONIC.format(steps=500))))
+        self.stop_drawing(*test)
+        self.assert_drawn_by_resume(*test)
+
+    def test_the_command_it_names(self):
+        self.stop_drawing("soil_column", self.scene, *settings(analysis__duration="0.05 s"))
+        self.assert_done(subprocess.run([BIN / "isostat", "report", "out"], cwd=self.folder, capture_output=True,
+                                        text=True, timeout=120 * PATIENCE, check=False))
+        self.assertTrue((self.folder / "out/report.html").exists())
+
+    def test_ensemble(self):
+        """The same command draws them."""
+        self.write("a.txt", "\n".join(f"{0.01 * k} {0.1 * (-1)**(k // 10)}" for k in range(100)))
+        scene = self.write("shaken.toml", self.scene.read_text(encoding="utf-8").replace(
+            'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "3 Hz"\nduration = "60 s"\nramp = "1 s"',
+            'kind = "record"\nfile = "a.txt"'))
+        ensemble = ("soil_column", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
+        self.stop_drawing(*ensemble)
+        self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))
+        self.assertTrue((self.folder / "out/report.html").exists())
+
+
+if __name__ == "__main__":
+    main()
