@@ -4,6 +4,7 @@
 #include "apps/deposit/soil_material.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <random>
 
 namespace isostat
@@ -88,6 +89,10 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
   if (scene.has_grains())
     {
       RveMaterialSettings settings = scene.grains;
+      check_seeds(settings.library, scene.soil.grains,
+                  scene.soil.grains.realisation + scene.mixed_realisations - 1 + settings.realisations,
+                  fmt::format("soil.realisation = {}, soil.mixed_realisations = {}", scene.soil.grains.realisation,
+                              scene.mixed_realisations));
       settings.undrained = false;
       settings.threads = threads;
       auto grains = std::make_unique<RveMaterial>(requests(scene, space), settings, MPI_COMM_SELF);

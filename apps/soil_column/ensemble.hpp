@@ -40,6 +40,10 @@ ColumnScene member_scene(ColumnScene scene, std::size_t k);
 /// consolidation, a mesh that is shared out, a material of the user's own
 std::vector<EnsembleMember> ensemble_members(const ColumnScene &scene, const EnsemblePlan &plan);
 
+/// Checks all that ensemble_members() does, and each member's scene, without a run.   @throws InputError  as that
+/// @return the scene with every key, and in comments how each member differs from it
+std::string validated_ensemble(const ColumnScene &scene, const EnsemblePlan &plan);
+
 /// Runs the members that have not finished, each in a process of its own, and leaves what they give together. Below the
 /// folder:
 ///

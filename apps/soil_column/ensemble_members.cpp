@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/ensemble.hpp"
 
+#include "apps/deposit/inputs.hpp"
 #include "base/error.hpp"
 
 #include <algorithm>
@@ -52,28 +53,18 @@ void check_kind(const ColumnScene &scene, const EnsemblePlan &plan)
                                  plan.members));
 }
 
-/// The last seed that any member may need is looked for before the first starts.
-void check_seeds(const ColumnScene &scene, std::size_t members)
+/// Members that differ by their lots alone differ in nothing where every point has all the seeds.
+void check_lots(const ColumnScene &scene, const EnsemblePlan &plan)
 {
-  for (const ColumnLayer &layer : scene.layers)
-    {
-      if (layer.material != LayerMaterial::grains)
-        continue;
-      SpecimenRequest last = layer.grains;
-      const std::size_t per_point = scene.grains.realisations;
-      last.realisation += (last.mixed > 1 ? last.mixed : members * per_point) - 1;
-      const std::string &library = last.library.empty() ? scene.grains.library : last.library;
-      constexpr double any_stress = 1e5;
-      try
-        {
-          nearest_entry(list_library(library), last, any_stress, any_stress);
-        }
-      catch (const InputError &error)
-        {
-          throw InputError(
-              fmt::format("--ensemble {}: layer \"{}\", {}: {}", members, layer.name, library, error.what()));
-        }
-    }
+  const auto never_differs = [&](const ColumnLayer &layer) {
+    return layer.material != LayerMaterial::grains ||
+           (layer.grains.mixed > 1 && layer.grains.mixed == scene.grains.realisations);
+  };
+  if (plan.members > 1 && std::ranges::all_of(scene.layers, never_differs))
+    throw InputError(
+        fmt::format("--ensemble {}: all members would have the same packings, because every point has all seeds of the "
+                    "lot: mixed_realisations = grains.realisations = {}. Give layers more mixed_realisations, or 1.",
+                    plan.members, scene.grains.realisations));
 }
 } // namespace
 
@@ -91,6 +82,25 @@ void EnsemblePlan::add_options(CLI::App &line)
   share.add_options(line);
 }
 
+std::string validated_ensemble(const ColumnScene &scene, const EnsemblePlan &plan)
+{
+  const std::vector<EnsembleMember> members = ensemble_members(scene, plan);
+  std::string text =
+      to_toml(scene) + fmt::format("\n# {} member{} of an ensemble, whose scenes, libraries and records are valid:\n",
+                                   members.size(), members.size() > 1 ? "s" : "");
+  for (const EnsembleMember &member : members)
+    {
+      text += fmt::format("# {}:", member.name);
+      for (std::size_t k = 0; k < scene.layers.size(); ++k)
+        if (const SpecimenRequest &grains = member.scene.layers[k].grains;
+            scene.layers[k].material == LayerMaterial::grains)
+          text += grains.mixed > 1 ? fmt::format(" layer.{}.lot = {}", k, grains.lot)
+                                   : fmt::format(" layer.{}.realisation = {}", k, grains.realisation);
+      text += (member.record.empty() ? "" : " record " + member.record) + '\n';
+    }
+  return text;
+}
+
 ColumnScene member_scene(ColumnScene scene, std::size_t k)
 {
   for (ColumnLayer &layer : scene.layers)
@@ -103,6 +113,7 @@ ColumnScene member_scene(ColumnScene scene, std::size_t k)
 std::vector<EnsembleMember> ensemble_members(const ColumnScene &scene, const EnsemblePlan &plan)
 {
   check_kind(scene, plan);
+  check_lots(scene, plan);
   for (std::size_t r = 0; r < plan.records.size(); ++r)
     if (plan.records[r].empty() || std::count(plan.records.begin(), plan.records.end(), plan.records[r]) > 1)
       throw InputError(fmt::format(
@@ -110,7 +121,7 @@ std::vector<EnsembleMember> ensemble_members(const ColumnScene &scene, const Ens
           "--records first.txt,second.AT2; they count from the working directory.",
           r + 1, plan.records.size(), plan.records[r], plan.records[r].empty() ? "has no name" : "comes twice"));
   const std::size_t n = std::max<std::size_t>(plan.members, 1);
-  check_seeds(scene, n);
+  check_libraries(scene, n);
   std::vector<EnsembleMember> all;
   for (std::size_t r = 0; r < std::max<std::size_t>(plan.records.size(), 1); ++r)
     for (std::size_t k = 0; k < n; ++k)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/run.hpp"
 
+#include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "base/error.hpp"
 
@@ -52,6 +53,7 @@ RunResult run_column(const ColumnRequest &request)
   on_first_rank([&] {
     check_ranks(request.scene);
     check_result_folder(request.folder, request.use);
+    check_libraries(request.scene);
   });
   RunResult result = run_dimension(request);
   if (ranks().first())

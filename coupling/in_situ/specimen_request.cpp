@@ -46,6 +46,21 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   return **std::min_element(fits.begin(), fits.end(), [&](auto *a, auto *b) { return distance(a) < distance(b); });
 }
 
+void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t n_seeds,
+                 const std::string &what)
+{
+  constexpr double any_stress = 1e5;
+  request.realisation = n_seeds - 1;
+  try
+    {
+      nearest_entry(list_library(library), request, any_stress, any_stress);
+    }
+  catch (const InputError &error)
+    {
+      throw InputError(fmt::format("{}: {}: {}", what, library.string(), error.what()));
+    }
+}
+
 NearestSpecimens::NearestSpecimens(std::filesystem::path library)
     : library_(std::move(library)), entries_(list_library(library_))
 {}

@@ -24,6 +24,9 @@ struct SpecimenRequest
   /// follows, so that up to `mixed` packings of a point differ.
   std::size_t seed_of(std::size_t k) const { return realisation + (mixed > 1 ? (drawn + k) % mixed : k); }
 
+  /// Seeds that the library must have for points of so many packings.
+  std::size_t n_seeds(std::size_t per_point) const { return realisation + (mixed > 1 ? mixed : per_point); }
+
   bool operator==(const SpecimenRequest &) const = default;
 };
 
@@ -34,6 +37,13 @@ struct SpecimenRequest
 /// tested: tests/coupling/in_situ/specimen_request_test.cpp
 const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
                                   double vertical, double horizontal);
+
+/// Before any work: whether a library has so many seeds of the density of a request.
+/// @param what  who needs them, at the head of the message
+/// @throws InputError  as nearest_entry(), naming the library
+/// tested: tests/coupling/in_situ/specimen_request_test.cpp
+void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t n_seeds,
+                 const std::string &what);
 
 /// The packing from which a specimen is brought to its stress in situ.
 struct StartingSpecimen

@@ -174,6 +174,23 @@ class Ensemble(ColumnTest):
                           np.std(arias, ddof=1) / np.sqrt(5), DIGITS, "ten digits of the tables")
         self.assertIn("liquefied_thickness, m", (few / "summary.txt").read_text(encoding="utf-8"))
 
+    def test_validate_looks_at_every_member(self):
+        result = self.run_column(self.scene, "--ensemble", 3, "--validate")
+        self.assert_done(result)
+        self.assertIn("# 02: layer.0.realisation = 2", result.stdout)
+        self.write("again.toml", result.stdout)
+        self.assert_done(self.run_column("again.toml", "--validate"))
+        scene = self.write_records()
+        self.assertIn("# r01: record", self.run_column(scene, "--records", "first.txt,second.txt", "--validate").stdout)
+        for arguments, parts in (((self.scene, "--ensemble", 7), ("6 realisations", "needs 7")),
+                                 ((scene, "--records", "first.txt,none.txt"), ("none.txt",)),
+                                 ((scene, "--ensemble", 2), ("without a layer of grains",)),
+                                 ((self.scene, "--jobs", 2), ("--ensemble or --records",))):
+            self.assert_refused(self.run_column(*arguments, "--validate"), *parts)
+        (self.folder / "second.txt").write_text("0 1\nno number\n", encoding="utf-8")
+        self.assert_refused(self.run_column(scene, "--records", "first.txt,second.txt", "--validate"), "second.txt")
+        self.assertFalse((self.folder / "results").exists())
+
     def sources(self, name):
         """Specimens of the library that packings in situ came from."""
         with h5py.File(self.cache / name) as file:
@@ -241,6 +258,11 @@ class Ensemble(ColumnTest):
         refused(self.scene, "--ensemble", 7, parts=("--ensemble 7", "6 realisations", "needs 7", "--append"))
         refused(self.scene, "--ensemble", 4, *settings(grains__realisations=2), parts=("6 realisations", "needs 8"))
         refused(self.scene, "--jobs", 2, parts=("--ensemble or --records",))
+        all_seeds = settings(layer__0__mixed_realisations=2, grains__realisations=2)
+        refused(self.scene, "--ensemble", 2, *all_seeds, parts=("every point has all seeds", "mixed_realisations"))
+        for more in ("--ensemble", 2), (), ("--validate",):
+            refused(self.scene, *more, *settings(layer__0__mixed_realisations=8, layer__0__realisation=1),
+                    parts=("layer.0.realisation = 1, layer.0.mixed_realisations = 8", "6 realisations", "needs 9"))
         refused(self.scene, *settings(layer__0__mixed_realisations=2, grains__realisations=3),
                 parts=("layer.0.mixed_realisations", "at least grains.realisations, 3"))
         self.ensemble("out")

@@ -51,6 +51,24 @@ TEST(SpecimenRequest, SeedsOfAPointFollowEachOtherOrGoRoundTheMixedOnes)
   EXPECT_EQ(request.seed_of(2), 4u);
 }
 
+TEST(SpecimenRequest, NeedsSeedsForAllPackingsOrForTheLot)
+{
+  SpecimenRequest request{0.5, 3};
+  EXPECT_EQ(request.n_seeds(2), 5u);
+  request.mixed = 4;
+  EXPECT_EQ(request.n_seeds(2), 7u);
+}
+
+TEST_F(Library, MustHaveSoManySeeds)
+{
+  test::write_library(folder / "library.h5");
+  EXPECT_NO_THROW(check_seeds(folder / "library.h5", {0.5, 0}, 1, "me"));
+  EXPECT_THAT(message_of<InputError>([&] {
+                check_seeds(folder / "library.h5", {0.5, 0}, 99, "me");
+              }),
+              AllOf(testing::StartsWith("me: "), HasSubstr("library.h5"), HasSubstr("the soil needs 99")));
+}
+
 TEST_F(Library, ReadsEachSpecimenOnce)
 {
   test::write_library(folder / "library.h5");
