@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 namespace isostat
 {
@@ -14,6 +15,11 @@ namespace
 {
 constexpr const char *water_choices[] = {"seepage", "submerged"};
 constexpr double near = 1e-6; ///< m
+/// Friction angle beyond that of any packing, deg. Dense ones reach q/p' = 1.61 in compression, which is 39 deg
+/// (docs/results/paper.md); dense sands at a few kPa some 50.
+constexpr double largest_friction = 60;
+
+double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // clang-format off
 constexpr Key keys[] = {
@@ -58,6 +64,38 @@ double shear_strength(const ColumnLayer &layer, const PlaneStress &stress)
   const double strength = layer.iwan.strength_ratio * mean_pressure(layer, stress),
                normal = (1 - layer.k0) * stress.normal / std::sqrt(3.0);
   return std::sqrt(std::max(0.0, strength * strength - normal * normal));
+}
+
+/// Friction angle that packings would have to mobilise at the start: of the largest and the smallest principal stress,
+/// or, where they find their horizontal stress themselves, that of the plane along the surface. deg
+double mobilised_friction(const ColumnScene &scene, const ColumnLayer &layer, const PlaneStress &stress)
+{
+  if (scene.grains.in_situ.path == InSituPath::no_lateral_strain)
+    return degrees(std::atan(stress.shear / stress.normal));
+  const double mean = (1 + layer.k0) / 2 * stress.normal,
+               radius = std::hypot((1 - layer.k0) / 2 * stress.normal, stress.shear);
+  return degrees(std::asin(std::min(1.0, radius / mean)));
+}
+
+/// @throws InputError  packings at a depth that no packing can carry
+void check_packings_on_slope(const SceneDocument &document, const ColumnScene &scene, std::size_t k, double depth,
+                             const PlaneStress &stress)
+{
+  const ColumnLayer &layer = scene.layers[k];
+  const double friction = mobilised_friction(scene, layer, stress);
+  if (friction <= largest_friction)
+    return;
+  document.refuse(
+      "slope.angle",
+      fmt::format(
+          "is too steep for the packings of layer.{}{}: at a depth of {:.4g} m a static shear stress of {:.4g} kPa "
+          "at a normal effective stress of {:.4g} kPa{} mobilises a friction angle of {:.3g} deg, and no packing "
+          "carries more than {:g} deg. Give a smaller slope.angle, a k0 nearer to 1, or a deeper water.table.",
+          k, layer.name.empty() ? "" : " (" + layer.name + ")", depth, stress.shear / 1e3, stress.normal / 1e3,
+          scene.grains.in_situ.path == InSituPath::no_lateral_strain
+              ? ""
+              : fmt::format(" and with k0 = {}", number_text(layer.k0)),
+          friction, largest_friction));
 }
 
 /// Distance of a depth to the nearest boundary between elements, and that boundary. m
@@ -120,6 +158,8 @@ void check_slope(const SceneDocument &document, const ColumnScene &scene)
   check_table(document, scene);
   for_each_end(scene, [&](std::size_t k, double depth, const PlaneStress &stress) {
     const ColumnLayer &layer = scene.layers[k];
+    if (layer.material == LayerMaterial::grains && stress.shear > 0)
+      check_packings_on_slope(document, scene, k, depth, stress);
     if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
       return;
     if (stress.shear > shear_strength(layer, stress))

@@ -25,7 +25,8 @@ std::optional<SlopeSafety> slope_safety(const ColumnScene &scene);
 
 /// Rules of the slope and of the water table.
 /// @throws InputError  a table that is not on a boundary between elements or not in soil with coupled water; a layer of
-///                     iwan that cannot carry its static shear beside the deviator that k0 gives it: layer, depth
+///                     iwan that cannot carry its static shear beside the deviator that k0 gives it; packings that
+///                     would have to mobilise a friction angle of more than 60 deg: layer, depth
 /// tested: tests/apps/deposit/slope_test.cpp
 void check_slope(const SceneDocument &document, const ColumnScene &scene);
 } // namespace isostat

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <set>
 
 namespace isostat
@@ -55,9 +54,20 @@ SpecimenRequest drawn(SpecimenRequest request, const Place &place)
   return request;
 }
 
-/// The packings of a soil.   @throws InputError  of a slope that they cannot bear: where the points are, and remedies
-void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::vector<Stress> &stresses,
-                     const CellTables &mesh, const std::vector<std::size_t> &places)
+/// What messages call a point: "layer.0 (sand), depth 2.5 m", in a strip or block with x and y.
+std::string point_name(const ColumnScene &scene, const CellTables &mesh, std::size_t q)
+{
+  const std::size_t layer = mesh.cell_layer[q / mesh.points_per_cell()];
+  const std::string &name = scene.layers[layer].name;
+  std::string text = fmt::format("layer.{}{}, depth {:.4g} m", layer, name.empty() ? "" : " (" + name + ")",
+                                 scene.height() - mesh.position[q][2]);
+  for (unsigned axis = 0; axis + 1 < scene.mesh.dimension; ++axis)
+    text += fmt::format(", {} {:.4g} m", "xy"[axis], mesh.position[q][axis]);
+  return text;
+}
+
+/// The packings of a soil.   @throws InputError  of a slope that they cannot bear: layer, depth, and remedies
+void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::vector<Stress> &stresses)
 {
   try
     {
@@ -67,14 +77,10 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
     {
       if (scene.slope.tangent == 0)
         throw;
-      std::vector<double> depths;
-      for (std::size_t place : places)
-        depths.push_back(scene.height() - mesh.position[place][2]);
       throw InputError(
           fmt::format("{}\n  The slope may be too steep for the packings. Give a smaller slope.angle, denser "
-                      "packings (relative_density), a k0 nearer to 1, or a deeper water.table. Points count "
-                      "from 0; their depths are {:.4g} m.",
-                      failure.what(), fmt::join(depths, ", ")));
+                      "packings (relative_density), a k0 nearer to 1, or a deeper water.table.",
+                      failure.what()));
     }
 }
 
@@ -131,6 +137,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
   SoilMaterial soil;
   std::vector<CompositeMaterial::Part> parts;
   std::vector<SpecimenRequest> requests;
+  std::vector<std::string> names;
   std::vector<Stress> stresses;                               ///< of the points with grains
   for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
     if (scene.layers[layer].material != LayerMaterial::grains)
@@ -145,12 +152,14 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
           soil.grains_places.push_back(q);
           requests.push_back(drawn(scene.layers[layer].grains, mesh.position[q]));
           stresses.push_back(in_situ[q]);
+          names.push_back(point_name(scene, mesh, q));
         }
   if (scene.has_grains())
     {
       auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
                                                   scene.mesh.distributed ? MPI_COMM_SELF : MPI_COMM_WORLD);
-      bring_to_stress(scene, *grains, stresses, mesh, soil.grains_places);
+      grains->name_points(names);
+      bring_to_stress(scene, *grains, stresses);
       soil.grains = grains.get();
       parts.push_back({std::move(grains), soil.grains_places});
     }

@@ -33,6 +33,8 @@ public:
   ElementBatch(const Realisations &points, const ElementSettings &settings, int threads, MPI_Comm comm);
 
   const Realisations &points() const { return points_; }
+  /// @pre one for each point
+  void name_points(std::vector<std::string> names) { points_.names = std::move(names); }
   const ElementSettings &settings() const { return settings_; }
   std::size_t size() const { return owners_.size(); }
   const Owners &owners() const { return owners_; }

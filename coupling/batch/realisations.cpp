@@ -40,8 +40,9 @@ void mean_of(const Realisations &points, std::span<const T> of_elements, std::sp
 
 std::string Realisations::label(std::size_t id) const
 {
-  return per_point == 1 ? fmt::format("rve: point {}", id)
-                        : fmt::format("rve: point {}, realisation {}", point_of(id), id % per_point);
+  const std::size_t point = point_of(id);
+  const std::string name = names.empty() ? fmt::format("point {}", point) : names[point];
+  return "rve: " + name + (per_point == 1 ? "" : fmt::format(", realisation {}", id % per_point));
 }
 
 void Realisations::mean(std::span<const Stress> of_elements, std::span<Stress> of_points) const

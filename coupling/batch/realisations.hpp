@@ -13,11 +13,13 @@ namespace isostat
 struct Realisations
 {
   std::size_t n_points = 0, per_point = 1;
+  std::vector<std::string> names = {}; ///< of the points, for messages: layer and depth; empty: they have none
 
   std::size_t n_elements() const { return n_points * per_point; }
   std::size_t id_of(std::size_t point, std::size_t realisation) const { return point * per_point + realisation; }
   std::size_t point_of(std::size_t id) const { return id / per_point; }
-  /// What messages call an element: "rve: point 3" or, if there are several, "rve: point 3, realisation 1".
+  /// What messages call an element: "rve: point 3", or the name of its point, "rve: layer.0, depth 2.5 m"; if a point
+  /// has several, "rve: point 3, realisation 1".
   std::string label(std::size_t id) const;
 
   /// @param of_elements  n_elements() values     @param of_points  n_points means

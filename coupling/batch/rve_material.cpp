@@ -6,6 +6,7 @@
 #include "coupling/element/axes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 
@@ -102,6 +103,26 @@ InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const
   return start;
 }
 
+/// Of each density of each library the first point with the largest shear on horizontal planes over p'; none without
+/// shear, and none of elements that were given as they are.
+std::vector<bool> RveMaterial::most_sheared(std::span<const Stress> effective) const
+{
+  std::map<std::pair<std::string, std::optional<double>>, std::pair<double, std::size_t>> largest;
+  for (std::size_t point = 0; point < requests_.size(); ++point)
+    {
+      const Mat3 stress = to_matrix(effective[point]);
+      const double ratio = std::hypot(stress(2, 0), stress(2, 1)) / -stress.trace();
+      auto &[most, where] = largest[{requests_[point].library, requests_[point].relative_density}];
+      if (ratio > most)
+        most = ratio, where = point;
+    }
+  std::vector<bool> points(n_points(), false);
+  for (const auto &[sand, most] : largest)
+    if (most.first > 0)
+      points[most.second] = true;
+  return points;
+}
+
 void RveMaterial::set_initial_stress(std::span<const Stress> effective)
 {
   if (effective.size() != n_points())
@@ -113,6 +134,11 @@ void RveMaterial::set_initial_stress(std::span<const Stress> effective)
     cache.emplace(settings_.cache);
     start.emplace(in_situ_start(*cache, effective));
   });
+  if (const std::vector<bool> first = most_sheared(effective); std::ranges::find(first, true) != first.end())
+    batch_.for_each([&](std::size_t id) {
+      if (first[points().point_of(id)])
+        start->prepare(id);
+    });
   batch_.for_each([&](std::size_t id) { start->prepare(id); });
   batch_.together([&] {
     if (settings_.cache.empty())

@@ -41,8 +41,12 @@ public:
   std::string name() const override { return "rve"; }
   std::size_t n_points() const override { return points().n_points; }
 
+  /// What messages call the points, such as "layer.0 (sand), depth 2.5 m".   @pre one for each point
+  void name_points(std::vector<std::string> names) { batch_.name_points(std::move(names)); }
+
   /// Finds each element in the cache, or brings the nearest specimen of the library (or the element as it is) to the
-  /// stress, several side by side; within 1 % of p' of the target.
+  /// stress, several side by side; within 1 % of p' of the target. Where stresses have a shear, of each density the
+  /// point with the largest shear over p' comes first: if one cannot be reached, it is that.
   /// @throws InputError  the library has no such specimens; p' too low     @throws RunFailure  not reached
   void set_initial_stress(std::span<const Stress> effective) override;
 
@@ -95,6 +99,7 @@ private:
   const Realisations &points() const { return batch_.points(); }
   void make(const std::function<Rve(std::size_t id)> &maker);
   InSituStart in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const;
+  std::vector<bool> most_sheared(std::span<const Stress> effective) const;
   void count_trial();
   const std::vector<Stiffness> &skeleton() const;
   void refresh_waves() const;

@@ -220,21 +220,22 @@ class Rest(GrainColumnTest):
 
 
 class Failures(GrainColumnTest):
-    def fail(self, point, *more):
+    def fail(self, depth, *more):
         result = self.run_on_ranks(2, self.scene, "-o", "out", "--overwrite", "-q", *settings(layer__0__cells=4), *more)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual(result.stderr.count("failed: "), 1)
-        self.assertRegex(result.stderr, rf"failed: step \d+ \(t = [\d.]+ s\): rve: point {point}: an increment .*\n"
+        self.assertRegex(result.stderr, r"failed: step \d+ \(t = [\d.]+ s\): "
+                         rf"rve: layer\.0, depth {depth} m: an increment .*\n"
                          r"  last good checkpoint: out/checkpoint/last.h5\n")
         with h5py.File(self.folder / "out/checkpoint/last.h5") as file:
             self.assertGreater(file.attrs["step"], 0)
 
     def test_packing_of_the_first_rank(self):
-        self.fail(0, *settings(motion__0__amplitude="1e5 g"))
+        self.fail("2.625", *settings(motion__0__amplitude="1e5 g"))
 
     def test_packing_of_another_rank(self):
-        self.fail(3, *settings(load__kind="harmonic", load__direction="x", load__amplitude="1 GPa",
-                               load__frequency="5 Hz"))
+        self.fail("0.375", *settings(load__kind="harmonic", load__direction="x", load__amplitude="1 GPa",
+                                     load__frequency="5 Hz"))
 
     def test_full_disk(self):
         disk = self.folder / "disk"

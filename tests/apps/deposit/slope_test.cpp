@@ -81,6 +81,26 @@ TEST(SlopeScene, WhatCannotStandIsRefused)
   expect_refusal(loose + dry + slope("-1") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});
 }
 
+TEST(SlopeScene, PackingsThatNoFrictionHoldsAreRefused)
+{
+  const std::string packings = "[[layer]]\nname = \"sand\"\nthickness = \"5 m\"\nmaterial = \"grains\"\ncells = 5\n"
+                               "[grains]\nlibrary = \"none.h5\"\n";
+  const auto expect_limit = [&](const std::string &more, double angle, const Overrides &overrides = {}) {
+    const auto text = [&](double a) { return packings + more + slope(std::to_string(a)) + dynamic; };
+    expect_refusal(text(angle + 0.05),
+                   {"slope.angle", "layer.0 (sand)", "at a depth of 5 m", "friction angle of 60",
+                    "no packing carries more than 60 deg"},
+                   overrides);
+    EXPECT_NO_THROW(parse_column_scene(text(angle - 0.05), "s", overrides));
+  };
+  // sin(60 deg) is the radius of Mohr's circle over its centre
+  const double sine = std::sqrt(0.75), level = std::sqrt(std::pow(0.75 * sine, 2) - 0.0625); // k0 = 0.5
+  expect_limit(dry, std::atan(level) / degree);
+  expect_limit(dry, std::atan(sine) / degree, {"layer.0.k0=1"});
+  expect_limit(undrained, std::atan(0.5 * sine) / degree, {"layer.0.k0=1"}); // seepage: gamma'/gamma
+  expect_limit(undrained, std::atan(0.5 * std::tan(60 * degree)) / degree, {"grains.in_situ=no-lateral-strain"});
+}
+
 TEST(SlopeScene, WaterTablesThatAreRefused)
 {
   const auto table = [](const std::string &depth) { return "[water]\ntable = \"" + depth + " m\"\n"; };

@@ -19,6 +19,8 @@ TEST(Realisations, AreNumberedPointByPoint)
     EXPECT_EQ(pairs.id_of(pairs.point_of(id), id % 2), id);
   EXPECT_EQ(pairs.label(3), "rve: point 1, realisation 1");
   EXPECT_EQ((Realisations{4, 1}.label(3)), "rve: point 3");
+  EXPECT_EQ((Realisations{2, 1, {"clay", "sand, depth 2 m"}}.label(1)), "rve: sand, depth 2 m");
+  EXPECT_EQ((Realisations{2, 2, {"clay", "sand, depth 2 m"}}.label(2)), "rve: sand, depth 2 m, realisation 0");
 }
 
 TEST(Realisations, AreAveraged)
