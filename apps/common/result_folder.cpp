@@ -4,6 +4,7 @@
 #include "apps/common/child_runs.hpp"
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
 #include "dem/contact/loop.hpp"
@@ -114,18 +115,36 @@ void open_result_folder(const fs::path &folder, FolderUse use)
   make_writable_folder(folder);
 }
 
-void write_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
-                      const std::vector<std::pair<std::string, std::string>> &more)
+namespace
 {
-  write_replacing(folder / "scene.toml", scene_text);
+using MoreProvenance = std::vector<std::pair<std::string, std::string>>;
+
+std::string provenance_text(const std::string &command_line, const MoreProvenance &more)
+{
   std::string text = fmt::format(
       "command           {}\nversion           {}\ncompiler          {}\nlibraries         Eigen "
       "{}.{}.{}, fmt {}\n",
       command_line, version(), __VERSION__, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION);
   for (const auto &[name, value] : more)
     text += fmt::format("{:<18}{}\n", name, value);
-  text += fmt::format("started           {:%Y-%m-%d %H:%M:%S} UTC\n", fmt::gmtime(std::time(nullptr)));
-  write_replacing(folder / "provenance.txt", text);
+  return text + fmt::format("started           {:%Y-%m-%d %H:%M:%S} UTC\n", fmt::gmtime(std::time(nullptr)));
+}
+} // namespace
+
+void write_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
+                      const MoreProvenance &more)
+{
+  write_replacing(folder / "scene.toml", scene_text);
+  write_replacing(folder / "provenance.txt", provenance_text(command_line, more));
+}
+
+void add_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
+                    const MoreProvenance &more)
+{
+  const fs::path file = folder / "provenance.txt";
+  const std::string before = fs::exists(file) ? read_text(file) + "\n" : "";
+  write_replacing(folder / "scene.toml", scene_text);
+  write_replacing(file, before + provenance_text(command_line, more));
 }
 
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)

@@ -42,7 +42,11 @@ void make_writable_folder(const std::filesystem::path &folder);
 /// tells: name and value).
 void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
                       const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
-/// The same of a scene of grains, with instruction set and seed.
+/// The same for folders to which one command comes back: what earlier calls left in provenance.txt stays, above an
+/// empty line.   tested: tests/apps/column_ensemble_test.py
+void add_provenance(const std::filesystem::path &folder, const std::string &scene_text, const std::string &command_line,
+                    const std::vector<std::pair<std::string, std::string>> &more);
+/// The first of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
 /// Draws the figures of a results folder and leaves report.html there, with the Python packages `figures` and `report`.

@@ -54,6 +54,22 @@ SpecimenRequest drawn(SpecimenRequest request, const Place &place)
   return request;
 }
 
+/// See SoilMaterial::seeds.
+std::vector<std::vector<std::size_t>> drawn_seeds(const ColumnScene &scene,
+                                                  const std::vector<SpecimenRequest> &requests)
+{
+  if (std::ranges::none_of(requests, [](const SpecimenRequest &request) { return request.mixed > 1; }))
+    return {};
+  std::vector<std::vector<std::size_t>> seeds;
+  for (const SpecimenRequest &request : requests)
+    {
+      std::vector<std::size_t> &of_point = seeds.emplace_back();
+      for (std::size_t k = 0; k < scene.grains.realisations; ++k)
+        of_point.push_back(request.seed_of(k));
+    }
+  return seeds;
+}
+
 /// What messages call a point: "layer.0 (sand), depth 2.5 m", in a strip or block with x and y.
 std::string point_name(const ColumnScene &scene, const CellTables &mesh, std::size_t q)
 {
@@ -156,6 +172,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
         }
   if (scene.has_grains())
     {
+      soil.seeds = drawn_seeds(scene, requests);
       auto grains = std::make_unique<RveMaterial>(requests, scene.packings(threads),
                                                   scene.mesh.distributed ? MPI_COMM_SELF : MPI_COMM_WORLD);
       grains->name_points(names);

@@ -38,6 +38,9 @@ struct SoilMaterial
   std::unique_ptr<TimedMaterial> material;
   const RveMaterial *grains = nullptr;    ///< the part of it that is made of packings; null if there is none
   std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`
+  /// Of each of these the seeds of its packings, counted from 0 over those of its density; empty if no layer draws
+  /// them.
+  std::vector<std::vector<std::size_t>> seeds = {};
 };
 
 /// Materials of the user's own by the name of their layer: each call makes one for so many points.

@@ -10,7 +10,8 @@ fig_ensemble_spectra.png     response spectra of the surface, likewise (of two a
 fig_ensemble_histories.png   acceleration and settlement of the surface, and largest r_u anywhere, likewise
 fig_ensemble_numbers.png     numbers of each member (points), their mean with its standard error (bar), and the band
 
-A band holds 16 to 84 % of the members at each depth, period or time for itself; no single member need follow it.
+A band holds 16 to 84 % of the members at each depth, period or time for itself; no single member need follow it. Of
+less than three members there is none. Members with the packings of an earlier one are left out.
 """
 import csv
 
@@ -42,10 +43,11 @@ class Ensemble:
         if "points" not in self.bands or "history" not in self.bands:
             raise BadInput(f"{folder}: no bands_points.csv and bands_history.csv; run the ensemble again")
         with open(folder / "members.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+            rows = [row for row in csv.DictReader(file) if not row.get("same_as")]
         self.names = [row["member"] for row in rows]
         self.members = {name.split(" (")[0]: np.array([float(row[name]) for row in rows])
-                        for name in (rows[0] if rows else {}) if name not in ("member", "packings", "record")}
+                        for name in (rows[0] if rows else {})
+                        if name not in ("member", "packings", "record", "same_as")}
         self.has_records = any(row["record"] for row in rows)
         self.folders = [folder / "members" / name for name in self.names]
 
@@ -86,13 +88,16 @@ def member_curve(folder, kind, name):
 def draw(axes, ensemble, kind, name, upright=False, alone=False):
     """Band, median and members; `upright`: the abscissa is the depth, downwards; `alone`: members without the rest."""
     x, band = ensemble.curve(kind, name)
+    has_band = np.isfinite(band["p16"]).any()
     for x_member, y in ensemble.each(kind, name):
         axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6)
     if alone:
         return
-    (axes.fill_betweenx if upright else axes.fill_between)(x, band["p16"], band["p84"], color=BLUE, alpha=0.25,
-                                                          linewidth=0, label="16 to 84 %")
-    axes.plot(*((band["p50"], x) if upright else (x, band["p50"])), color=BLACK, label="median")
+    if has_band:
+        (axes.fill_betweenx if upright else axes.fill_between)(x, band["p16"], band["p84"], color=BLUE, alpha=0.25,
+                                                              linewidth=0, label="16 to 84 %")
+    label = "median" if has_band else f"mean of {len(ensemble.names)}, no band"
+    axes.plot(*((band["p50"], x) if upright else (x, band["p50"])), color=BLACK, label=label)
 
 
 def over_depth(ensemble, panels):
@@ -119,7 +124,7 @@ def over_depth(ensemble, panels):
 
 
 def profiles(ensemble):
-    wet = np.any(ensemble.bands["points"]["max_ru_p84"] > 0)
+    wet = np.any(ensemble.bands["points"]["max_ru_mean"] > 0)
     return over_depth(ensemble, ([("points", "max_ru")] if wet else [])
                       + [("points", "max_gamma"), ("nodes", "max_acceleration")])
 
@@ -144,7 +149,7 @@ def spectra(ensemble):
 def histories(ensemble):
     names = [name for name in ("surface_ax", "surface_ay", "max_ru", "settlement")
              if ensemble.curve("history", name) is not None]
-    names = [name for name in names if np.abs(ensemble.curve("history", name)[1]["p84"]).max() > 1e-9]
+    names = [name for name in names if any(np.abs(y).max() > 1e-9 for _, y in ensemble.each("history", name))]
     if not names:
         return None
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
@@ -168,7 +173,8 @@ def numbers(ensemble):
                                layout="constrained")
     for axes, (name, label, factor) in zip(row[0], shown):
         values, table = factor * ensemble.members[name], ensemble.numbers["numbers"][name]
-        axes.axhspan(factor * table["p16"], factor * table["p84"], color=BLUE, alpha=0.25, linewidth=0)
+        if table["p16"] is not None:
+            axes.axhspan(factor * table["p16"], factor * table["p84"], color=BLUE, alpha=0.25, linewidth=0)
         axes.plot(np.zeros(len(values)), values, "o", color=GREY, markersize=4, markerfacecolor="none")
         axes.errorbar([0.25], [factor * table["mean"]], yerr=[factor * (table["standard_error"] or 0)], fmt="s",
                       color=BLACK, markersize=4, capsize=3)

@@ -32,12 +32,18 @@ def read_provenance(text):
     return dict(re.findall(r"^(\S.*?)\s{2,}(.*\S)\s*$", text, re.M))
 
 
+def read_calls(text):
+    """Of a folder to which a command comes back the provenance of each call, the first first."""
+    return [read_provenance(part) for part in text.split("\n\n") if part.strip()]
+
+
 class Results:
     """The files of a folder. What is missing is empty; `numbers` is None as long as the run is not finished."""
 
     def __init__(self, path, program):
         self.path, self.program = path, program
-        self.provenance = read_provenance(text_of(path / "provenance.txt"))
+        self.calls = read_calls(text_of(path / "provenance.txt"))
+        self.provenance = self.calls[-1] if self.calls else {}
         self.scene_text = text_of(path / "scene.toml")
         self.scene = self._table("scene.toml", tomllib.loads) or {}
         self.summary = text_of(path / "summary.txt")

@@ -114,7 +114,7 @@ class Page:
             html.section("Figures", html.figures(self.figures), missing, name="figures"),
             html.section("Going on, and repeating it", *resume_parts(r), name="resume"),
             html.section("Scene", html.text_block(r.scene_text, "scene") if r.scene_text else "", name="scene"),
-            html.section("Provenance", html.properties(r.provenance.items()), name="provenance"),
+            html.section("Provenance", *(html.properties(call.items()) for call in r.calls), name="provenance"),
             html.section("Citing", *citation.parts(r.provenance.get("version")), name="citing"),
         ]
         started = f", started {r.provenance['started']}" if "started" in r.provenance else ""

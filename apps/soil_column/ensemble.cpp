@@ -39,7 +39,7 @@ public:
     open_campaign_folder(
         folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); },
         options_.overwrite);
-    write_provenance(folder_, to_toml(shared_), options_.command_line, {});
+    add_provenance(folder_, to_toml(shared_), options_.command_line, {});
     for (const char *part : {"scenes", "members", "logs"})
       fs::create_directories(folder_ / part);
     for (const EnsembleMember &member : members_)
@@ -84,6 +84,7 @@ public:
         results.push_back(read_member(member, folder_ / "members" / member.name));
     if (results.empty())
       return 0;
+    find_same_packings(results);
     const std::string text = write_ensemble(folder_, shared_, results, members_.size(), failures_);
     leave_summary(folder_, text, "", "column_ensemble", !options_.no_figures);
     return results.size();

@@ -63,14 +63,14 @@ std::string bands_csv(const std::vector<MemberResults> &members, const std::stri
 
 std::string members_csv(const std::vector<MemberResults> &members)
 {
-  std::string text = "member,packings,record";
+  std::string text = "member,packings,record,same_as";
   for (const Measured &number : members.front().numbers)
     text += fmt::format(",{} ({})", number.name, number.unit);
   text += '\n';
   for (const MemberResults &member : members)
     {
-      text += fmt::format("{},{},{}", member.name, member.packings,
-                          std::filesystem::path(member.record).filename().string());
+      text += fmt::format("{},{},{},{}", member.name, member.packings,
+                          std::filesystem::path(member.record).filename().string(), member.same_as);
       for (const Measured &number : member.numbers)
         text += fmt::format(",{:.10g}", number.values.front());
       text += '\n';
@@ -83,6 +83,69 @@ Json to_json(const Statistics &s, const std::string &unit)
   return {{"unit", unit},    {"n", s.n},        {"mean", s.mean}, {"standard_error", s.standard_error},
           {"p16", s.low},    {"p50", s.median}, {"p84", s.high},  {"min", s.minimum},
           {"max", s.maximum}};
+}
+
+/// How a number of a member stands in the summary: as in that of a run of its own, where it is there.
+struct Shown
+{
+  std::string label; ///< with its unit
+  double factor = 1; ///< from SI
+};
+
+Shown shown_as(const Measured &number, const ColumnScene &scene)
+{
+  const std::map<std::string, Shown> as = {
+      {"peak_surface", {"peak surface (m/s2)"}},
+      {"peak_surface_below", {fmt::format("... below {:.4g} Hz (m/s2)", scene.analysis.highest_frequency)}},
+      {"amplification", {"amplification (-)"}},
+      {"arias_intensity", {"Arias intensity (m/s)"}},
+      {"peak_gamma", {"peak shear strain (%)", 100}},
+      {"max_ru", {"largest r_u (-)"}},
+      {"liquefied_thickness", {"liquefied thickness (m)"}},
+      {"settlement", {"settlement (mm)", 1000}},
+      {"downslope", {"moved downslope (m)"}},
+      {"min_redundancy", {"smallest I_R (-)"}},
+      {"final_redundancy", {"I_R at the end, mean (-)"}}};
+  if (const auto found = as.find(number.name); found != as.end())
+    return found->second;
+  constexpr std::string_view spectral = "surface_Sa_";
+  if (number.name.starts_with(spectral)) // "0.3s"
+    return {fmt::format("S_a({} s) of surface (m/s2)",
+                        number.name.substr(spectral.size(), number.name.size() - spectral.size() - 1))};
+  return {fmt::format("{} ({})", number.name, number.unit)};
+}
+
+std::string cell(double value, int digits)
+{
+  return std::isnan(value) ? fmt::format("{:>13}", "-") : fmt::format("{:>13.{}g}", value, digits);
+}
+
+std::string number_text(const Statistics &s, const Shown &shown)
+{
+  const double f = shown.factor;
+  return fmt::format("  {:<30}", shown.label) + cell(f * s.mean, 4) + cell(f * s.standard_error, 2) +
+         cell(f * s.low, 4) + cell(f * s.median, 4) + cell(f * s.high, 4) + fmt::format("{:>4}\n", s.n);
+}
+
+/// How many members there are and count, and the head of the table.
+std::string head_text(const ColumnScene &scene, const std::vector<MemberResults> &members, std::size_t n_asked,
+                      std::size_t n_differing)
+{
+  std::string text =
+      fmt::format("\n{}\n  members                  {} of {} finished\n",
+                  scene.title.empty() ? "Ensemble of a soil column" : scene.title, members.size(), n_asked);
+  std::string same;
+  for (const MemberResults &member : members)
+    if (!member.same_as.empty())
+      same += fmt::format("{}{} as {}", same.empty() ? "" : ", ", member.name, member.same_as);
+  if (!same.empty())
+    text += fmt::format("  the same packings        {}; they count once, n = {}. More seeds (mixed_realisations, and a "
+                        "library that has them) give more that differ\n",
+                        same, n_differing);
+  if (n_differing < fewest_for_band)
+    text += fmt::format("  no percentiles           of n = {}: figures have the members and their mean\n", n_differing);
+  return text + fmt::format("\n  {:<30}{:>13}{:>13}{:>13}{:>13}{:>13}{:>4}\n", "", "mean", "+- s.e.", "16 %", "median",
+                            "84 %", "n");
 }
 } // namespace
 
@@ -103,7 +166,9 @@ Statistics::Statistics(std::vector<double> sample)
     squares += (x - mean) * (x - mean);
   if (n > 1)
     standard_error = std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n));
-  low = percentile(sample, 0.16), median = percentile(sample, 0.5), high = percentile(sample, 0.84);
+  median = percentile(sample, 0.5);
+  if (n >= fewest_for_band)
+    low = percentile(sample, 0.16), high = percentile(sample, 0.84);
   minimum = sample.front(), maximum = sample.back();
 }
 
@@ -111,27 +176,25 @@ std::string write_ensemble(const std::filesystem::path &folder, const ColumnScen
                            const std::vector<MemberResults> &members, std::size_t n_asked,
                            const std::map<std::string, std::string> &failures)
 {
-  std::string text = fmt::format("\n{}\n  members                  {} of {} finished\n\n  {:<30}{:>12} {:>12} {:>12} "
-                                 "{:>12} {:>12} {:>3}\n",
-                                 scene.title.empty() ? "Ensemble of a soil column" : scene.title, members.size(),
-                                 n_asked, "", "mean", "+- s.e.", "16 %", "median", "84 %", "n");
+  std::vector<MemberResults> differing = members;
+  std::erase_if(differing, [](const MemberResults &member) { return !member.same_as.empty(); });
+  std::string text = head_text(scene, members, n_asked, differing.size());
   Json numbers = Json::object();
-  for (std::size_t k = 0; k < members.front().numbers.size(); ++k)
+  for (std::size_t k = 0; k < differing.front().numbers.size(); ++k)
     {
-      const Measured &number = members.front().numbers[k];
-      const Statistics s(sample(members, [&](const MemberResults &m) { return m.numbers[k].values.front(); }));
+      const Measured &number = differing.front().numbers[k];
+      const Statistics s(sample(differing, [&](const MemberResults &m) { return m.numbers[k].values.front(); }));
       numbers[number.name] = to_json(s, number.unit);
-      text += fmt::format("  {:<30}{:>12.4g} {:>12.2g} {:>12.4g} {:>12.4g} {:>12.4g} {:>3}\n",
-                          number.name + (number.unit == "-" ? "" : ", " + number.unit), s.mean, s.standard_error, s.low,
-                          s.median, s.high, s.n);
+      text += number_text(s, shown_as(number, scene));
     }
   for (const auto &[name, why] : failures)
     text += fmt::format("  failed: {}: {}\n", name, why);
-  for (const auto &[kind, curves] : members.front().curves)
-    write_replacing(folder / fmt::format("bands_{}.csv", kind), bands_csv(members, kind));
+  for (const auto &[kind, curves] : differing.front().curves)
+    write_replacing(folder / fmt::format("bands_{}.csv", kind), bands_csv(differing, kind));
   write_replacing(folder / "members.csv", members_csv(members));
   write_json(folder / "ensemble.json", {{"title", scene.title},
                                         {"members", members.size()},
+                                        {"differing", differing.size()},
                                         {"asked", n_asked},
                                         {"liquefied_ru", liquefied_ru},
                                         {"numbers", numbers}});

@@ -186,8 +186,12 @@ double liquefied_thickness(std::span<const double> depths, std::span<const doubl
 MemberResults read_member(const EnsembleMember &of, const fs::path &folder)
 {
   const ColumnScene &scene = of.scene;
-  MemberResults member{of.name, of.record, of.packings, {}, {}};
+  MemberResults member{of.name, of.record, of.packings, {}, {}, {}, {}};
   const Json summary = read_json(folder / "summary.json");
+  if (const auto seeds = summary.find("seeds"); seeds != summary.end())
+    member.seeds = seeds->get<std::vector<std::vector<std::size_t>>>();
+  for (std::vector<std::size_t> &of_point : member.seeds)
+    std::ranges::sort(of_point);
   const auto number = [&](const char *key, const char *unit) {
     const Json &value = summary.at(key);
     member.numbers.push_back({key, unit, {value.is_number() ? value.get<double>() : none}});
@@ -214,5 +218,14 @@ MemberResults read_member(const EnsembleMember &of, const fs::path &folder)
       member.numbers.push_back({"final_redundancy", "-", {mean(curves.curves[1].values)}});
     }
   return member;
+}
+
+void find_same_packings(std::vector<MemberResults> &members)
+{
+  std::map<std::pair<std::string, std::vector<std::vector<std::size_t>>>, std::string> first;
+  for (MemberResults &member : members)
+    if (!member.seeds.empty())
+      if (const auto [found, is_new] = first.try_emplace({member.record, member.seeds}, member.name); !is_new)
+        member.same_as = found->second;
 }
 } // namespace isostat

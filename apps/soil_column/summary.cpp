@@ -206,6 +206,8 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
   if (s.grains)
     {
       json["packings"] = s.grains->packings;
+      if (!s.grains->seeds.empty())
+        json["seeds"] = s.grains->seeds;
       json["shear_velocities"] = {s.grains->slowest, s.grains->fastest};
     }
   if (s.grains && s.grains->has_profiles)

@@ -5,6 +5,7 @@ bands of all, computed anew from the members' files."""
 import csv
 import json
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -79,7 +80,8 @@ def table(path):
 
 
 def numbers(path):
-    return {name: np.array(cells, dtype=float) for name, cells in table(path).items() if name != "record"}
+    return {name: np.array(cells, dtype=float) for name, cells in table(path).items()
+            if name not in ("record", "same_as")}
 
 
 class Ensemble(ColumnTest):
@@ -172,7 +174,53 @@ class Ensemble(ColumnTest):
         self.assertEqual((told["members"], told["asked"]), (5, 5))
         self.assert_close(told["numbers"]["arias_intensity"]["standard_error"],
                           np.std(arias, ddof=1) / np.sqrt(5), DIGITS, "ten digits of the tables")
-        self.assertIn("liquefied_thickness, m", (few / "summary.txt").read_text(encoding="utf-8"))
+        self.check_summary(few, found)
+
+    def check_summary(self, folder, found):
+        """Names and units as in the summary of a run; a record of each call."""
+        text = (folder / "summary.txt").read_text(encoding="utf-8")
+        for label, name, factor in (("peak surface (m/s2)", "peak_surface", 1),
+                                    ("peak shear strain (%)", "peak_gamma", 100),
+                                    ("largest r_u (-)", "max_ru", 1), ("settlement (mm)", "settlement", 1000),
+                                    ("S_a(0.3 s) of surface (m/s2)", "surface_Sa_0.3s", 1),
+                                    ("liquefied thickness (m)", "liquefied_thickness", 1)):
+            row = next(line for line in text.splitlines() if line.startswith(f"  {label} "))
+            self.assert_close(float(row[32:].split()[0]), factor * np.mean(found[name]), 1e-3,
+                              "four digits of the table")
+            self.assertEqual(row.split()[-1], "5")
+        self.assertNotIn("the same packings", text)
+        calls = (folder / "provenance.txt").read_text(encoding="utf-8").split("\n\n")
+        self.assertEqual([re.search(r"--ensemble (\d)", call)[1] for call in calls], ["3", "5"])
+
+    def test_two_members_have_no_band(self):
+        self.assert_done(self.run_app("soil_column", self.scene, "--ensemble", 2, "-o", "two", "-q"))
+        told = json.loads((self.folder / "two/ensemble.json").read_text(encoding="utf-8"))["numbers"]["peak_surface"]
+        self.assertEqual((told["n"], told["p16"], told["p84"]), (2, None, None))
+        self.assertEqual(told["p50"], told["mean"])
+        bands = numbers(self.folder / "two/bands_spectra.csv")
+        self.assertTrue(np.isnan(bands["surface_Sa_p16"]).all() and np.isfinite(bands["surface_Sa_p50"]).all())
+        self.assertIn("no percentiles           of n = 2",
+                      (self.folder / "two/summary.txt").read_text(encoding="utf-8"))
+        for name in ("profiles", "redundancy", "spectra", "histories", "numbers"):
+            self.assertGreater((self.folder / f"two/figures/fig_ensemble_{name}.png").stat().st_size, 10000)
+
+    def test_members_with_the_same_packings_count_once(self):
+        """Four lots of two seeds for one block: two of them at least are alike, to the bit."""
+        self.assert_done(self.run_column(self.scene, "--ensemble", 4, "-o", "out", "-q", *settings(
+            layer__0__mixed_realisations=2, layer__0__lot_length="3 m")))
+        rows = table(self.folder / "out/members.csv")
+        same = {name: of for name, of in zip(rows["member"], rows["same_as"]) if of}
+        self.assertGreaterEqual(len(same), 2)
+        for name, of in same.items():
+            self.assertEqual((self.folder / f"out/members/{name}/history.csv").read_bytes(),
+                             (self.folder / f"out/members/{of}/history.csv").read_bytes())
+        told = json.loads((self.folder / "out/ensemble.json").read_text(encoding="utf-8"))
+        self.assertEqual((told["members"], told["differing"]), (4, 4 - len(same)))
+        self.assertEqual(told["numbers"]["peak_surface"]["n"], 4 - len(same))
+        text = (self.folder / "out/summary.txt").read_text(encoding="utf-8")
+        for name, of in same.items():
+            self.assertIn(f"{name} as {of}", text)
+        self.assertIn(f"they count once, n = {4 - len(same)}", text)
 
     def test_validate_looks_at_every_member(self):
         result = self.run_column(self.scene, "--ensemble", 3, "--validate")
