@@ -81,6 +81,12 @@ def member_curve(folder, kind, name):
         elif kind == "history":
             table = read_history(folder / "history.csv")
             yield table["time"], table[name]
+        elif kind == "grains":
+            table = read_history(folder / "grain_profiles/history.csv")
+            packings = [key.removesuffix("_IR") for key in table if key.endswith("_IR")]
+            pick = {"min_I_R": np.nanmin, "final_I_R": lambda index: index[-1]}[name]
+            yield (np.array([table[f"{p}_depth"][0] for p in packings]),
+                   np.array([pick(table[f"{p}_IR"]) for p in packings]))
     except (OSError, KeyError, BadInput):
         return
 
@@ -119,7 +125,7 @@ def over_depth(ensemble, panels):
     rows[0][0].set_ylabel("Depth (m)")
     rows[0][0].set_ylim(bottom=0)
     rows[0][0].invert_yaxis()
-    rows[0][-1].legend(loc="lower right")
+    rows[0][-1].legend(loc="best")
     return figure
 
 
@@ -149,7 +155,7 @@ def spectra(ensemble):
 def histories(ensemble):
     names = [name for name in ("surface_ax", "surface_ay", "max_ru", "settlement")
              if ensemble.curve("history", name) is not None]
-    names = [name for name in names if any(np.abs(y).max() > 1e-9 for _, y in ensemble.each("history", name))]
+    names = [name for name in names if np.abs(ensemble.curve("history", name)[1]["mean"]).max() > 1e-9]
     if not names:
         return None
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
