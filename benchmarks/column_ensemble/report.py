@@ -127,7 +127,7 @@ def pairs(samples, one, other):
 
 def meshes(samples):
     """The same seeds on several meshes: liquefied thickness, settlement and S_a of each."""
-    found = {n: {r.run.member: r for r in samples.get(f"same_p{n}_m1_v0.1", [])} for n in (4, 10, 20, 40)}
+    found = {n: {r.run.member: r for r in samples.get(f"same_p{n}_m1_v0.1", [])} for n in POINTS}
     found = {points: results for points, results in found.items() if results}
     yield "| realisation | " + " | ".join(f"{points} points" for points in found) + " |"
     yield "|---" * (len(found) + 1) + "|"
@@ -139,7 +139,9 @@ def meshes(samples):
 
 
 SERIES = ((plan.SAME, BLUE, "o-", "same packing at all depths"), (plan.OTHER, RED, "s-", "others at each depth"),
-          (plan.BLOCKS, GREEN, "^-", "others every 0.8 m"), (plan.MORE, ORANGE, "D-", "same, 3 a point"))
+          (plan.BLOCKS, GREEN, "^-", "others every 0.8 m"), (plan.MORE, ORANGE, "D-", "same, 3 a point"),
+          (plan.TEN, ORANGE, "*-", "same, 10 a point"), (plan.MIXED_TEN, BLACK, "*-", "others, 10 a point"))
+POINTS = (4, 10, 20, 40, 80, 160)
 
 
 def against_mesh(samples):
@@ -152,7 +154,7 @@ def against_mesh(samples):
             rows.sort(key=lambda results: results[0].run.points)
             if not rows:
                 continue
-            shift = 1.04**(k - 1.5)
+            shift = 1.04**(k - 2)
             x = [shift * results[0].run.points for results in rows]
             numbers = [mean_error([factor * r.numbers[name] for r in results]) for results in rows]
             axes.errorbar(x, [m for m, _ in numbers], yerr=[0 if np.isnan(e) else e for _, e in numbers], fmt=line,
@@ -161,7 +163,8 @@ def against_mesh(samples):
                 axes.plot([at] * len(results), [factor * r.numbers[name] for r in results], ".", color=colour,
                           markersize=2.5, alpha=0.5)
         axes.set_xscale("log")
-        axes.set_xticks([4, 10, 20, 40], ["4", "10", "20", "40"])
+        present = [n for n in POINTS if any(results[0].run.points == n for results in samples.values())]
+        axes.set_xticks(present, [str(n) for n in present])
         axes.minorticks_off()
         axes.set_ylim(bottom=0)
         text = what.replace("S_a", "$S_a$").replace("I_R", "$I_R$")
@@ -169,7 +172,7 @@ def against_mesh(samples):
         panel_letter(axes, letter)
     for axes in panels[1]:
         axes.set_xlabel("points over 4 m")
-    panels[0, 0].legend(fontsize=7)
+    panels[1, 2].legend(fontsize=6.5, ncols=2, loc="lower left", columnspacing=1, handlelength=1.5)
     return figure
 
 
