@@ -283,6 +283,13 @@ class Ensemble(ColumnTest):
             self.write(f"{name}.txt", "\n".join(f"{t:.3f} {np.sin(2 * np.pi * frequency * t):.6f}" for t in time))
         return self.write("sand.toml", SAND)
 
+    def test_slopes_that_packings_cannot_bear(self):
+        """Told before the preparation where no friction would do, otherwise after that of the packing most sheared."""
+        for angle, parts in (("30 deg", ("slope.angle = 30 deg", "layer.0", "at a depth of", "more than 60 deg")),
+                             ("26 deg", ("rve: layer.0, depth 2.5 m:", "not reached", "may be too steep"))):
+            self.assert_refused(self.run_column(self.scene, "-o", "out", "-q", *settings(
+                slope__angle=angle, layer__0__k0=1)), *parts)
+
     def test_records(self):
         """Motions instead of packings; figures and report of what they give."""
         scene = self.write_records()
