@@ -27,6 +27,13 @@ StaticsSettings settings_of(const BiaxialScene &scene)
   return settings;
 }
 
+const char *method_of(const NewtonSettings &newton)
+{
+  if (newton.max_iterations == 0)
+    return "relaxation";
+  return newton.relaxation_iterations == 0 ? "Newton's method" : "Newton's method and relaxation";
+}
+
 const std::vector<RecordColumn> columns = {
     {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
     {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
@@ -137,7 +144,7 @@ private:
       files_->map(summary_.axial_strain, statics_);
     progress_.say(fmt::format(
         "step {:>4} of {}  {:>6}  axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} iterations, "
-        "{} trials, {} sub-steps, {} rejected, residual {:.3f}",
+        "{} trials, {} sub-steps, {} rejected, residual {:.1e}",
         summary_.steps, scene_.test.steps, duration_text(since_start_.seconds()), summary_.axial_strain,
         summary_.last_stress / 1e3, summary_.volumetric_strain, effort.iterations, effort.trials, effort.substeps,
         effort.rejected, statics_.residual()));
@@ -179,8 +186,8 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
                       s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
   text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
   text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
-  text += fmt::format("  Newton              {} iterations, {} trials, {} sub-steps, {} rejected\n", s.iterations,
-                      s.trials, s.substeps, s.rejected);
+  text += fmt::format("  equilibrium         {}: {} iterations, {} trials, {} sub-steps, {} rejected\n",
+                      method_of(scene.newton), s.iterations, s.trials, s.substeps, s.rejected);
   if (!s.complete)
     text += fmt::format("  stopped             {}\n", s.failure);
   return text;

@@ -89,13 +89,14 @@ void check_packings_on_slope(const SceneDocument &document, const ColumnScene &s
       "slope.angle",
       fmt::format(
           "is too steep for the packings of layer.{}{}: at a depth of {:.4g} m a static shear stress of {:.4g} kPa "
-          "at a normal effective stress of {:.4g} kPa{} mobilises a friction angle of {:.3g} deg, and no packing "
+          "at a normal effective stress of {:.4g} kPa{} mobilises {}, and no packing "
           "carries more than {:g} deg. Give a smaller slope.angle, a k0 nearer to 1, or a deeper water.table.",
           k, layer.name.empty() ? "" : " (" + layer.name + ")", depth, stress.shear / 1e3, stress.normal / 1e3,
           scene.grains.in_situ.path == InSituPath::no_lateral_strain
               ? ""
               : fmt::format(" and with k0 = {}", number_text(layer.k0)),
-          friction, largest_friction));
+          friction > 89.9 ? "more than any friction" : fmt::format("a friction angle of {:.3g} deg", friction),
+          largest_friction));
 }
 
 /// Distance of a depth to the nearest boundary between elements, and that boundary. m

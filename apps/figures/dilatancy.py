@@ -35,7 +35,7 @@ def dilatancy(run):
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(9.6, 3.3), layout="constrained")
     left.plot(100 * axial, ratio, color=BLUE, linewidth=0.8)
     left.plot(100 * stage["strain_at_peak"], stage["q_over_p_peak"], "D", color=ORANGE, markersize=4,
-              label=rf"peak, $\varphi$ = {stage['friction_peak_deg']:.1f}°")
+              label=rf"largest, $\varphi$ = {stage['friction_peak_deg']:.1f}°")
     left.legend(loc="lower right")
     left.set_ylabel(r"Stress ratio $q/p^\prime$")
     middle.plot(100 * axial, rate, color=BLUE, linewidth=0.8)

@@ -53,7 +53,7 @@ def biaxial(results, _block):
         ended = Verdict("Stopped", f"at an axial strain of {100 * s['axial_strain']:.4g} %, before its target: "
                         f"{s['failure']}", ATTENTION)
     effort = f"{s['iterations']} iterations in {s['steps']} steps; {s['substeps']} sub-steps, {s['rejected']} rejected."
-    return [ended, Verdict("Newton:", effort), Verdict("Shear strain:", "90 % quantile of the points over their "
+    return [ended, Verdict("Equilibrium:", effort), Verdict("Shear strain:", "90 % quantile of the points over their "
                                                        f"median: {s['localisation']:.3g}; uniform is 1.")]
 
 
@@ -129,6 +129,6 @@ OF_PROGRAM = {judge.__name__: judge for judge in (element_test, soil_column, bia
 def of_run(results, drawn):
     """Verdicts on a run.   @param drawn  what its figures are drawn from, or None"""
     if results.numbers is None:
-        return [Verdict("Not finished:", "there is no summary yet. The run is under way or was interrupted; what "
-                        "follows is what it has so far.", ATTENTION)]
+        return [Verdict("Not finished:", "there is no summary yet. The run is under way, was interrupted, or "
+                        "failed with a message on its terminal; what follows is what it has so far.", ATTENTION)]
     return OF_PROGRAM[results.program](results, drawn)

@@ -136,9 +136,10 @@ struct Softening
   std::uint64_t step = 0, reversals = 0; ///< when it counted as flow
   double strain = 0;                     ///< driven, since the start of shearing, at the peak [-]
   double peak = 0, lowest = 0;           ///< load there, and the least amount of it while it softened, Pa
-  bool recovered = false;                ///< the load reached its turning point all the same: limited flow
+  double direction = 1;                  ///< of the load then, 1 or -1
+  bool recovered = false; ///< the load reached the turning point of that direction all the same: limited flow
 
-  ISOSTAT_FIELDS(step, reversals, strain, peak, lowest, recovered)
+  ISOSTAT_FIELDS(step, reversals, strain, peak, lowest, direction, recovered)
 };
 
 /// The present half cycle of a cyclic stage, and what came of those before.
@@ -146,9 +147,9 @@ struct CyclicResponse
 {
   double peak = 0, peak_strain = 0; ///< largest load along the direction, Pa, and driven strain of the stage then
   double lowest = 0;                ///< least load along the direction since then, Pa
-  double least_load = 0, largest_load = 0;  ///< of the stage, Pa
+  double least_load = 0, largest_load = 0;  ///< of the last cyclic stage, Pa
   double least_strain = 0, most_strain = 0; ///< since the start of shearing [-]
-  std::optional<Softening> flow;
+  std::optional<Softening> flow;            ///< of all cyclic stages: the last that has not recovered
 
   ISOSTAT_FIELDS(peak, peak_strain, lowest, least_load, largest_load, least_strain, most_strain, flow)
 };
@@ -160,7 +161,7 @@ struct UndrainedRecord
   double worst_overshoot = 0; ///< of the load over its limit at a reversal, Pa
   std::optional<Liquefaction> liquefaction;
   double max_strain_before = 0; ///< largest |driven strain| before it [-]
-  CyclicResponse response;      ///< of the last cyclic stage
+  CyclicResponse response;      ///< of cyclic stages
 
   /// 0 as long as there is none.
   std::uint64_t reversals_to_liquefaction() const { return liquefaction ? liquefaction->reversals : 0; }

@@ -93,21 +93,20 @@ std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
 /// scene leaves out.
 void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i)
 {
-  constexpr double tolerance = 0.01; // of the pressure, on the stresses of a consolidation
   const auto *shear = as<ShearStage>(scene.stages[i]);
   const std::optional<double> pressure = shear ? isotropic_before(scene, i) : std::nullopt;
   if (!pressure)
     return;
-  const std::optional<LoadRange> loads = shear->required_loads(*pressure);
-  if (!loads || (loads->low <= tolerance * *pressure && loads->high >= -tolerance * *pressure))
+  const std::string why = shear->refusal(0, *pressure, *pressure);
+  if (why.empty())
     return;
-  const char *turn = loads->low > 0 ? "turn.low" : "turn.high";
+  const char *turn = shear->required_loads(*pressure)->low > 0 ? "turn.low" : "turn.high";
   for (const auto &[given, blamed] :
        {std::pair{"deviator_amplitude", "deviator_average"}, {"stress_ratio", "static_stress_ratio"}, {turn, turn}})
     if (document.find(fmt::format("stage.{}.{}", i, given)))
-      document.refuse(fmt::format("stage.{}.{}", i, blamed),
-                      fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3,
-                                  shear->refusal(0, *pressure)));
+      document.refuse(
+          fmt::format("stage.{}.{}", i, blamed),
+          fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3, why));
 }
 
 void check_stages(const SceneDocument &document, const Scene &scene)

@@ -134,8 +134,8 @@ void Statics::accept(double duration)
 
 void Statics::fail(double size) const
 {
-  throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.3g} of the force scale "
-                               "{:.3g} N, tolerance {:.3g}) in a sub-step of {:.3g} of the step, the smallest that is "
+  throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.5g} of the force scale "
+                               "{:.3g} N, tolerance {:.5g}) in a sub-step of {:.3g} of the step, the smallest that is "
                                "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps; "
                                "the load may be more than the soil bears",
                                step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size,

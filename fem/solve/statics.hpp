@@ -54,8 +54,8 @@ struct StaticsEffort
 /// without flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett &
 /// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps.
 ///
-/// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where it fails,
-/// relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium leads over larger
+/// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where it
+/// fails, relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium leads over larger
 /// residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
 /// success; loads and given displacements go linearly from those of the state to those at the step's end, so a jump is
 /// shared out too.
@@ -127,9 +127,16 @@ private:
   double squares(const Vector &residual, const Vector &moved, double moved_part, const std::vector<char> &held) const;
   bool on_every_rank(bool good) const;
   // statics_relaxation.cpp
+  enum class Relaxation
+  {
+    at_rest,
+    gives_up,
+    diverges
+  };
   bool relax_substep(double duration);
-  void set_metric();
-  double power() const;
+  Relaxation relax(double duration, double factor, unsigned &left);
+  bool set_metric(double factor);
+  double work_of_residual(const Vector &x) const;
   // statics.cpp
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);

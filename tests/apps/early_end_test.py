@@ -49,15 +49,15 @@ class EarlyEnd(AppTest):
     def test_a_condition_that_is_met_when_it_begins_is_told(self):
         result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
         self.assert_done(result)
-        self.assertIn("warning: stage 0 (path): ended in its first step, because what ends it was met when it began: "
-                      "until.p = 200 kPa (", result.stderr)
+        self.assertIn("warning: stage 0 (path): ended in its first step, because one of its conditions was met when it "
+                      "began: until.p = 200 kPa (", result.stderr)
         self.assertTrue(self.numbers("met")["ended_early"][0]["at_once"])
 
     def test_a_path_without_an_end_fails(self):
         stages = PATH.replace('"stress"', '"p"') + 'until.q = "900 kPa"\nstrain_rate = "500 1/s"\n'
         result = self.run_test(self.scene("endless", stages), "-o", "endless")
         self.assertEqual(result.returncode, 1, result.stdout)
-        for part in ("failed: step ", "stage 0 (path) has driven 100", "until.q = 900 kPa (", "Give until.strain",
+        for part in ("failed: step ", "stage 0 (path) has gone 100", "until.q = 900 kPa (", "Give until.strain",
                      "checkpoint"):
             self.assertIn(part, result.stderr)
 

@@ -142,9 +142,10 @@ TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
   ASSERT_EQ(result.state.early_ends.size(), 1u);
   EXPECT_TRUE(result.state.early_ends[0].at_once);
   const std::string text = to_text(result.state.early_ends[0], stages);
-  EXPECT_NE(text.find("ended in its first step, because what ends it was met when it began: until.strain = 1 % (0 % "
-                      "reached), until.q = 0.05 kPa"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("ended in its first step, because one of its conditions was met when it began: until.strain = 1 % (0 % "
+                "reached), until.q = 0.05 kPa"),
+      std::string::npos)
       << text;
   EXPECT_EQ(std::count(result.watcher.events.begin(), result.watcher.events.end(), text), 1);
   path.end.q = 5e3;
@@ -182,8 +183,7 @@ TEST(PathEnd, ThatIsOutOfReachFailsAtOneHundredPercent)
     {
       const std::string what = failure.what();
       EXPECT_EQ(what.find("step "), 0u) << what;
-      for (const char *part :
-           {"stage 0 (path) has driven 100", "until.q = 900 kPa (", "Give until.strain or max_steps"})
+      for (const char *part : {"stage 0 (path) has gone 100", "until.q = 900 kPa (", "Give until.strain or max_steps"})
         EXPECT_NE(what.find(part), std::string::npos) << what;
     }
   EXPECT_NEAR_BECAUSE(state.loading.strain, 1, 1e-3, "a step");

@@ -20,7 +20,7 @@ constexpr auto keys_of_law = with_rolling_resistance(std::array{
   Key{.path = "exponent", .value = "1.5", .range = {1.5, 2},
    .reason = "because 1.5 is that of spheres and 2 that of cones",
    .text = "n of the normal force, which rises with the overlap to this power. Above 1.5 grains touch with pointed asperities: "
-           "they are softer at small forces, and the modulus of a packing rises more with pressure.",
+           "they are softer under small forces and stiffer under large ones, and the modulus of a packing rises more with pressure.",
    .field = law_field<&HertzMindlin::exponent>},
   Key{.path = "asperity", .value = "0.1", .range = {1e-3, 1},
    .reason = "because an asperity is a part of its grain",

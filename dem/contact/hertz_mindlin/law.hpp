@@ -23,8 +23,9 @@ namespace isostat
 ///     kn = 2 E* a     fn = kn u/n ~ u^n     ks = 8 G* a
 ///     kappa = sqrt(pi) Gamma(1 + 1/(2n-2))/Gamma(1/2 + 1/(2n-2))
 ///
-/// n = 3/2 gives spheres whatever s is (kappa = 2), n = 2 cones. Contacts smaller than s R* are softer than those of
-/// spheres. It has a loop of its own (asperity_loop.cpp), with a logarithm and an exponential for each contact.
+/// n = 3/2 gives spheres whatever s is (kappa = 2), n = 2 cones. Under the same force, contacts smaller than some
+/// 2/3 s R* are softer than those of spheres, larger ones stiffer. It has a loop of its own (asperity_loop.cpp), with a
+/// logarithm and an exponential for each contact.
 /// tested: tests/dem/contact/hertz_mindlin/, tests/dem/contact/loop_test.cpp
 struct HertzMindlin final : RollingResistance
 {

@@ -20,14 +20,15 @@ void begin_half_cycle(double load, DriveState &state)
 void begin_response(double load, DriveState &state)
 {
   CyclicResponse &response = state.undrained.response;
-  response = {};
   response.least_load = response.largest_load = load;
   begin_half_cycle(load, state);
 }
 
 void turn_response(double load, DriveState &state, bool at_load)
 {
-  if (std::optional<Softening> &flow = state.undrained.response.flow; flow && at_load)
+  std::optional<Softening> &flow = state.undrained.response.flow;
+  const double ended = -sign(state.loading.direction); // the half cycle that has
+  if (flow && at_load && flow->direction == ended)
     flow->recovered = true;
   begin_half_cycle(load, state);
 }
@@ -59,7 +60,8 @@ void follow_response(double load, double strain, double amplitude, const ShearMo
     flow->lowest = std::min(flow->lowest, response.lowest);
   else if (!flow || flow->recovered)
     {
-      flow = Softening{step, reversals, strain - direction * since, direction * response.peak, response.lowest, false};
+      flow = Softening{step,      reversals, strain - direction * since, direction * response.peak, response.lowest,
+                       direction, false};
       verdict.notable = true;
       verdict.event = fmt::format("flow at step {}, after {} reversals: {} fell from {:.2f} to {:.2f} kPa, {} {:.4g} %",
                                   step, reversals, mode.load_name, flow->peak / 1e3, direction * response.lowest / 1e3,

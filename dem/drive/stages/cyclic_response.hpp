@@ -26,9 +26,11 @@ constexpr double softening_load = 0.1;      ///< share of the load amplitude [-]
 constexpr double softening_gamma = 0.0015;  ///< engineering shear strain, of axial strain 1.5 times as much [-]
 constexpr double accumulated_gamma = 0.075; ///< at which tests without liquefaction count as failed: 5 % axially [-]
 
-/// At the start of a cyclic stage.   @param load  driven, Pa
+/// At the start of a cyclic stage. What softened in stages before stays softened until it recovers.
+/// @param load  driven, Pa
 void begin_response(double load, DriveState &state);
-/// At a turn.   @param at_load  the load reached its turning point; false: the strain did, before it
+/// At a turn, once the direction has changed.
+/// @param at_load  the load reached its turning point; false: the strain did, before it
 void turn_response(double load, DriveState &state, bool at_load = true);
 /// Each step; adds an event to the verdict when the specimen begins to flow.
 /// @param strain  driven, since the start of shearing [-]   @param amplitude  of the load, Pa

@@ -44,7 +44,7 @@ std::string to_text(const EarlyEnd &end, const std::vector<Stage> &stages)
   const StageBehaviour &stage = behaviour(stages[end.stage]);
   const auto *stepped = as<SteppedStage>(stages[end.stage]);
   const std::string name = fmt::format("stage {} ({}){}", end.stage, stage.kind(), cycle_text(stages, end.done));
-  const std::string how = end.at_once ? "ended in its first step, because what ends it was met when it began"
+  const std::string how = end.at_once ? "ended in its first step, because one of its conditions was met when it began"
                                       : fmt::format("ended by max_steps = {} before any of its conditions was met",
                                                     stepped ? stepped->max_steps : 0);
   const std::string more = end.times > 1 ? fmt::format("; {} times in all, the first time here", end.times) : "";

@@ -82,6 +82,8 @@ std::string Path::contradiction() const
   const bool one_way_end = end.strain > 0 || end.volumetric_strain > 0 || end.q || end.p || end.stress_ratio;
   if (drive != DrivenComponent::none && !one_way_end && !(turns() && end.cycles > 0) && max_steps == 0)
     return "nothing ends it; give until.strain or another of its conditions";
+  if (turns() && end.cycles == 0 && max_steps == 0)
+    return "a path that turns may never end; give until.cycles or max_steps besides its other conditions";
   if (end.cycles > 0 && !turns())
     return "until.cycles needs turn.strain, or turn.low and turn.high";
   const bool has_targets = mean_stress || std::any_of(components.begin(), components.end(),

@@ -16,7 +16,7 @@ namespace
 constexpr std::uint64_t rest_interval = 200, hopeless_steps = 20'000'000;
 constexpr double rest_tolerance = 0.005;  ///< relative to p', on the stresses at the end of a path that is not driven
 constexpr double start_tolerance = 0.001; ///< relative to p', on a stress that ends the path and is there already
-constexpr double hopeless_strain = 1;     ///< driven, where nothing ends the path for sure [-]
+constexpr double hopeless_strain = 1; ///< driven, or of a path that drives nothing, where nothing ends it for sure [-]
 constexpr std::size_t xy = 3;
 
 /// The value has been passed since the stage began, or was there then.
@@ -87,13 +87,13 @@ bool Path::ends(const StageContext &c, const Observation &seen) const
 
 void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) const
 {
-  const bool ends_for_sure = drive == DrivenComponent::none || end.strain > 0 || turn.strain > 0 || max_steps > 0;
+  const bool ends_for_sure = end.strain > 0 || end.cycles > 0 || max_steps > 0;
   if (ends_for_sure || std::abs(c.state.loading.strain) < hopeless_strain)
     return;
-  throw RunFailure(fmt::format(
-      "step {}: stage {} (path) has driven {:.4g} % of strain and has not come to its end: {}. "
-      "Give until.strain or max_steps, or values that the specimen can reach.",
-      seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain), conditions(figures(c, seen))));
+  throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain and has not come to its end: {}. "
+                               "Give until.strain or max_steps, or values that the specimen can reach.",
+                               seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain),
+                               conditions(figures(c, seen))));
 }
 
 StageFigures Path::figures(const StageContext &c, const Observation &seen) const

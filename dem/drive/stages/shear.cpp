@@ -16,7 +16,8 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t indicator_interval = 50;
-constexpr double modulus_over_affine = 0.5; ///< after a reversal grains give way: 0.55 to 0.7 was seen
+constexpr double consolidation_tolerance = 0.01; ///< of p', on the stresses that a stage begins with
+constexpr double modulus_over_affine = 0.5;      ///< after a reversal grains give way: 0.55 to 0.7 was seen
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -69,14 +70,15 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
   set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
   load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
-  if (const std::string why = refusal(c.state.loading.window_load, path.lateral_target[1]); !why.empty())
+  if (const std::string why = refusal(c.state.loading.window_load, path.lateral_target[1], now.p); !why.empty())
     throw InputError(fmt::format("stage {} ({}): {}", c.state.place.stage, kind(), why));
 }
 
-std::string ShearStage::refusal(double load, double sigma_v) const
+std::string ShearStage::refusal(double load, double sigma_v, double pressure) const
 {
   const std::optional<LoadRange> range = required_loads(sigma_v);
-  if (!range || (load >= range->low && load <= range->high))
+  const double tolerance = consolidation_tolerance * pressure;
+  if (!range || (load >= range->low - tolerance && load <= range->high + tolerance))
     return "";
   return fmt::format("{} = {:.4g} kPa when it begins, outside of the loads {} between which it is to turn. Bring the "
                      "specimen between them first (docs/user_guide.md, \"Static bias\"), or change the loads.",

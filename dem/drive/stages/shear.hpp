@@ -54,8 +54,9 @@ public:
   std::string conditions(const StageFigures &reached) const override;
   /// @param sigma_v  vertical stress when it begins, Pa
   virtual std::optional<LoadRange> required_loads(double /*sigma_v*/) const { return std::nullopt; }
-  /// Why it cannot begin at a load, Pa, as the end of a sentence; empty: it can.
-  std::string refusal(double load, double sigma_v) const;
+  /// Why it cannot begin at a load, Pa, as the end of a sentence; empty: it can. A load outside by no more than a
+  /// consolidation may miss its stresses, a hundredth of the pressure, is one of the two.
+  std::string refusal(double load, double sigma_v, double pressure) const;
   /// What the specimen does under its cycles of load is noted and has a name (cyclic_response.hpp).
   virtual bool notes_response() const { return false; }
 

@@ -35,11 +35,11 @@ protected:
         flows += !verdict.event.empty();
       }
   }
-  void turn()
+  void turn(bool at_load = true)
   {
     state.undrained.reversals += 1;
     state.loading.direction = opposite(state.loading.direction);
-    turn_response(load_, state);
+    turn_response(load_, state, at_load);
   }
   std::string name() const { return response_name(state.undrained, triaxial_mode); }
 
@@ -47,6 +47,18 @@ protected:
   int flows = 0;
   double load_ = 0;
 };
+
+TEST_F(Response, TheOtherSideDoesNotRecoverWhatSoftened)
+{
+  go(50e3, 2e-3), go(8e3, 0.05), turn(false); // at a strain, before its load
+  ASSERT_EQ(name(), "flow");
+  go(-60e3, 1e-3), turn();
+  EXPECT_EQ(name(), "flow");
+  begin_response(load_, state);
+  EXPECT_EQ(name(), "flow") << "a later stage does not forget it";
+  go(60e3, 1e-3), turn();
+  EXPECT_EQ(name(), "limited flow");
+}
 
 TEST_F(Response, StrainThatRunsOnUnderAFallingLoadIsFlow)
 {

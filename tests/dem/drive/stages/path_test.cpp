@@ -65,6 +65,7 @@ TEST(PathKeys, ThatMakeNoPathAreRefused)
            {until + "turn = { low = \"2 kPa\", high = \"1 kPa\" }", "turn.low must be below"},
            {until + "turn.low = \"-2 kPa\"",
             "turn.low alone turns it once and never back; give turn.high, or turn.strain"},
+           {until + "turn.strain = 0.01", "a path that turns may never end; give until.cycles or max_steps"},
            {until + "turn.high = \"2 kPa\"", "turn.high alone turns it once and never back; give turn.low"},
            {"drive = \"none\"", "nothing is prescribed"},
            {until + "drive = \"none\"\nx.keep = \"stress\"\nmax_steps = 10", "nothing is prescribed"},
