@@ -36,14 +36,19 @@ def overrides(settings):
     return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
 
 
-def library(arguments):
-    """Specimens of 300 grains at 20 kPa."""
-    path = arguments.folder / "library.h5"
+def file_of(arguments, what, grains):
+    return arguments.folder / f"{what}{'' if grains == plan.GRAINS else f'_{grains}'}.h5"
+
+
+def library(arguments, grains):
+    """Specimens of so many grains at 20 kPa."""
+    path = file_of(arguments, "library", grains)
     if not path.exists():
+        seeds = plan.SEEDS if grains == plan.GRAINS else plan.LARGE_SEEDS
         done = execute([arguments.bin / "specimen_library", SCENES / "rve_library.toml", "-o", path, "-j", 1, "-q",
-                        "--pressures", "20 kPa", "-n", plan.SEEDS,
-                        *overrides({"contact.young": "1 GPa", "grading.grains": 300,
-                                    "grading.cloud_edge": "3.107 mm"})])
+                        "--pressures", "20 kPa", "-n", seeds,
+                        *overrides({"contact.young": "1 GPa", "grading.grains": grains,
+                                    "grading.cloud_edge": f"{3.107 * (grains / 300) ** (1 / 3):.3f} mm"})])
         if not path.exists():
             raise SystemExit(f"specimens: {done.stderr}")
     return path
@@ -51,7 +56,7 @@ def library(arguments):
 
 def command(arguments, run, specimens):
     settings = {**run.settings, "grains.library": specimens.resolve(),
-                "grains.cache": (arguments.folder / "in_situ.h5").resolve()}
+                "grains.cache": file_of(arguments, "in_situ", run.grains).resolve()}
     words = [arguments.bin / "soil_column", SCENES / "column/quick_ensemble.toml", "-q", "--no-figures", "-o",
              arguments.folder / "runs" / run.name, *overrides(settings)]
     interrupted = (arguments.folder / "runs" / run.name / "checkpoint").exists()
@@ -59,12 +64,12 @@ def command(arguments, run, specimens):
 
 
 def campaign(arguments):
-    specimens, begin = library(arguments), time.monotonic()
+    begin = time.monotonic()
     todo = [run for run in plan.runs() if not arguments.only or any(word in run.name for word in arguments.only)]
     for k, run in enumerate(todo, 1):
         if (arguments.folder / "runs" / run.name / "summary.txt").exists():
             continue
-        words = command(arguments, run, specimens)
+        words = command(arguments, run, library(arguments, run.grains))
         if arguments.dry_run:
             print(shlex.join(map(str, words)))
             continue

@@ -2,6 +2,8 @@
 """The runs of the campaign, the most telling first."""
 import dataclasses
 
+GRAINS = 300  # of a packing
+LARGE, LARGE_SEEDS = 3000, 2  # one packing of as many grains as ten have
 SEEDS = 40  # asked of the library; those that miss their density are not in it
 MIXED = 38  # seeds of which a packing has one by lot, where depths differ
 
@@ -16,15 +18,18 @@ class Run:
     member: int
     viscosity: float = 0.1  # ms, of the skeleton
     length: float = 0  # m; points so near to each other have the same seeds
+    grains: int = GRAINS
 
     @property
     def sample(self):
-        return self.mixed, self.realisations, self.viscosity, self.length
+        grains = [] if self.grains == GRAINS else [self.grains]
+        return self.mixed, self.realisations, self.viscosity, self.length, *grains
 
     @property
     def group(self):
         depths = (f"blocks{self.length:g}" if self.length else "mixed") if self.mixed else "same"
-        return f"{depths}_p{self.points}_m{self.realisations}_v{self.viscosity:g}"
+        grains = "" if self.grains == GRAINS else f"_n{self.grains}"
+        return f"{depths}_p{self.points}_m{self.realisations}_v{self.viscosity:g}{grains}"
 
     @property
     def name(self):
@@ -62,5 +67,6 @@ STAGES = [
 def runs():
     """Stage by stage, member by member over the samples of a stage, so that a campaign that ends early has some of
     each."""
-    return [Run(mixed, points, realisations, member, viscosity, length) for stage in STAGES for member in range(8)
-            for (mixed, realisations, viscosity, length), points, members in stage if member in members]
+    small = [Run(mixed, points, realisations, member, viscosity, length) for stage in STAGES for member in range(8)
+             for (mixed, realisations, viscosity, length), points, members in stage if member in members]
+    return small + [Run(False, 10, 1, member, grains=LARGE) for member in range(LARGE_SEEDS)]

@@ -82,7 +82,8 @@ def label(run):
     packings = "one packing" if run.realisations == 1 else f"{run.realisations} packings"
     viscosity = "" if run.viscosity == 0.1 else f", viscosity {run.viscosity:g} ms"
     depths = f"others every {run.length:g} m" if run.length else "others at each depth" if run.mixed else "the same"
-    return f"{depths}, {run.points} points, {packings}{viscosity}"
+    grains = "" if run.grains == plan.GRAINS else f" of {run.grains} grains"
+    return f"{depths}, {run.points} points, {packings}{grains}{viscosity}"
 
 
 def table(samples):
@@ -140,7 +141,8 @@ def meshes(samples):
 
 SERIES = ((plan.SAME, BLUE, "o-", "same packing at all depths"), (plan.OTHER, RED, "s-", "others at each depth"),
           (plan.BLOCKS, GREEN, "^-", "others every 0.8 m"), (plan.MORE, ORANGE, "D-", "same, 3 a point"),
-          (plan.TEN, ORANGE, "*-", "same, 10 a point"), (plan.MIXED_TEN, BLACK, "*-", "others, 10 a point"))
+          (plan.TEN, ORANGE, "*-", "same, 10 a point"), (plan.MIXED_TEN, BLACK, "*-", "others, 10 a point"),
+          ((*plan.SAME, plan.LARGE), GREY, "P-", "same, one of 3,000"))
 POINTS = (4, 10, 20, 40, 80, 160)
 
 
@@ -172,7 +174,7 @@ def against_mesh(samples):
         panel_letter(axes, letter)
     for axes in panels[1]:
         axes.set_xlabel("points over 4 m")
-    panels[1, 2].legend(fontsize=6.5, ncols=2, loc="lower left", columnspacing=1, handlelength=1.5)
+    panels[1, 2].legend(fontsize=5.8, ncols=2, loc="lower left", columnspacing=0.6, handlelength=1.2, borderpad=0)
     return figure
 
 
