@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/cycles.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -48,7 +49,7 @@ void add_cycles(const std::vector<Stage> &stages, const Counts &counts, std::siz
   if (const auto *repeat = as<Repeat>(stages[at]))
     {
       const std::size_t begin = at - repeat->stages;
-      const std::uint64_t once = sum(counts, begin, at);
+      const std::uint64_t once = std::max<std::uint64_t>(1, sum(counts, begin, at)); // 0 only where nothing is repeated
       cycles.push_back({2 + done / once, repeat->times, begin, at - 1});
       add_cycles(stages, counts, begin, at, done % once, cycles);
     }
