@@ -118,6 +118,7 @@ private:
   bool newton_substep(double duration);
   void start_substep(double duration);
   bool iterate(unsigned iteration);
+  bool factorise();
   void find_step();
   bool search_line(double merit_before);
   void set_part(double part);

@@ -72,26 +72,32 @@ void Statics::start_substep(double duration)
 /// One linear system (16) and the search along its solution.
 bool Statics::iterate(unsigned iteration)
 {
-  bool good = true;
   if (iteration % settings_.newton.iterations_per_tangent == 0)
     {
       material_.stiffness(tangents_);
-      try
-        {
-          system_->set_tangent(tangents_, theta_);
-        }
-      catch (const RunFailure &failure)
-        {
-          good = false;
-          reason_ = failure.what();
-        }
+      if (!factorise())
+        return false;
     }
-  if (!on_every_rank(good))
-    return false;
   find_step();
   start_du_ = du_;
   start_dp_ = dp_;
   return search_line(merit(1));
+}
+
+/// The system of tangents_. False, with the reason, if it is singular.
+bool Statics::factorise()
+{
+  bool good = true;
+  try
+    {
+      system_->set_tangent(tangents_, theta_);
+    }
+  catch (const RunFailure &failure)
+    {
+      good = false;
+      reason_ = failure.what();
+    }
+  return on_every_rank(good);
 }
 
 /// step_u_, step_p_ of the residual and of what held unknowns have left.

@@ -12,7 +12,6 @@
 // Found. Comput. Math. 15; in mechanics, dynamic relaxation with kinetic damping (Cundall 1976). Strains of every y are
 // tried from the committed state, so a material that remembers its path remembers the straight one to the equilibrium,
 // not the wanderings of the relaxation.
-#include "base/error.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
 #include "fem/solve/statics_system.hpp"
@@ -71,17 +70,7 @@ bool Statics::set_metric(double factor)
   for (std::size_t q = 0; q < moduli.size(); ++q)
     tangents_[q] =
         factor * isotropic_stiffness(std::max(moduli[q].p - 4.0 / 3 * moduli[q].s, moduli[q].s / 3), moduli[q].s);
-  bool good = true;
-  try
-    {
-      system_->set_tangent(tangents_, theta_);
-    }
-  catch (const RunFailure &failure)
-    {
-      good = false;
-      reason_ = failure.what();
-    }
-  return on_every_rank(good);
+  return factorise();
 }
 
 /// r.x over free unknowns. J
