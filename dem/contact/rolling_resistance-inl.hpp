@@ -36,7 +36,7 @@ struct RollingResistanceNumbers
 ///     Numbers                            derived from RollingResistanceNumbers
 ///     Springs(numbers, pairs)            with the members kn, fn; 0 where nothing touches
 ///     varies                             kn depends on the overlap; then there is a member compliance, 1/kn, as well
-///     shear_stiffness_before(numbers, own, r1 r2, reach) -> V     ks of the step before, of a contact that opens
+///     shear_stiffness_before(numbers, r1 r2, reach) -> V     ks of a contact that opens, where kn does not vary
 template <typename Springs, bool Friction, bool Rolling, bool Twisting>
 struct RollingResistanceLanes
 {
@@ -49,10 +49,19 @@ struct RollingResistanceLanes
   static HWY_INLINE V normal_stiffness(const Numbers &k, const Pairs &p) { return Springs(k, p).kn; }
   static HWY_INLINE V normal_force(const Numbers &k, const Pairs &p) { return Springs(k, p).fn; }
 
+  /// ks of the step before, of a contact that opens.
+  static V stiffness_before(const Numbers &k, const double *h, V rr, V reach)
+  {
+    if constexpr (varies)
+      return hn::Div(hn::Set(D(), k.stiffness_ratio), hn::LoadU(D(), h + at_own * lanes));
+    else
+      return Springs::shear_stiffness_before(k, rr, reach);
+  }
+
   /// Elastic energy that an opening contact forgets, J.
   static V forgotten(const Numbers &k, const double *h, V rr, V reach)
   {
-    const V ks = Springs::shear_stiffness_before(k, h + at_own * lanes, rr, reach);
+    const V ks = stiffness_before(k, h, rr, reach);
     const Triple fs = load3(h + at_shear * lanes);
     V energy = hn::Div(dot(fs, fs), ks);
     if constexpr (Rolling)

@@ -42,10 +42,6 @@ struct AsperitySprings
     fn = hn::Mul(kn, hn::Mul(p.overlap, hn::Set(d, k.inverse_exponent)));
     compliance = closed(p, hn::Div(hn::Set(d, 1.0), stiffness));
   }
-  static V shear_stiffness_before(const Numbers &k, const double *own, V, V)
-  {
-    return hn::Div(hn::Set(D(), k.stiffness_ratio), hn::LoadU(D(), own));
-  }
 };
 
 void add_asperities(const HertzMindlin &law, const LoopView &view)

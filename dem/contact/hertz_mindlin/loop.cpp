@@ -37,10 +37,6 @@ struct HertzSprings
     fn = hn::Mul(kn, hn::Mul(p.overlap, hn::Set(d, 2.0 / 3.0)));
     compliance = closed(p, hn::Mul(inverse_radius, hn::Set(d, k.inverse_modulus)));
   }
-  static V shear_stiffness_before(const Numbers &k, const double *own, V, V)
-  {
-    return hn::Div(hn::Set(D(), k.stiffness_ratio), hn::LoadU(D(), own));
-  }
 };
 
 void add_hertz_mindlin(const HertzMindlin &law, const LoopView &view)

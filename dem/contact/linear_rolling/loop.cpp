@@ -28,7 +28,7 @@ struct LinearSprings
       : kn(closed(p, hn::Mul(hn::Mul(p.r1, p.r2), hn::Mul(inverse(p.reach), hn::Set(D(), k.twice_young))))),
         fn(hn::Mul(kn, p.overlap))
   {}
-  static V shear_stiffness_before(const Numbers &k, const double *, V rr, V reach)
+  static V shear_stiffness_before(const Numbers &k, V rr, V reach)
   {
     const D d;
     return hn::Div(hn::Mul(rr, hn::Set(d, k.twice_young * k.stiffness_ratio)), hn::Max(reach, hn::Set(d, 1e-300)));
