@@ -188,5 +188,18 @@ TEST(PathEnd, ThatIsOutOfReachFailsAtOneHundredPercent)
     }
   EXPECT_NEAR_BECAUSE(state.loading.strain, 1, 1e-3, "a step");
 }
+
+TEST(PathEnd, CyclesOfALoadThatIsOutOfReachFailToo)
+{
+  Path path = keeping(PathCondition::p, PathCondition::p, 0);
+  path.turn = {.low = -900e3, .high = 900e3};
+  path.end.cycles = 1;
+  path.strain_rate = 200;
+  Assembly assembly(box());
+  DriveState state;
+  Watcher watcher;
+  EXPECT_THROW(run_programme(programme({path}, 1'000'000), assembly, state, watcher), RunFailure);
+  EXPECT_NEAR_BECAUSE(state.loading.strain, 1, 1e-3, "a step");
+}
 } // namespace
 } // namespace isostat

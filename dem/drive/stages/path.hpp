@@ -78,8 +78,8 @@ struct PathTurn
 };
 
 /// @throws InputError  when it begins: outside of its loads, or a stress that is no compression
-/// @throws RunFailure  driven to 100 % of strain with nothing that ends it for sure: no until.strain, turn.strain and
-///         max_steps; or not in balance after 2e7 steps
+/// @throws RunFailure  at 100 % of strain with nothing that ends it for sure: no until.strain, no max_steps, and no
+///         until.cycles of turns at a strain; or not in balance after 2e7 steps
 /// tested: tests/dem/drive/stages/path_test.cpp, tests/verification/path_test.cpp
 class Path : public ShearStage, public LiquefactionLimit
 {

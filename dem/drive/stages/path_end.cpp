@@ -87,7 +87,8 @@ bool Path::ends(const StageContext &c, const Observation &seen) const
 
 void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) const
 {
-  const bool ends_for_sure = end.strain > 0 || end.cycles > 0 || max_steps > 0;
+  const bool cycles_end = end.cycles > 0 && turn.strain > 0; // a load may never be reached
+  const bool ends_for_sure = end.strain > 0 || cycles_end || max_steps > 0;
   if (ends_for_sure || std::abs(c.state.loading.strain) < hopeless_strain)
     return;
   throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain and has not come to its end: {}. "
