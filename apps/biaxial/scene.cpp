@@ -6,6 +6,7 @@
 #include "base/scene/writer.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/solve/newton_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -90,24 +91,9 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.test.axial_strain; }},
   {.path = "test.steps", .kind = Kind::integer, .value = "50", .range = counts, .text = "Equal load steps.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.steps; }},
+};
 
-  {.path = "newton.tolerance", .value = "1e-6", .range = fraction,
-   .text = "Of the residual over the force scale, which is confinement times width or more. Grains need one above their "
-           "noise, some 1e-2.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.tolerance; }},
-  {.path = "newton.max_iterations", .kind = Kind::integer, .value = "25",
-   .text = "Of Newton's method in a sub-step; 0: relaxation alone, for packings and past a peak.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.max_iterations; }},
-  {.path = "newton.iterations_per_tangent", .kind = Kind::integer, .value = "1", .range = counts,
-   .text = "1: Newton; more: the tangent is kept for so many iterations of a sub-step.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.iterations_per_tangent; }},
-  {.path = "newton.relaxation_iterations", .kind = Kind::integer, .value = "0",
-   .text = "Of relaxation, which takes over a sub-step that Newton's method has not solved; 0: none. Then the sub-step is halved.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.relaxation_iterations; }},
-  {.path = "newton.max_halvings", .kind = Kind::integer, .value = "8", .range = {0, 40},
-   .text = "The smallest sub-step is the step times 2 to the power of minus this.",
-   .field = [](BiaxialScene &s) -> Field { return &s.newton.max_halvings; }},
-
+constexpr Key output_keys[] = {
   {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
    .text = "Folder of the run; left out: results/ and the name of the scene file.",
    .field = [](BiaxialScene &s) -> Field { return &s.output.folder; }},
@@ -125,7 +111,9 @@ const SceneSchema &schema()
       block_keys, splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
       splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
       splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
-      test_keys};
+      test_keys,
+      splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),
+      output_keys};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,
                                   .groups = {},
@@ -142,10 +130,7 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     check_packings(document, "soil", scene.grains);
   if (scene.soil.material == LayerMaterial::iwan)
     check_iwan(document, "soil", scene.soil.iwan);
-  if (scene.newton.max_iterations == 0 && scene.newton.relaxation_iterations == 0)
-    document.refuse("newton.max_iterations",
-                    "and newton.relaxation_iterations = 0; one of both must be at least 1, "
-                    "or nothing looks for equilibrium. Set newton.relaxation_iterations = 200.");
+  check_newton(document, "newton", scene.newton);
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

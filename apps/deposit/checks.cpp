@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a column's scene.
+#include "apps/deposit/box.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -209,6 +210,8 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
 {
   check_groups(document, &scene);
   check_mesh(document, scene);
+  check_box(document, scene);
+  check_plate(document, scene);
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     check_layer(document, scene, i);
   check_air(document, scene);

@@ -19,6 +19,19 @@ PointValues point_values(const ColumnInstant &instant, std::size_t q, std::span<
   return {h[2] + h[6], h[5] + h[7], -h[8], s[4], s[3], -s[2], mean_effective(s), u, u / vertical_stress[q]};
 }
 
+std::vector<double> columns_at(const ColumnInstant &instant, std::span<const std::size_t> points,
+                               std::span<const double> vertical_stress)
+{
+  std::vector<double> values(points.size() * point_columns.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    {
+      const PointValues row = point_values(instant, points[k], vertical_stress);
+      for (std::size_t j = 0; j < row.size(); ++j)
+        values[j * points.size() + k] = row[j];
+    }
+  return values;
+}
+
 namespace
 {
 constexpr unsigned n_vectors = 2; ///< displacement, velocity

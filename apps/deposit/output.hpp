@@ -27,6 +27,10 @@ using PointValues = std::array<double, point_columns.size()>;
 /// The values of point q.   @param vertical_stress  sigma'_v0 of every point, Pa
 PointValues point_values(const ColumnInstant &instant, std::size_t q, std::span<const double> vertical_stress);
 
+/// Those of some points: all points of the first quantity, then of the second ...
+std::vector<double> columns_at(const ColumnInstant &instant, std::span<const std::size_t> points,
+                               std::span<const double> vertical_stress);
+
 /// A column for ParaView: displacement and velocity at the nodes, means over each element of excess pore pressure,
 /// r_u, shear strain and effective stress (compression positive; Pa, [-]). Lies along z in any dimension. No date in
 /// it: the same state is the same bytes.
@@ -48,12 +52,18 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 class ProfileFile
 {
 public:
-  static constexpr std::size_t n_quantities = point_columns.size();
+  /// A quantity that has so many values at each instant.
+  struct Series
+  {
+    std::string name, unit;
+    std::size_t width;
+  };
   /// @param resume_rows  rows of an existing file that are kept; InputError if it has fewer, or other depths
+  /// @param more  further series
   ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
-              std::span<const double> shear_velocity, std::size_t resume_rows = 0);
+              std::span<const double> shear_velocity, std::size_t resume_rows = 0, std::vector<Series> more = {});
 
-  /// @param values  all depths of the first quantity, then of the second ...
+  /// @param values  all depths of the first quantity, then of the second ..., then further series
   void append(double time, std::span<const double> values);
   void flush();
   /// What has one value for each depth. Call finish(), and this of other quantities, once, at the end.
@@ -71,8 +81,9 @@ private:
   std::filesystem::path path_;
   std::vector<double> depths_;
   std::size_t n_rows_ = 0, n_written_ = 0;
+  std::vector<Series> series_;
   std::vector<double> times_;
-  std::array<std::vector<double>, n_quantities> waiting_;
+  std::vector<std::vector<double>> waiting_; ///< of each series
 };
 
 /// p' of an effective stress, compression positive, Pa.

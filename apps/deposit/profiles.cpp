@@ -17,21 +17,25 @@ constexpr std::uint64_t schema_version = 1;
 } // namespace
 
 ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
-                         std::span<const double> shear_velocity, std::size_t resume_rows)
+                         std::span<const double> shear_velocity, std::size_t resume_rows, std::vector<Series> more)
     : path_(std::move(path)), depths_(std::move(depths))
 {
+  for (const auto &[name, unit] : point_columns)
+    series_.push_back({name, unit, depths_.size()});
+  series_.insert(series_.end(), more.begin(), more.end());
+  waiting_.resize(series_.size());
   if (resume_rows > 0)
     load(resume_rows);
   hdf5::File file = hdf5::File::create(path_);
   hdf5::Group root = file.root();
   set_format(root, format_name, schema_version);
-  const std::size_t m = depths_.size(), chunk = std::max<std::size_t>(1, 4096 / m);
   root.write("depth", std::span<const double>(depths_), "m");
   root.write("sigma_v0", sigma_v0, "Pa");
   root.write("shear_velocity", shear_velocity, "m/s");
   root.create_series("time", "s");
-  for (const auto &[name, unit] : point_columns)
-    root.create_series(name, unit, m, chunk);
+  for (const Series &series : series_)
+    root.create_series(series.name.c_str(), series.unit.c_str(), series.width,
+                       std::max<std::size_t>(1, 4096 / series.width));
   append_waiting(root); // with what is kept in the same go: a kill here loses nothing
   file.commit();
   forget_waiting();
@@ -43,7 +47,6 @@ void ProfileFile::load(std::size_t rows)
   const hdf5::File file = hdf5::File::open(path_);
   const hdf5::Group root = file.root();
   refuse_newer(root, schema_version);
-  const std::size_t m = depths_.size();
   if (root.read<double>("depth") != depths_)
     throw InputError(fmt::format("{}: has other depths; resume with the scene of the first run", path_.string()));
   times_ = root.read<double>("time");
@@ -52,10 +55,10 @@ void ProfileFile::load(std::size_t rows)
                                  "checkpoint",
                                  path_.string(), times_.size(), rows));
   times_.resize(rows);
-  for (std::size_t k = 0; k < n_quantities; ++k)
+  for (std::size_t k = 0; k < series_.size(); ++k)
     {
-      waiting_[k] = root.read<double>(point_columns[k].first);
-      waiting_[k].resize(rows * m);
+      waiting_[k] = root.read<double>(series_[k].name.c_str());
+      waiting_[k].resize(rows * series_[k].width);
     }
   n_rows_ = rows;
 }
@@ -63,10 +66,13 @@ void ProfileFile::load(std::size_t rows)
 void ProfileFile::append(double time, std::span<const double> values)
 {
   times_.push_back(time);
-  const std::size_t m = depths_.size();
-  for (std::size_t k = 0; k < n_quantities; ++k)
-    waiting_[k].insert(waiting_[k].end(), values.begin() + static_cast<std::ptrdiff_t>(k * m),
-                       values.begin() + static_cast<std::ptrdiff_t>((k + 1) * m));
+  auto from = values.begin();
+  for (std::size_t k = 0; k < series_.size(); ++k)
+    {
+      const auto to = from + static_cast<std::ptrdiff_t>(series_[k].width);
+      waiting_[k].insert(waiting_[k].end(), from, to);
+      from = to;
+    }
   ++n_rows_;
   if (n_rows_ - n_written_ > std::max<std::size_t>(256, n_written_ / 4))
     flush();
@@ -85,8 +91,8 @@ void ProfileFile::flush()
 void ProfileFile::append_waiting(hdf5::Group root) const
 {
   root.append("time", times_);
-  for (std::size_t k = 0; k < n_quantities; ++k)
-    root.append(point_columns[k].first, waiting_[k]);
+  for (std::size_t k = 0; k < series_.size(); ++k)
+    root.append(series_[k].name.c_str(), waiting_[k]);
 }
 
 void ProfileFile::forget_waiting()

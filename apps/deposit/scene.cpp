@@ -71,6 +71,14 @@ IwanParameters ColumnLayer::sand() const
   return sand;
 }
 
+double ColumnLoad::surcharge_at(double x) const
+{
+  double part = 1;
+  for (const double beyond : {surcharge_from ? *surcharge_from - x : -1, surcharge_to ? x - *surcharge_to : -1})
+    part *= beyond > 1e-9 ? 0 : beyond > -1e-9 ? 0.5 : 1;
+  return part * surcharge;
+}
+
 std::array<double, 3> ColumnLoad::traction(double time) const
 {
   std::array<double, 3> traction = {};
@@ -120,6 +128,27 @@ SoilProfile soil_profile(const ColumnScene &scene)
   if (scene.water.drainage == Drainage::dry)
     profile.water.density = 0;
   return profile;
+}
+
+GroundLine ground_line(const ColumnMesh &mesh)
+{
+  GroundLine line;
+  for (std::size_t k = 0; k < mesh.ground_x.size(); ++k)
+    line.points.push_back({mesh.ground_x[k], mesh.ground_z[k]});
+  return line;
+}
+
+MeshSpec mesh_spec(const ColumnScene &scene)
+{
+  MeshSpec mesh{.soil = soil_profile(scene)};
+  mesh.width = {scene.mesh.width, scene.mesh.width};
+  mesh.cells_across = {scene.mesh.cells_across, scene.mesh.cells_across};
+  mesh.degree = scene.mesh.degree;
+  mesh.ground = ground_line(scene.mesh);
+  mesh.line[0] = scene.output.x.value_or(scene.mesh.sides == Sides::walls ? scene.mesh.width / 2 : 0);
+  if (scene.analysis.kind == AnalysisKind::plate)
+    mesh.patches = {plate_patch(scene)};
+  return mesh;
 }
 
 std::array<Motion, 3> column_motions(const ColumnScene &scene)

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a run of the soil column consists of. Lengths m, stresses Pa, times s, accelerations m/s2, as everywhere inside.
 #pragma once
+#include "apps/deposit/plate.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/specimen_request.hpp"
 #include "fem/material/iwan.hpp"
 #include "fem/material/soil.hpp"
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
+#include "fem/space/block.hpp"
 
 #include <array>
 #include <cstdint>
@@ -25,7 +27,9 @@ struct ColumnMesh
   unsigned degree = 2;       ///< of the displacement
   double width = 1;          ///< along x, in 3D along y too, m
   unsigned cells_across = 1; ///< along the same
-  bool distributed = false;  ///< one mesh over all ranks instead of a copy on each
+  Sides sides = Sides::tied;
+  std::vector<double> ground_x, ground_z; ///< points of a surface that is not level, m; empty: level
+  bool distributed = false;               ///< one mesh over all ranks instead of a copy on each
 
   bool operator==(const ColumnMesh &) const = default;
 };
@@ -116,11 +120,14 @@ struct ColumnLoad
 {
   LoadKind kind = LoadKind::none;
   double surcharge = 0; ///< vertical, there from the start and part of the in-situ stress, Pa of the surface
+  std::optional<double> surcharge_from, surcharge_to; ///< x of the part of the surface that has it, m; left out: all
   Axis direction = Axis::z;
   double amplitude = 0; ///< along z compression is positive, Pa
   double frequency = 0; ///< harmonic: amplitude sin(2 pi f t)
   double ramp = 0;      ///< smooth rise from 0 to the whole, s
 
+  /// The surcharge at a place: half of it where it ends, Pa.
+  double surcharge_at(double x) const;
   /// Traction at a time as the solvers take it: tension positive, Pa. The surcharge is not in it.
   std::array<double, 3> traction(double time) const;
 
@@ -130,8 +137,11 @@ struct ColumnLoad
 enum class AnalysisKind
 {
   dynamic,
-  consolidation
+  consolidation,
+  plate
 };
+
+inline constexpr const char *analysis_names[] = {"dynamic", "consolidation", "plate"}; ///< their words in scenes
 
 struct ColumnAnalysis
 {
@@ -156,6 +166,7 @@ struct ColumnOutput
   std::string folder;             ///< default: results/<scene file name>
   double history_interval = 0.01; ///< between rows
   std::vector<double> depths;     ///< below the surface; points with a history of their own, m
+  std::optional<double> x; ///< where these depths, and profiles, are; left out: the middle between walls, else 0, m
   std::optional<double> profile_interval, paraview_interval; ///< left out: none
   double checkpoint_minutes = 5;
   double spectrum_damping = 0.05; ///< of critical
@@ -187,6 +198,7 @@ struct ColumnScene
   RveMaterialSettings grains; ///< as the scene says it; of no meaning without a layer of grains
   GrainOutput grain_output;   ///< likewise
   ColumnAnalysis analysis;
+  Plate plate; ///< of no meaning to other kinds of analysis
   ColumnOutput output;
 
   double height() const; ///< that of soil_profile(), m
@@ -200,6 +212,11 @@ struct ColumnScene
 /// Layers and water as the solvers take them, layers in the order of the scene. Without water (dry) its density is 0,
 /// so that all weight is effective.
 SoilProfile soil_profile(const ColumnScene &scene);
+
+/// The surface of a box that is not level.
+GroundLine ground_line(const ColumnMesh &mesh);
+/// The mesh of a scene; its plate is patch 0.
+MeshSpec mesh_spec(const ColumnScene &scene);
 
 /// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given.
 /// @throws InputError from the record's file

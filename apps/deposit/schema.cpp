@@ -2,6 +2,7 @@
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
 // binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
 // air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings in coupling/scene/packings.cpp.
+#include "apps/deposit/box.hpp"
 #include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
@@ -19,7 +20,6 @@ constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
 constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
 constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
-constexpr const char *analysis_choices[] = {"dynamic", "consolidation"};
 
 using namespace ranges;
 
@@ -61,7 +61,8 @@ constexpr Section sections[] = {
    .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\"; the element tests' own law "
            "and rate control."},
   {.name = "analysis",
-   .text = "Waves (dynamic), or the slow flow of water out of loaded soil without inertia (consolidation).",
+   .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), or a plate that moves "
+           "slowly into a box of soil (plate).",
    .kind_key = "kind", .kinds_title = "Analysis kinds"},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
@@ -72,8 +73,7 @@ constexpr Key ground_keys[] = {
 
   {.path = "mesh.dimension", .kind = Kind::integer, .value = "1", .range = {1, 3},
    .reason = "because space has as many",
-   .text = "1: a column, one Gauss-point stress per depth; 2: a plane strip (x, z); 3: a block. The sides of 2 and 3 are "
-           "tied, opposite points move as one.",
+   .text = "1: a column, one Gauss-point stress per depth; 2: a plane strip (x, z); 3: a block.",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.dimension; }},
   {.path = "mesh.degree", .kind = Kind::integer, .value = "2", .range = {1, 2},
    .reason = "because elements are linear or quadratic",
@@ -270,7 +270,7 @@ constexpr Key result_keys[] = {
    .value = "1 s", .range = positive, .text = "Time between them.",
    .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_interval; }},
 
-  {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_choices,
+  {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_names,
    .text = "What is solved.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.kind; }},
   {.path = "analysis.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
@@ -321,6 +321,11 @@ constexpr Key result_keys[] = {
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface whose stress paths and motions get histories of their own.",
    .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
+  {.path = "output.x", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "10 m", .range = not_negative,
+   .text = "Of a strip: x of the vertical along which histories, depths and profiles are; left out: the middle between walls, "
+           "else 0 m, as all x are equal where sides are tied.",
+   .field = [](ColumnScene &s) -> Field { return &s.output.x; }},
   {.path = "output.profile_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
    .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes every step.",
@@ -339,9 +344,8 @@ constexpr Key result_keys[] = {
 
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
 
-constexpr Dimension dimensions[] = {
-  Dimension::length, Dimension::pressure, Dimension::angle, Dimension::rate, Dimension::density, Dimension::velocity,
-  Dimension::acceleration, Dimension::frequency, Dimension::duration, Dimension::interval};
+using enum Dimension;
+constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, velocity, acceleration, frequency, duration, interval};
 
 constexpr const char *defaults_head =
     "A soil column with the defaults of every key. A line \"# key = value\" is a key without default, with an example. "
@@ -368,6 +372,8 @@ const SceneSchema &column_schema()
 {
   static const KeyTable keys{
       ground_keys,
+      splice("mesh", box_keys(), 0, [](ColumnScene &s) -> ColumnMesh & { return s.mesh; }),
+      splice("load", strip_load_keys(), 0, [](ColumnScene &s) -> ColumnLoad & { return s.load; }),
       splice("water", pore_fluid_keys(), 0, [](ColumnScene &s) -> Water & { return s.water; }),
       splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
       splice("slope", slope_keys(), 0, [](ColumnScene &s) -> Slope & { return s.slope; }),
@@ -378,7 +384,9 @@ const SceneSchema &column_schema()
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       loading_keys,
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
-      result_keys};
+      result_keys,
+      splice("analysis", plate_keys(), kind_bit(AnalysisKind::plate),
+             [](ColumnScene &s) -> Plate & { return s.plate; })};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,
                                   .groups = groups,

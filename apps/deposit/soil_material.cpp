@@ -76,7 +76,7 @@ std::string point_name(const ColumnScene &scene, const CellTables &mesh, std::si
   const std::size_t layer = mesh.cell_layer[q / mesh.points_per_cell()];
   const std::string &name = scene.layers[layer].name;
   std::string text = fmt::format("layer.{}{}, depth {:.4g} m", layer, name.empty() ? "" : " (" + name + ")",
-                                 scene.height() - mesh.position[q][2]);
+                                 mesh_spec(scene).depth(mesh.position[q]));
   for (unsigned axis = 0; axis + 1 < scene.mesh.dimension; ++axis)
     text += fmt::format(", {} {:.4g} m", "xy"[axis], mesh.position[q][axis]);
   return text;
@@ -98,6 +98,25 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
                       "packings (relative_density), a k0 nearer to 1, or a deeper water.table.",
                       failure.what()));
     }
+}
+
+/// In situ stress in a box: K0 at the depth below the ground, and the shear stress by which the horizontal stress, which
+/// falls with the ground, is in equilibrium on every vertical: to the second order of the inclination.
+std::vector<Stress> between_walls(const ColumnScene &scene, const CellTables &mesh)
+{
+  const MeshSpec spec = mesh_spec(scene);
+  const double height = spec.soil.height(), step = 1e-6 * scene.mesh.width;
+  std::vector<Stress> stresses;
+  for (std::size_t q = 0; q < mesh.n_points(); ++q)
+    {
+      const auto &[x, y, z] = mesh.position[q];
+      const double scale = spec.ground_at(x) / height; // of the thickness of all layers
+      const double inclination = (spec.ground_at(x + step) - spec.ground_at(x - step)) / (2 * step);
+      const double vertical = scale * spec.soil.vertical_effective_stress(z / scale);
+      const double k0 = spec.soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
+      stresses.push_back({-k0 * vertical, -k0 * vertical, -vertical, 0, -k0 * inclination * vertical, 0});
+    }
+  return stresses;
 }
 
 void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
@@ -132,6 +151,8 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
 
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh)
 {
+  if (scene.mesh.sides == Sides::walls)
+    return between_walls(scene, mesh);
   const SoilProfile soil = soil_profile(scene);
   std::vector<Stress> stresses(mesh.n_points());
   for (std::size_t q = 0; q < stresses.size(); ++q)

@@ -78,6 +78,9 @@ class Column:
             raise BadInput("history.csv: needs two rows at least, and times that rise")
         self.scene = self._read(folder / "scene.toml", tomllib.loads)
         self.profiles = self._read_profiles(folder / "profiles.h5")
+        self.maps = self._read_profiles(folder / "maps.h5")  # of a box
+        path = folder / "plate/history.csv"
+        self.plate = read_history(path) if path.exists() else {}  # of an analysis of a plate
         self.grains = Grains(folder)
         self._read_scene()
         summary = self._read(folder / "summary.json")

@@ -8,7 +8,7 @@ from .common import STYLE, BadInput, plt
 
 # What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
 KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil",
-         "wet column", "sinking column")
+         "wet column", "sinking column", "box", "plate")
 PARTS = re.compile(rf"(?:^|; )(?:({'|'.join(KINDS)}): )?")
 
 

@@ -15,6 +15,10 @@ fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
 fig_spreading.png     slope: displacement of the surface in time; at the end displacement and shear strain over the
                       depth, beside static shear stress and normal effective stress of the start
+fig_box.png           box: r_u where it is largest on the whole and at the end, shear strain at the end, over the mesh as
+                      it has moved
+fig_surface.png       box: displacement of the surface in time and over the box
+fig_plate.png         plate: force against it and normal stress beside it over its way, shear strain at the end
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time
 fig_expansion.png     below less permeable layers: net expansion and settlement, above the volumetric strain over depth
                       and time, on one scale for both signs
@@ -28,7 +32,9 @@ What the run does not have is left out: a dry soil has no r_u, a base at rest no
 The input is the motion of a rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in
 compression.
 """
+from .column_plate import has_plate, plate
 from .column_results import Column
+from .column_box import box_maps, box_surface, is_box
 from .column_consolidation import isochrones, settlement
 from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
@@ -46,6 +52,9 @@ FIGURES = {
     "fig_ru_map": ru_map,
     "fig_histories": histories,
     "fig_spreading": spreading,
+    "fig_box": box_maps,
+    "fig_surface": box_surface,
+    "fig_plate": plate,
     "fig_loops": loops,
     "fig_expansion": expansion,
     "fig_isochrones": isochrones,
@@ -60,7 +69,7 @@ def kinds(column):
     """The words before captions that fit the column."""
     soil = {"one elastic layer" if column.uniform_elastic() else "other soil"}
     conditions = (("consolidation", column.consolidation), ("wet column", is_wet(column)), ("slope", is_slope(column)),
-                  ("sinking column", sinks(column)))
+                  ("box", is_box(column)), ("plate", has_plate(column)), ("sinking column", sinks(column)))
     return soil | {word for word, fits in conditions if fits}
 
 

@@ -6,6 +6,7 @@
 #include "apps/soil_column/files.hpp"
 #include "apps/soil_column/resolution.hpp"
 #include "apps/soil_column/run.hpp"
+#include "apps/soil_column/settling.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
 #include "fem/libraries.hpp"
@@ -25,9 +26,8 @@ public:
   template <class Settings>
   ColumnRun(const ColumnRequest &request, const std::array<Motion, 3> &motions, const Settings &settings)
       : request_(request), scene_(request.scene), motions_(motions),
-        space_(mesh_of(scene_), shaken_supports(scene_.base.compliant()),
-               scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
-        soil_(soil_material(scene_, space_, request.threads, request.materials)),
+        space_(mesh_spec(scene_), supports_of(scene_), scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
+        soil_(soil_material(scene_, space_, request.threads, request.materials)), settled_(settled()),
         run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_, steps_between_rows()),
         follower_(space_, files_.line(), files_.history().vertical_stress()),
         velocities_(shear_velocities(scene_, *soil_.material, space_))
@@ -62,6 +62,8 @@ public:
         save();
         if (scene_.slope.tangent > 0)
           spreading_ = spreading(scene_, space_, run_.displacement(), files_.line());
+        if (scene_.mesh.sides == Sides::walls)
+          box_motion_ = box_motion(space_, run_.displacement());
         write([&] {
           files_.finish(follower_.peaks, spreading_);
           finish_files();
@@ -110,12 +112,14 @@ protected:
   const std::array<Motion, 3> motions_;
   Discretisation<dim> space_;
   SoilMaterial soil_;
+  double settled_; ///< how far a box has moved to its equilibrium, m
   Solver run_;
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
   std::vector<double> velocities_;            ///< of shear waves at every point at the start of the whole run, m/s
   std::optional<Spreading> spreading_;        ///< of a slope, at the end
+  std::optional<BoxMotion> box_motion_;       ///< of a box, at the end
   std::vector<std::string> warnings_;         ///< of the scene, on the soil of the start
   ColumnInstant instant_;
   Progress progress_{request_.quiet, 5};
@@ -128,20 +132,30 @@ protected:
   }
 
 private:
+  double settled()
+  {
+    const bool anew = request_.use != FolderUse::resume; // else the checkpoint brings the soil as it was
+    return scene_.mesh.sides == Sides::walls && anew ? settle(scene_, space_, *soil_.material) : 0;
+  }
+
+  /// Those of a shaken block; a plate holds what it moves, and the soil along it if it is rough.
+  static Supports supports_of(const ColumnScene &scene)
+  {
+    Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides);
+    if (scene.analysis.kind != AnalysisKind::plate)
+      return supports;
+    supports.fixed.push_back({patch_face(0), scene.plate.axis()});
+    supports.fixed.push_back({patch_face(0), 1}); // plane strain
+    if (scene.plate.rough)
+      supports.fixed.push_back({patch_face(0), 2 - scene.plate.axis()});
+    return supports;
+  }
+
   std::size_t steps_between_rows() const
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)
       return steps_in(scene_.output.history_interval);
     return 1;
-  }
-
-  static MeshSpec mesh_of(const ColumnScene &scene)
-  {
-    MeshSpec mesh{.soil = soil_profile(scene)};
-    mesh.width = {scene.mesh.width, scene.mesh.width};
-    mesh.cells_across = {scene.mesh.cells_across, scene.mesh.cells_across};
-    mesh.degree = scene.mesh.degree;
-    return mesh;
   }
 
   /// Old results go now, if they may, and provenance is written; on the first rank.
@@ -234,6 +248,7 @@ private:
     summary.last = files_.history().state;
     summary.expansions = files_.history().expansions();
     summary.spreading = spreading_;
+    summary.box_motion = box_motion_;
     summary.steps = static_cast<double>(run_.n_steps());
     add_results(summary);
     times_.material = soil_.material->seconds;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Consolidation of a column: the load goes on in an instant, then the water leaves.
-#include "apps/soil_column/column_run.hpp"
-#include "fem/solve/statics.hpp"
+#include "apps/soil_column/statics_run.hpp"
 
 #include <limits>
 
@@ -32,7 +31,7 @@ double final_settlement(const ColumnScene &scene, const Discretisation<dim> &spa
     {
       return settlement;
     }
-  const long dof = space.find_dof({0, 0, space.mesh().soil.height()}, 2);
+  const long dof = space.find_dof(space.mesh().on_line(0), 2);
   settlement = dof < 0 ? 0 : 0 - drained.displacement().local_element(static_cast<unsigned>(dof));
   if (space.shared_out())
     MPI_Allreduce(MPI_IN_PLACE, &settlement, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
@@ -40,10 +39,10 @@ double final_settlement(const ColumnScene &scene, const Discretisation<dim> &spa
 }
 
 template <int dim>
-class ConsolidationRun : public ColumnRun<dim, Statics>
+class ConsolidationRun : public StaticsRun<dim>
 {
-  using Run = ColumnRun<dim, Statics>;
-  using Run::scene_, Run::space_, Run::run_, Run::files_, Run::follower_, Run::resumed_, Run::instant_, Run::times_;
+  using Run = StaticsRun<dim>;
+  using Run::scene_, Run::space_, Run::run_, Run::files_, Run::resumed_, Run::record, Run::times_;
 
 public:
   explicit ConsolidationRun(const ColumnRequest &request) : Run(request, {}, settings_of(request.scene.load, true))
@@ -76,33 +75,10 @@ private:
       immediate_settlement_ = files_.history().state.settlement;
   }
 
-  /// A row, a profile and a ParaView file of every step.
-  void record()
-  {
-    const Vector &u = run_.displacement();
-    instant_.step = run_.n_steps();
-    instant_.time = run_.time();
-    instant_.displacement.assign(u.begin(), u.begin() + u.locally_owned_size());
-    instant_.velocity.assign(instant_.displacement.size(), 0.0);
-    instant_.acceleration = instant_.velocity;
-    gradients_of(space_, u, instant_.gradients);
-    instant_.stresses.assign(run_.stresses().begin(), run_.stresses().end());
-    instant_.pressure = run_.point_pressure();
-    follower_.follow(u, instant_.pressure, run_.time());
-    this->write([&] {
-      files_.record(instant_);
-      files_.write_rows();
-      files_.profile(instant_);
-      files_.paraview(instant_);
-    });
-  }
-
   /// Steps of the time table that are done; a load that is there at once takes a step of its own.
   std::size_t n_done() const { return static_cast<std::size_t>(run_.n_steps()) - (at_once_ ? 1 : 0); }
   bool is_done() const override { return run_.n_steps() > 0 && n_done() >= ends_.size(); }
   double n_total() const override { return static_cast<double>(ends_.size()) + 1; }
-  double time_of(std::uint64_t) const override { return run_.time(); } ///< of the last good sub-step
-  bool has_long_steps() const override { return true; }
   void add_to(ColumnCheckpoint &checkpoint) override
   {
     checkpoint.numbers["immediate_settlement"] = immediate_settlement_;

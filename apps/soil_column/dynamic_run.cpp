@@ -50,7 +50,7 @@ private:
       {
         std::vector<double> depths;
         for (const Place &place : space_.position)
-          depths.push_back(scene_.height() - place[2]);
+          depths.push_back(space_.mesh().depth(place));
         grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths, resumed_.get());
         grain_files_->open(resumed_.get());
       }

@@ -9,7 +9,7 @@ namespace isostat
 template <int dim>
 CapExpansions<dim>::CapExpansions(const ColumnScene &scene, const Discretisation<dim> &space)
 {
-  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed)
+  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides == Sides::walls)
     return;
   double z = scene.height();
   for (std::size_t k = 0; k + 1 < scene.layers.size(); ++k)

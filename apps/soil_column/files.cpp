@@ -22,7 +22,8 @@ template <int dim>
 ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
                               const std::array<Motion, 3> &motions, std::size_t stride)
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
-      paraview_(scene.output.paraview_interval.has_value()), history_(scene, space, motions, stride)
+      paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides == Sides::walls),
+      history_(scene, space, motions, stride)
 {
   if (!scene.mesh.distributed)
     line_ = column_line(space);
@@ -36,6 +37,9 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
     profiles_ = std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,
                                               chosen(history_.vertical_stress(), line_->points),
                                               chosen(velocities, line_->points), counter(resumed, "profiles"));
+  if (line_ && box_)
+    maps_ = std::make_unique<BoxMaps>(folder_ / "maps.h5", space_, history_.vertical_stress(), velocities,
+                                      counter(resumed, "profiles"));
   if (paraview_)
     {
       fs::create_directories(folder_ / "paraview");
@@ -56,15 +60,9 @@ void ColumnFiles<dim>::profile(const ColumnInstant &instant)
 {
   if (!profiles_)
     return;
-  const std::size_t m = line_->points.size();
-  std::vector<double> values(m * ProfileFile::n_quantities);
-  for (std::size_t k = 0; k < m; ++k)
-    {
-      const PointValues row = point_values(instant, line_->points[k], history_.vertical_stress());
-      for (std::size_t j = 0; j < row.size(); ++j)
-        values[j * m + k] = row[j];
-    }
-  profiles_->append(instant.time, values);
+  profiles_->append(instant.time, columns_at(instant, line_->points, history_.vertical_stress()));
+  if (maps_)
+    maps_->append(instant);
 }
 
 template <int dim>
@@ -84,6 +82,8 @@ void ColumnFiles<dim>::flush()
     recorder_->flush();
   if (profiles_)
     profiles_->flush();
+  if (maps_)
+    maps_->flush();
 }
 
 template <int dim>

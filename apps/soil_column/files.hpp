@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "apps/deposit/maps.hpp"
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
 #include "apps/soil_column/spreading.hpp"
@@ -44,11 +45,12 @@ private:
   std::filesystem::path folder_;
   std::string scene_text_;
   const Discretisation<dim> &space_;
-  bool paraview_;
+  bool paraview_, box_;
   ColumnHistory<dim> history_;
   std::optional<ColumnLine> line_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<ProfileFile> profiles_;
+  std::unique_ptr<BoxMaps> maps_; ///< of a box
   std::unique_ptr<PvdCollection> pvd_;
 };
 } // namespace isostat

@@ -21,9 +21,9 @@ double reduced(double x, MPI_Op operation, MPI_Comm communicator)
 }
 
 template <int dim>
-std::array<long, 3> node_at(const Discretisation<dim> &space, double z)
+std::array<long, 3> node_at(const Discretisation<dim> &space, const Place &place)
 {
-  return {space.find_dof({0, 0, z}, 0), space.find_dof({0, 0, z}, 1), space.find_dof({0, 0, z}, 2)};
+  return {space.find_dof(place, 0), space.find_dof(place, 1), space.find_dof(place, 2)};
 }
 
 /// The node's values, 0 on ranks that do not have it.
@@ -38,8 +38,8 @@ template <int dim>
 ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
                                   const std::array<Motion, 3> &motions, std::size_t stride)
     : space_(space), motions_(motions), rigid_(!scene.base.compliant()), area_(std::pow(scene.mesh.width, dim - 1)),
-      base_(node_at(space, 0)), surface_(node_at(space, space.mesh().soil.height())), expansions_(scene, space),
-      filter_(9, stride)
+      base_(node_at(space, {space.mesh().line[0], space.mesh().line[1], 0})),
+      surface_(node_at(space, space.mesh().on_line(0))), expansions_(scene, space), filter_(9, stride)
 {
   for (double depth : scene.output.depths)
     points_.push_back(point_at_depth(space, depth));
@@ -88,7 +88,7 @@ typename ColumnHistory<dim>::Extremes ColumnHistory<dim>::extremes(const ColumnI
       if (const double here = instant.pressure[q] / vertical_stress_[q]; here > ru)
         {
           ru = here;
-          depth = space_.mesh().soil.height() - space_.position[q][2];
+          depth = space_.mesh().depth(space_.position[q]);
         }
     }
   if (!space_.shared_out())

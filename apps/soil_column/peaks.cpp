@@ -45,7 +45,7 @@ PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLi
     : space_(space), line_(line), vertical_stress_(vertical_stress)
 {
   for (unsigned c = 0; c < 2; ++c)
-    surface_[c] = space.find_dof({0, 0, space.mesh().soil.height()}, c);
+    surface_[c] = space.find_dof(space.mesh().on_line(0), c);
   if (line)
     {
       peaks.line_gamma.assign(line->points.size(), 0.0);
@@ -58,7 +58,7 @@ template <int dim>
 void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<double> &pressure, double time)
 {
   gradients_of(space_, displacement, gradients_);
-  const auto depth = [&](std::size_t q) { return space_.mesh().soil.height() - space_.position[q][2]; };
+  const auto depth = [&](std::size_t q) { return space_.mesh().depth(space_.position[q]); };
   for (std::size_t q = 0; q < gradients_.size(); ++q)
     {
       if (const double gamma = shear(gradients_[q]); gamma > peaks.gamma)

@@ -36,6 +36,8 @@ void check_ranks(const ColumnScene &scene)
 
 RunResult run_dimension(const ColumnRequest &request)
 {
+  if (request.scene.analysis.kind == AnalysisKind::plate)
+    return run_plate(request);
   switch (request.scene.mesh.dimension)
     {
     case 1:

@@ -28,4 +28,5 @@ template <int dim>
 RunResult run_dynamic(const ColumnRequest &request);
 template <int dim>
 RunResult run_consolidation(const ColumnRequest &request);
+RunResult run_plate(const ColumnRequest &request); ///< in two dimensions
 } // namespace isostat

@@ -83,6 +83,38 @@ Json expansions_json(const std::vector<CapExpansion> &caps)
                     {"end", cap.last}});
   return json;
 }
+
+std::string box_text(const BoxMotion &m, const MeshSpec &mesh)
+{
+  return fmt::format("  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
+                     "  surface sank             {:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m\n",
+                     m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x, m.highest, m.highest_x);
+}
+
+void add_box(const BoxMotion &m, const MeshSpec &mesh, Json &json)
+{
+  json["surface_motion"] = {{"x", mesh.line[0]},        {"along_x", m.on_line},    {"largest", m.largest},
+                            {"largest_x", m.largest_x}, {"settlement", m.deepest}, {"settlement_x", m.deepest_x},
+                            {"heave", m.highest},       {"heave_x", m.highest_x}};
+}
+
+std::string plate_text(const PlateResult &p, const Plate &plate)
+{
+  return fmt::format(
+      "  plate                    {:.4g} m long, {}, moved {:+.4g} m in {} steps\n"
+      "  force against it         {:.4g} kN/m in situ, largest {:.4g} kN/m at {:+.4g} m, smallest {:.4g} "
+      "kN/m at {:+.4g} m, {:.4g} kN/m at the end\n"
+      "  equilibrium              residual at most {:.1e} of the force scale\n",
+      p.length, plate.rough ? "rough" : "smooth", plate.displacement, plate.steps, p.start / 1e3, p.largest / 1e3,
+      p.largest_at, p.smallest / 1e3, p.smallest_at, p.last / 1e3, p.residual);
+}
+
+void add_plate(const PlateResult &p, Json &json)
+{
+  json["plate"] = {{"length", p.length},         {"force_in_situ", p.start},      {"largest_force", p.largest},
+                   {"largest_at", p.largest_at}, {"smallest_force", p.smallest},  {"smallest_at", p.smallest_at},
+                   {"force_at_the_end", p.last}, {"largest_residual", p.residual}};
+}
 } // namespace
 
 std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
@@ -120,6 +152,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
         1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
   if (s.spreading)
     text += slope_text(*s.spreading, scene);
+  if (s.box_motion)
+    text += box_text(*s.box_motion, mesh_spec(scene));
   if (s.grains)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
@@ -134,6 +168,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (shaken(scene))
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
+  if (s.plate)
+    return text + plate_text(*s.plate, scene.plate);
   return text + fmt::format("  final settlement         {:.4f} mm, drained\n  degree of consolidation  {:.4f}\n",
                             1e3 * s.final_settlement, s.degree);
 }
@@ -164,9 +200,9 @@ std::string to_text(const RunTimes &t)
 Json to_json(const ColumnSummary &s, const ColumnScene &scene)
 {
   const ColumnPeaks &p = s.peaks;
-  const bool drains = !shaken(scene);
+  const bool drains = scene.analysis.kind == AnalysisKind::consolidation;
   Json json{{"title", scene.title},
-            {"analysis", shaken(scene) ? "dynamic" : "consolidation"},
+            {"analysis", analysis_names[static_cast<int>(scene.analysis.kind)]},
             {"drainage", drainage_names[static_cast<int>(scene.water.drainage)]},
             {"base", scene.base.compliant() ? "compliant" : "rigid"},
             {"layers", layers_json(scene)},
@@ -203,6 +239,10 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"degree_of_consolidation", drains ? Json(s.degree) : Json()}};
   if (s.spreading)
     add_slope(*s.spreading, scene, json);
+  if (s.box_motion)
+    add_box(*s.box_motion, mesh_spec(scene), json);
+  if (s.plate)
+    add_plate(*s.plate, json);
   if (s.grains)
     {
       json["packings"] = s.grains->packings;

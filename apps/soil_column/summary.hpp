@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "apps/soil_column/box_motion.hpp"
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
+#include "apps/soil_column/plate_forces.hpp"
 #include "apps/soil_column/spreading.hpp"
 #include "apps/soil_column/surface_motion.hpp"
 #include "base/files/json.hpp"
@@ -33,7 +35,9 @@ struct ColumnSummary
   std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
   std::optional<GrainsSummary> grains;
-  std::optional<Spreading> spreading; ///< none on level ground
+  std::optional<Spreading> spreading;  ///< none on level ground
+  std::optional<BoxMotion> box_motion; ///< of a box alone
+  std::optional<PlateResult> plate;    ///< likewise, if a plate moves
 };
 
 /// What the run took on this machine.

@@ -16,7 +16,7 @@ SurfaceMotion::SurfaceMotion(const ColumnScene &scene, const FiniteElementSpace 
 {
   for (unsigned axis = 0; axis < 3; ++axis)
     {
-      surface_[axis] = space.find_dof({0, 0, space.mesh().soil.height()}, axis);
+      surface_[axis] = space.find_dof(space.mesh().on_line(0), axis);
       if (motions[axis].at_rest())
         continue;
       axes_.push_back(axis);

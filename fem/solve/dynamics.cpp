@@ -10,10 +10,12 @@
 
 namespace isostat
 {
-Supports shaken_supports(bool compliant_base)
+Supports shaken_supports(bool compliant_base, Sides sides)
 {
   Supports supports;
-  supports.tied_sides = true;
+  supports.tied_sides = sides == Sides::tied;
+  if (sides == Sides::walls)
+    supports.fixed = {{Face::x_low, 0}, {Face::x_high, 0}};
   if (!compliant_base)
     for (unsigned c = 0; c < 3; ++c)
       supports.fixed.push_back({Face::base, c});

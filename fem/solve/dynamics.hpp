@@ -149,6 +149,6 @@ private:
 };
 
 /// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
-/// in an undrained column vertically), tied sides, drained surface.
-Supports shaken_supports(bool compliant_base);
+/// in an undrained column vertically), its sides, drained surface.
+Supports shaken_supports(bool compliant_base, Sides sides = Sides::tied);
 } // namespace isostat

@@ -33,6 +33,11 @@ struct StaticsSettings
   std::vector<FaceTraction> tractions = {};
   std::vector<FaceDisplacement> displacements =
       {}; ///< components that are fixed and not named here stay where they are
+  /// Force on the volume of a layer of the soil (SoilProfile::layers), N/m3; none: only loads on faces.
+  std::function<std::array<double, 3>(double time, std::size_t layer)> body_force = {};
+  /// What holds the stresses of the start goes off from t = 0 to 1: then they alone balance all loads, which are the
+  /// whole ones and not changes.
+  bool settles = false;
   NewtonSettings newton = {};
   double min_force = 0; ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
 };
@@ -47,7 +52,8 @@ struct StaticsEffort
 
 /// Quasi-static loading and consolidation of a block of saturated soil: docs/theory_column.md (14) to (18).
 ///
-///     F(sigma') - F(sigma'_0) - G^T p = f(t)        equilibrium of the mixture, changes since the start
+///     F(sigma') - F(sigma'_0) - G^T p = f(t)        equilibrium of the mixture, changes since the start (or
+///                                                   `settles`: f(t) less t F(sigma'_0), 0 <= t <= 1)
 ///     G du/dt + S dp/dt + H p = 0                   water; p = 0 on drained faces
 ///
 /// Time: BDF2 with variable steps (15), backward Euler where there is no step before: the first one, after a step
@@ -166,6 +172,7 @@ private:
   // constant
   std::vector<Place> places_;
   std::vector<Vector> traction_areas_;
+  std::vector<Vector> layer_volumes_;        ///< of each unknown, m3; empty without a force on the volume
   std::vector<std::vector<unsigned>> given_; ///< owned unknowns of each of settings_.displacements
   std::vector<unsigned> held_u_, held_p_;    ///< owned; pressures only while water flows
   std::vector<char> is_held_u_, is_held_p_;

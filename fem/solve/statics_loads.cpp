@@ -15,6 +15,8 @@ namespace
 std::string name_of(FaceComponent of)
 {
   constexpr const char *names[] = {"x_low", "x_high", "y_low", "y_high", "base", "surface"};
+  if (is_patch(of.face))
+    return fmt::format("u_{} of patch {}", "xyz"[of.component], static_cast<int>(of.face) - n_faces);
   return fmt::format("u_{} of face {}", "xyz"[of.component], names[static_cast<int>(of.face)]);
 }
 
@@ -89,6 +91,8 @@ void Statics::find_held()
       held_p_.push_back(i);
   for (const FaceTraction &load : settings_.tractions)
     traction_areas_.push_back(space_.face_area(load.face));
+  if (settings_.body_force)
+    layer_volumes_ = space_.layer_volumes();
   places_ = space_.node_places();
 }
 
@@ -100,6 +104,15 @@ void Statics::find_loads(double time, Vector &load, Vector &held) const
     for (std::size_t i = 0; i < places_.size(); ++i)
       if (const double area = traction_areas_[k].local_element(i); area > 0)
         load.local_element(i) += area * settings_.tractions[k].traction(time, places_[i])[i % 3];
+  for (std::size_t layer = 0; layer < layer_volumes_.size(); ++layer)
+    {
+      const std::array<double, 3> force = settings_.body_force(time, layer);
+      for (std::size_t i = 0; i < places_.size(); ++i)
+        load.local_element(i) += force[i % 3] * layer_volumes_[layer].local_element(i);
+    }
+  if (settings_.settles)
+    for (std::size_t i = 0; i < load.locally_owned_size(); ++i)
+      load.local_element(i) -= std::clamp(time, 0.0, 1.0) * reference_force_.local_element(i);
   for (std::size_t k = 0; k < given_.size(); ++k)
     for (unsigned i : given_[k])
       held.local_element(i) = settings_.displacements[k].displacement(time, places_[i]);

@@ -6,7 +6,8 @@
 
 namespace isostat
 {
-/// Faces of a block of soil.
+/// Faces of a block of soil, without the patches that MeshSpec::patches cuts out of them; more values are patches:
+/// patch_face().
 enum class Face
 {
   x_low,
@@ -16,6 +17,12 @@ enum class Face
   base,
   surface
 };
+
+inline constexpr int n_faces = 6;
+
+/// MeshSpec::patches[k] as a face.
+constexpr Face patch_face(std::size_t k) { return static_cast<Face>(n_faces + static_cast<int>(k)); }
+constexpr bool is_patch(Face face) { return static_cast<int>(face) >= n_faces; }
 
 /// A place in space: x, y, z, m. z = 0 at the base, upwards positive.
 using Place = std::array<double, 3>;
@@ -27,6 +34,8 @@ inline constexpr std::array<std::array<int, 3>, 4> mesh_axes = {{{}, {2, 2, 2}, 
 template <int dim>
 int boundary_id(Face face)
 {
+  if (is_patch(face))
+    return 2 * dim + static_cast<int>(face) - n_faces;
   const int axis = static_cast<int>(face) / 2;
   for (int d = 0; d < dim; ++d)
     if (mesh_axes[dim][d] == axis)

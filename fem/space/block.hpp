@@ -2,6 +2,7 @@
 #pragma once
 #include "fem/material/soil.hpp"
 #include "fem/space/axes.hpp"
+#include "fem/space/ground.hpp"
 
 #include <vector>
 
@@ -14,6 +15,14 @@ struct FaceComponent
   unsigned component;
 };
 
+/// A part of a face that is held or loaded apart from the rest of it: of base or surface from x to x, of x_low or x_high
+/// from z to z, on boundaries between elements.
+struct Patch
+{
+  Face of;
+  double from = 0, to = 0; ///< m
+};
+
 /// A block of soil of layers, `dim` of the axes x, y, z meshed: 1 z; 2 x, z; 3 x, y, z.
 /// tested: tests/fem/space/discretisation_test.cpp
 struct MeshSpec
@@ -23,11 +32,27 @@ struct MeshSpec
   std::array<unsigned, 2> cells_across = {1, 1}; ///< along x and y
   unsigned degree = 2;                           ///< of the displacement, 1 or 2
   unsigned points_per_direction = 0; ///< Gauss points of a cell along each axis; 0: degree in a column, else degree + 1
+  /// In place of the level surface at the height of the layers, which keep their parts of it at every x. In 2D only.
+  GroundLine ground = {};
+  std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the later one has what both claim
+  std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are told by depth, m
 
   unsigned gauss_points(int dim) const ///< along each axis
   {
     return points_per_direction ? points_per_direction : (dim == 1 ? degree : degree + 1);
   }
+  /// Height of the surface above the base, m.
+  double ground_at(double x) const { return ground.is_level() ? soil.height() : ground.at(x); }
+  double depth(const Place &place) const { return ground_at(place[0]) - place[2]; } ///< below the surface, m
+  /// A place on that vertical.
+  Place on_line(double depth) const { return {line[0], line[1], ground_at(line[0]) - depth}; }
+};
+
+/// What holds the sides of a block.
+enum class Sides
+{
+  tied, ///< opposite ones move as one: the block goes on for ever
+  walls ///< smooth walls of a box that moves with its rigid base
 };
 
 /// How the block is held.

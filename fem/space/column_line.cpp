@@ -16,15 +16,31 @@ double minimum(double x, MPI_Comm communicator)
   MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MIN, communicator);
   return x;
 }
+
+/// From the surface down: of every row of points those nearest to the line on its right, or nearest of all.
+std::vector<std::size_t> points_on_line(const FiniteElementSpace &space)
+{
+  const MeshSpec &mesh = space.mesh();
+  std::array<double, 2> edge = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  for (const Place &place : space.position)
+    for (int axis : {0, 1})
+      if (place[axis] > mesh.line[axis] - near)
+        edge[axis] = std::min(edge[axis], place[axis]);
+  std::vector<std::size_t> points;
+  for (std::size_t q = space.n_points(); q-- > 0;)
+    if (std::abs(space.position[q][0] - edge[0]) < near && std::abs(space.position[q][1] - edge[1]) < near)
+      points.push_back(q);
+  return points;
+}
 } // namespace
 
 PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
 {
-  const double height = space.mesh().soil.height();
+  const MeshSpec &mesh = space.mesh();
   double best = std::numeric_limits<double>::max();
   const auto distance = [&](std::size_t q) {
-    const auto &[x, y, z] = space.position[q];
-    return std::hypot(x, y, height - z - depth);
+    const Place &place = space.position[q];
+    return std::hypot(place[0] - mesh.line[0], place[1] - mesh.line[1], mesh.depth(place) - depth);
   };
   for (std::size_t q = 0; q < space.n_points(); ++q)
     best = std::min(best, distance(q));
@@ -36,7 +52,7 @@ PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
     if (distance(q) < best + near && static_cast<double>(space.point_id[q]) < smallest)
       {
         smallest = static_cast<double>(space.point_id[q]);
-        found = {static_cast<long>(q), height - space.position[q][2]};
+        found = {static_cast<long>(q), mesh.depth(space.position[q])};
       }
   if (smallest > minimum(smallest, space.communicator()))
     found = {-1, std::numeric_limits<double>::max()};
@@ -46,31 +62,25 @@ PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
 
 ColumnLine column_line(const FiniteElementSpace &space)
 {
-  const SoilProfile &soil = space.mesh().soil;
-  const double height = soil.height();
-  std::array<double, 2> edge = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  for (const auto &place : space.position)
-    for (int axis : {0, 1})
-      edge[axis] = std::min(edge[axis], place[axis]);
+  const MeshSpec &mesh = space.mesh();
   ColumnLine line;
-  for (std::size_t q = space.n_points(); q-- > 0;)
-    if (space.position[q][0] < edge[0] + near && space.position[q][1] < edge[1] + near)
-      {
-        line.points.push_back(q);
-        line.point_depths.push_back(height - space.position[q][2]);
-      }
+  for (std::size_t q : points_on_line(space))
+    {
+      line.points.push_back(q);
+      line.point_depths.push_back(mesh.depth(space.position[q]));
+    }
   const auto add_node = [&](double depth) {
     line.node_depths.push_back(depth);
-    line.nodes.push_back(static_cast<unsigned>(space.find_dof({0, 0, height - depth}, 0)));
+    line.nodes.push_back(static_cast<unsigned>(space.find_dof(mesh.on_line(depth), 0)));
   };
+  const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
   double top = 0;
   add_node(0);
-  const unsigned degree = space.mesh().degree;
-  for (const Layer &layer : soil.layers)
+  for (const Layer &layer : mesh.soil.layers)
     {
-      const unsigned n = layer.n_cells() * degree;
+      const unsigned n = layer.n_cells() * mesh.degree;
       for (unsigned k = 1; k <= n; ++k)
-        add_node(k == n ? top + layer.thickness : top + layer.thickness * k / n);
+        add_node(scale * (k == n ? top + layer.thickness : top + layer.thickness * k / n));
       top += layer.thickness;
     }
   return line;

@@ -33,6 +33,8 @@ public:
 
   /// Diagonal mass by Gauss-Lobatto at the nodes, kg; 0 at unknowns that a tie has removed.
   Vector lumped_mass() const;
+  /// Volume of each layer (MeshSpec::soil) that belongs to each displacement unknown, likewise. m3
+  std::vector<Vector> layer_volumes() const;
   /// Area of a face that belongs to each displacement unknown (axes that are not meshed count 1 m), m2: int N_A over
   /// the face by Gauss-Lobatto at the nodes.   @throws InputError  the face is of an axis that is not meshed
   virtual Vector face_area(Face face) const = 0;

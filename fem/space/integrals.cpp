@@ -110,6 +110,19 @@ Vector FiniteElementSpace::lumped_mass() const
   return mass;
 }
 
+std::vector<Vector> FiniteElementSpace::layer_volumes() const
+{
+  std::vector<Vector> volumes(mesh_.soil.layers.size(), displacement_vector());
+  for (std::size_t cell = 0; cell < n_cells(); ++cell)
+    for (std::size_t a = 0; a < n_nodes; ++a)
+      for (unsigned c = 0; c < 3; ++c)
+        volumes[cell_layer[cell]].local_element(cell_dofs[(cell * n_nodes + a) * 3 + c]) +=
+            nodal_share[cell * n_nodes + a];
+  for (Vector &volume : volumes)
+    volume.add_ghosts_to_owners();
+  return volumes;
+}
+
 std::vector<double> FiniteElementSpace::point_pressures(const Vector &p) const
 {
   std::vector<double> pressure(n_points(), 0.0);

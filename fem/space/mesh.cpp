@@ -7,6 +7,7 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -34,6 +35,15 @@ void check(const MeshSpec &mesh, int dim)
     if (!(mesh.width[k] > 0) || mesh.cells_across[k] == 0)
       throw InputError(
           fmt::format("mesh: {} m wide in {} cells; both must be > 0", mesh.width[k], mesh.cells_across[k]));
+  if (mesh.ground.is_level())
+    return;
+  mesh.ground.check();
+  if (dim != 2)
+    throw InputError(fmt::format("ground in {} dimensions; must be in 2", dim));
+  if (std::abs(mesh.ground.highest() - mesh.soil.height()) > 1e-6 * mesh.soil.height())
+    throw InputError(fmt::format("ground: its highest point is {} m above the base, the layers reach {} m; must be the "
+                                 "same",
+                                 mesh.ground.highest(), mesh.soil.height()));
 }
 
 /// Heights of the cells from the base up, m.
@@ -45,13 +55,66 @@ std::vector<double> cell_heights(const SoilProfile &soil)
   return heights;
 }
 
+/// Marks each cell with the number of its layer.   @pre layers are level
 template <int dim>
-std::unique_ptr<dealii::Triangulation<dim>> empty_mesh(bool shared_out, MPI_Comm communicator)
+void mark_layers(const SoilProfile &soil, dealii::Triangulation<dim> &mesh)
 {
-  if constexpr (dim > 1)
-    if (shared_out)
-      return std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(communicator);
-  return std::make_unique<dealii::Triangulation<dim>>();
+  for (const auto &cell : mesh.active_cell_iterators())
+    cell->set_material_id(static_cast<dealii::types::material_id>(soil.layer_at(cell->center()[dim - 1])));
+}
+
+/// Raises the level surface to the ground, and all below it in proportion.
+template <int dim>
+void shape_ground(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
+{
+  const double height = spec.soil.height();
+  dealii::GridTools::transform(
+      [&](const dealii::Point<dim> &point) {
+        dealii::Point<dim> moved = point;
+        moved[dim - 1] *= spec.ground.at(point[0]) / height;
+        return moved;
+      },
+      mesh);
+}
+
+/// Gives the faces of elements that a patch covers its number.
+/// @throws InputError  a patch of a face that is not meshed, or whose ends are not on boundaries between elements
+template <int dim>
+void cut_patch(const MeshSpec &spec, std::size_t k, dealii::Triangulation<dim> &mesh)
+{
+  const Patch &patch = spec.patches[k];
+  if (dim != 2 || is_patch(patch.of) || boundary_id<dim>(patch.of) < 0)
+    throw InputError(fmt::format("patch {}: must be of a face of a mesh in 2 dimensions", k));
+  const int along = patch.of == Face::base || patch.of == Face::surface ? 0 : dim - 1;
+  const auto id = static_cast<dealii::types::boundary_id>(boundary_id<dim>(patch.of));
+  double length = 0;
+  for (const auto &cell : mesh.active_cell_iterators())
+    for (const auto &face : cell->face_iterators())
+      if (face->at_boundary() && face->boundary_id() == id && face->center()[along] > patch.from &&
+          face->center()[along] < patch.to)
+        {
+          face->set_boundary_id(static_cast<dealii::types::boundary_id>(boundary_id<dim>(patch_face(k))));
+          length += std::abs(face->vertex(dim - 1)[along] - face->vertex(0)[along]);
+        }
+  if (!(std::abs(length - (patch.to - patch.from)) <= 1e-6 * length))
+    throw InputError(fmt::format("patch {} from {} m to {} m: covers {:.6g} m of elements; must begin and end on "
+                                 "boundaries between elements, inside its face",
+                                 k, patch.from, patch.to, length));
+}
+
+/// The mesh, each rank with a part of it.
+template <int dim>
+std::unique_ptr<dealii::Triangulation<dim>> shared(std::unique_ptr<dealii::Triangulation<dim>> whole,
+                                                   MPI_Comm communicator)
+{
+  if constexpr (dim == 1)
+    return whole;
+  else
+    {
+      auto mesh = std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(communicator);
+      mesh->copy_triangulation(*whole);
+      return mesh;
+    }
 }
 
 template <int dim>
@@ -72,7 +135,7 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
                                                       MPI_Comm communicator)
 {
   check(spec, dim);
-  auto mesh = empty_mesh<dim>(shared_out, communicator);
+  auto mesh = std::make_unique<dealii::Triangulation<dim>>();
   std::vector<std::vector<double>> steps;
   dealii::Point<dim> low, high;
   for (int axis = 0; axis + 1 < dim; ++axis)
@@ -84,6 +147,13 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
   for (double h : steps.back())
     high[dim - 1] += h;
   dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, steps, low, high, true);
+  mark_layers(spec.soil, *mesh);
+  if (!spec.ground.is_level())
+    shape_ground(spec, *mesh);
+  for (std::size_t k = 0; k < spec.patches.size(); ++k)
+    cut_patch(spec, k, *mesh);
+  if (shared_out)
+    mesh = shared<dim>(std::move(mesh), communicator);
   if (tied_sides)
     tie_sides(*mesh);
   return mesh;

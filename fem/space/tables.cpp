@@ -44,17 +44,6 @@ void append_shares(const Values &lumped, std::size_t n_nodes, std::vector<double
     }
 }
 
-/// Number of a cell in the whole block, x fastest. (Numbers of deal.II are others where a mesh is shared out.)
-template <int dim>
-std::size_t cell_number(const MeshSpec &spec, const dealii::Point<dim> &centre)
-{
-  std::size_t number = spec.soil.cell_at(centre[dim - 1]);
-  for (int axis = dim - 1; axis-- > 0;)
-    number = number * spec.cells_across[axis] +
-             static_cast<std::size_t>(centre[axis] / (spec.width[axis] / spec.cells_across[axis]));
-  return number;
-}
-
 /// Local unknowns of a cell's nodes and corners.
 template <int dim, typename Cell, typename PressureCell>
 void append_unknowns(const Unknowns<dim> &unknowns, const Cell &cell, const PressureCell &same_cell, CellTables &t)
@@ -101,12 +90,12 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
         {
           t.weight.push_back(u.JxW(q));
           t.position.push_back(place_of<dim>(u.quadrature_point(q)));
-          t.point_id.push_back(cell_number<dim>(spec, cell->center()) * t.n_gauss + q);
+          t.point_id.push_back(cell->id().get_coarse_cell_id() * t.n_gauss + q);
         }
       for (const unsigned v : cell->vertex_indices())
         t.corner.push_back(place_of<dim>(cell->vertex(v)));
-      t.cell_layer.push_back(spec.soil.layer_at(cell->center()[dim - 1]));
-      t.cell_is_wet.push_back(spec.soil.is_wet(cell->center()[dim - 1]));
+      t.cell_layer.push_back(cell->material_id());
+      t.cell_is_wet.push_back(!spec.ground.is_level() || spec.soil.is_wet(cell->center()[dim - 1]));
       if (t.shape.empty())
         {
           t.shape = shapes(u, t.n_nodes, t.n_gauss);

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/box.hpp"
+
+#include "base/error.hpp"
+#include "base/scene/ranges.hpp"
+#include "base/scene/reader.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+using namespace ranges;
+
+constexpr const char *side_choices[] = {"tied", "walls"};
+
+// clang-format off
+constexpr Key in_mesh[] = {
+  {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
+   .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension 2), a box "
+           "whose smooth walls move with its rigid base. The soil settles into equilibrium before "
+           "anything else, from K0 stresses: docs/theory_column.md, section 9.",
+   .field = [](ColumnMesh &m) -> Field { return &m.sides; }},
+  {.path = "ground_x", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
+   .text = "x of points of a surface that is not level, rising; straight between them. Only between walls; water, if there "
+           "is any, covers all of it.",
+   .field = [](ColumnMesh &m) -> Field { return &m.ground_x; }},
+  {.path = "ground_z", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
+   .text = "Heights of these points above the base, the highest being that of all layers; where the ground is lower, every "
+           "layer is thinner in proportion.",
+   .field = [](ColumnMesh &m) -> Field { return &m.ground_z; }},
+};
+
+constexpr Key in_load[] = {
+  {.path = "surcharge_from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "8 m", .range = not_negative,
+   .text = "x where the surcharge begins, between walls; left out: at the left wall. In a box the surcharge comes on when the soil has its K0 stress, and has no inertia.",
+   .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
+  {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .presence = Presence::optional, .value = "12 m", .range = positive,
+   .text = "x where it ends; left out: at the right wall.",
+   .field = [](ColumnLoad &l) -> Field { return &l.surcharge_to; }},
+};
+// clang-format on
+
+/// The surface of a box.
+void check_ground(const SceneDocument &document, const ColumnScene &scene)
+{
+  const ColumnMesh &mesh = scene.mesh;
+  if (mesh.ground_x.size() != mesh.ground_z.size())
+    document.refuse(mesh.ground_x.empty() ? "mesh.ground_z" : "mesh.ground_x",
+                    fmt::format("has {} points, mesh.ground_z {}; each point has both.", mesh.ground_x.size(),
+                                mesh.ground_z.size()));
+  if (mesh.ground_x.empty())
+    return;
+  const GroundLine ground = ground_line(mesh);
+  try
+    {
+      ground.check();
+    }
+  catch (const InputError &error)
+    {
+      document.refuse("mesh.ground_x", error.what());
+    }
+  if (std::abs(ground.highest() - scene.height()) > 1e-6 * scene.height())
+    document.refuse("mesh.ground_z", fmt::format("must reach {} m, the height of all layers, at its highest point, but "
+                                                 "reaches {} m. Correct it, or the layers' thickness.",
+                                                 number_text(scene.height()), number_text(ground.highest())));
+}
+
+/// Keys of a box where there is none.
+void refuse_box_keys(const SceneDocument &document)
+{
+  for (const char *key : {"mesh.ground_x", "mesh.ground_z", "load.surcharge_from", "load.surcharge_to", "output.x"})
+    if (document.find(key))
+      document.refuse(key, "belongs to a box; where the sides are tied, all x are alike. Give mesh.sides = \"walls\", "
+                           "or remove it.");
+}
+
+/// What cannot be in a box.
+void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.mesh.dimension != 2)
+    document.refuse("mesh.sides", fmt::format("can be \"walls\" in 2 dimensions only, but mesh.dimension is {}. Give "
+                                              "dimension = 2.",
+                                              scene.mesh.dimension));
+  if (scene.base.compliant())
+    document.refuse("base.kind", "must be \"rigid\" in a box, whose walls move with its base.");
+  if (scene.slope.tangent > 0)
+    document.refuse("slope.angle",
+                    "turns the axes of an infinite slope; a box stands upright. Give the inclined surface "
+                    "by mesh.ground_x and mesh.ground_z.");
+  if (scene.water.table > 0)
+    document.refuse("water.table",
+                    "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
+}
+
+void check_places(const SceneDocument &document, const ColumnScene &scene)
+{
+  const double width = scene.mesh.width;
+  if (scene.output.x.value_or(0) >= width)
+    document.refuse("output.x", fmt::format("must lie in the box, in [0 m, {} m).", number_text(width)));
+  const double from = scene.load.surcharge_from.value_or(0), to = scene.load.surcharge_to.value_or(width);
+  if (!(from < to && to <= width))
+    document.refuse(scene.load.surcharge_to ? "load.surcharge_to" : "load.surcharge_from",
+                    fmt::format("must leave a part of the surface with the surcharge: from {} m to {} m of {} m.",
+                                number_text(from), number_text(to), number_text(width)));
+}
+} // namespace
+
+SceneFragment<ColumnMesh> box_keys() { return {in_mesh}; }
+
+SceneFragment<ColumnLoad> strip_load_keys() { return {in_load}; }
+
+void check_box(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.mesh.sides == Sides::tied)
+    return refuse_box_keys(document);
+  refuse_around_box(document, scene);
+  check_places(document, scene);
+  check_ground(document, scene);
+}
+} // namespace isostat

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/scene.hpp"
+#include "base/scene/fragment.hpp"
+
+namespace isostat
+{
+/// Keys of [mesh] that make a box of soil between walls, with a surface that need not be level: sides, ground_x,
+/// ground_z.
+SceneFragment<ColumnMesh> box_keys();
+/// Keys of [load]: the part of the surface that has the surcharge.
+SceneFragment<ColumnLoad> strip_load_keys();
+
+/// Rules of a box.
+/// @throws InputError  keys of a box where the sides are tied; a box of other than two dimensions, above a compliant
+///                     base, on a slope, or with a water table; a ground that does not reach the
+///                     height of the layers; places outside of the box
+/// tested: tests/apps/deposit/box_test.cpp
+void check_box(const SceneDocument &document, const ColumnScene &scene);
+} // namespace isostat

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/maps.hpp"
+
+#include <numeric>
+
+namespace isostat
+{
+namespace
+{
+constexpr std::size_t anticlockwise[] = {0, 1, 3, 2}; ///< corners of an element, which have x fastest
+
+std::vector<double> depths(const FiniteElementSpace &space)
+{
+  std::vector<double> all;
+  for (const Place &place : space.position)
+    all.push_back(space.mesh().depth(place));
+  return all;
+}
+
+std::vector<double> along(int axis, const std::vector<Place> &places)
+{
+  std::vector<double> all;
+  for (const Place &place : places)
+    all.push_back(place[axis]);
+  return all;
+}
+
+/// f(corner of the mesh, its node's first displacement unknown) for all corners of all elements.
+template <typename F>
+void for_each_corner(const FiniteElementSpace &space, const F &f)
+{
+  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
+    for (std::size_t corner : anticlockwise)
+      f(4 * cell + corner, space.cell_dofs[3 * (cell * space.n_nodes + corner)]);
+}
+} // namespace
+
+BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &space,
+                 std::span<const double> vertical_stress, std::span<const double> velocities, std::size_t resume_rows)
+    : space_(space), vertical_stress_(vertical_stress), points_(space.n_points()),
+      file_(path, depths(space), vertical_stress, velocities, resume_rows,
+            {{"displacement_x", "m", 4 * space.n_cells()}, {"displacement_z", "m", 4 * space.n_cells()}})
+{
+  std::iota(points_.begin(), points_.end(), 0);
+  std::vector<Place> corners;
+  for_each_corner(space_, [&](std::size_t corner, unsigned) { corners.push_back(space_.corner[corner]); });
+  file_.add("x", along(0, space_.position), "m");
+  file_.add("z", along(2, space_.position), "m");
+  file_.add("corner_x", along(0, corners), "m");
+  file_.add("corner_z", along(2, corners), "m");
+}
+
+void BoxMaps::append(const ColumnInstant &instant)
+{
+  std::vector<double> values = columns_at(instant, points_, vertical_stress_);
+  for (unsigned axis : {0, 2})
+    for_each_corner(space_, [&](std::size_t, unsigned dof) { values.push_back(instant.displacement[dof + axis]); });
+  file_.append(instant.time, values);
+}
+} // namespace isostat

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/output.hpp"
+
+namespace isostat
+{
+/// The whole of a box at instants, in maps.h5: what ProfileFile has, of every point of the mesh, their `x` and `z` (m),
+/// and of each element's corners (anticlockwise) `corner_x`, `corner_z` (m) and, at each instant, `displacement_x`,
+/// `displacement_z` (m).
+/// tested: tests/apps/box_test.py
+class BoxMaps
+{
+public:
+  /// @param vertical_stress, velocities  of every point, Pa, m/s   @pre the mesh is not shared out
+  /// @throws as ProfileFile
+  BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &space, std::span<const double> vertical_stress,
+          std::span<const double> velocities, std::size_t resume_rows);
+
+  void append(const ColumnInstant &instant);
+  void flush() { file_.flush(); }
+
+private:
+  const FiniteElementSpace &space_;
+  std::span<const double> vertical_stress_;
+  std::vector<std::size_t> points_; ///< all
+  ProfileFile file_;
+};
+} // namespace isostat

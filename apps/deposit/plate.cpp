@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/plate.hpp"
+
+#include "apps/deposit/scene.hpp"
+#include "base/scene/document.hpp"
+#include "base/scene/ranges.hpp"
+#include "base/scene/reader.hpp"
+#include "fem/solve/newton_scene.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+using namespace ranges;
+
+constexpr const char *sides[] = {"surface", "base", "left", "right"};
+
+// clang-format off
+constexpr Key of_plate[] = {
+  {.path = "plate.on", .kind = Kind::choice, .value = "surface", .choices = sides,
+   .text = "A footing on the surface, a trapdoor in the base, a left or right wall.",
+   .field = [](Plate &p) -> Field { return &p.on; }},
+  {.path = "plate.from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
+   .value = "0 m", .range = not_negative,
+   .text = "x where it begins, on a wall z, on a boundary between elements; left out: at the end of its side.",
+   .field = [](Plate &p) -> Field { return &p.from; }},
+  {.path = "plate.to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
+   .value = "2 m", .range = positive, .text = "Where it ends, likewise.",
+   .field = [](Plate &p) -> Field { return &p.to; }},
+  {.path = "plate.displacement", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0.1 m",
+   .text = "How far it moves into the soil; negative: away from it.",
+   .field = [](Plate &p) -> Field { return &p.displacement; }},
+  {.path = "plate.rough", .kind = Kind::boolean, .value = "true",
+   .text = "Whether the soil sticks to it; false: it slides freely.",
+   .field = [](Plate &p) -> Field { return &p.rough; }},
+  {.path = "plate.steps", .kind = Kind::integer, .value = "100", .range = counts, .text = "Equal steps of its way.",
+   .field = [](Plate &p) -> Field { return &p.steps; }},
+};
+// clang-format on
+
+double length_of_side(const ColumnScene &scene)
+{
+  if (scene.plate.axis() == 2)
+    return scene.mesh.width;
+  const GroundLine ground = ground_line(scene.mesh);
+  return ground.is_level() ? scene.height() : ground.at(scene.plate.on == PlateSide::left ? 0 : scene.mesh.width);
+}
+} // namespace
+
+SceneFragment<Plate> plate_keys()
+{
+  static const KeyTable keys{of_plate,
+                             splice("plate", newton_keys(), 0, [](Plate &p) -> NewtonSettings & { return p.newton; })};
+  return {keys.keys()};
+}
+
+Patch plate_patch(const ColumnScene &scene)
+{
+  const Plate &plate = scene.plate;
+  return {plate.face(), plate.from.value_or(0), plate.to.value_or(length_of_side(scene))};
+}
+
+void check_plate(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.analysis.kind != AnalysisKind::plate)
+    return;
+  if (scene.mesh.sides != Sides::walls)
+    document.refuse("mesh.sides", "must be \"walls\" beside a plate, which moves in a box. Give dimension = 2 and "
+                                  "sides = \"walls\".");
+  if (scene.mesh.distributed)
+    document.refuse("mesh.distributed", "must be false beside a plate.");
+  if (scene.water.drainage != Drainage::dry)
+    document.refuse("water.drainage", "must be \"dry\" beside a plate: it moves slowly, and no water is followed.");
+  if (!scene.motions.empty())
+    document.refuse("motion", "has no effect beside a plate, which moves slowly. Remove [[motion]].");
+  if (scene.load.kind != LoadKind::none)
+    document.refuse("load.kind", "must be \"none\" beside a plate; a surcharge may be there.");
+  const Patch patch = plate_patch(scene);
+  if (const double length = length_of_side(scene); !(patch.from < patch.to && patch.to <= length * (1 + 1e-9)))
+    document.refuse(scene.plate.to ? "analysis.plate.to" : "analysis.plate.from",
+                    fmt::format("must leave a plate on its side: from {} m to {} m of {} m.", number_text(patch.from),
+                                number_text(patch.to), number_text(length)));
+  if (scene.plate.displacement == 0)
+    document.refuse("analysis.plate.displacement", "must not be 0 m, or nothing moves.");
+  check_newton(document, "analysis.plate", scene.plate.newton);
+}
+} // namespace isostat

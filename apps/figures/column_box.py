@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of a box of soil: maps over the mesh as it has moved, and the motion of its surface."""
+import numpy as np
+from matplotlib.collections import PolyCollection
+
+from .common import BLACK, BLUE, GREY, ORANGE, panel_letter, plt
+
+LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
+
+
+def is_box(column):
+    return bool(column.maps)
+
+
+class Mesh:
+    """Elements of a box with their points, at the instants of its maps."""
+
+    def __init__(self, maps):
+        self.maps = maps
+        self.corners = np.stack([maps["corner_x"], maps["corner_z"]], axis=-1).reshape(-1, 4, 2)
+        self.points_per_cell = len(maps["x"]) // len(self.corners)
+        moved = np.hypot(maps["displacement_x"], maps["displacement_z"]).max()
+        depth = self.corners[..., 1].max()
+        self.exaggeration = 1.0
+        for factor in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000):
+            if factor * moved < LARGEST_SHARE * depth:
+                self.exaggeration = factor
+
+    def moved(self, row):
+        shift = np.stack([self.maps[f"displacement_{axis}"][row] for axis in "xz"], axis=-1).reshape(-1, 4, 2)
+        return self.corners + self.exaggeration * shift
+
+    def means(self, values):
+        return values.reshape(-1, self.points_per_cell).mean(axis=1)
+
+    def show(self, axes, row, values, low, high, colours):
+        elements = PolyCollection(self.moved(row), array=self.means(values), cmap=colours, edgecolor="white",
+                                  linewidth=0.15)
+        elements.set_clim(low, high)
+        axes.add_collection(elements)
+        outline = self.corners.reshape(-1, 2)
+        axes.plot([0, outline[:, 0].max()], [0, 0], color=GREY, linewidth=0.6)
+        axes.set_xlim(outline[:, 0].min() - 0.2, outline[:, 0].max() + 0.2)
+        axes.set_ylim(-0.2, 1.06 * outline[:, 1].max())
+        axes.set_aspect("equal")
+        axes.grid(False)
+        axes.set_ylabel("z (m)")
+        return elements
+
+    def surface(self):
+        """Corners at the surface from left to right: (place in the table of corners, their x)."""
+        flat = self.corners.reshape(-1, 2)
+        top = {}
+        for index, (x, z) in enumerate(flat):
+            key = round(float(x), 6)
+            if key not in top or z > flat[top[key], 1]:
+                top[key] = index
+        return np.array([top[x] for x in sorted(top)]), np.array(sorted(top))
+
+
+def box_maps(column):
+    """r_u at its largest and at the end, shear strain at the end, over the mesh as it has moved."""
+    if not is_box(column):
+        return None
+    maps, mesh = column.maps, Mesh(column.maps)
+    gamma = 100 * np.hypot(maps["gamma_xz"], maps["gamma_yz"])
+    fields = [("gamma", len(gamma) - 1, gamma[-1], 0, max(float(np.quantile(gamma[-1], 0.995)), 1e-6), "magma_r",
+               r"$|\gamma|$ (%)")]
+    if np.abs(maps["u"]).max() > 0:
+        mean = maps["ru"].mean(axis=1)
+        worst = int(np.argmax(mean))
+        fields = [("ru", worst, maps["ru"][worst], 0, 1, "viridis", r"$r_u$"),
+                  ("ru", len(mean) - 1, maps["ru"][-1], 0, 1, "viridis", r"$r_u$")] + fields
+    figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)
+    for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abc"):
+        elements = mesh.show(axes, row, values, low, high, colours)
+        figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01)
+        axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)
+        panel_letter(axes, letter)
+    panels[-1, 0].set_xlabel("x (m)")
+    return figure
+
+
+def box_surface(column):
+    """Displacement of the surface along x and upwards: in time at three places, and over the box at several times."""
+    if not is_box(column):
+        return None
+    maps, mesh = column.maps, Mesh(column.maps)
+    indices, x = mesh.surface()
+    figure, panels = plt.subplots(2, 2, figsize=(7.2, 5.0), layout="constrained")
+    rows = np.unique(np.linspace(0, len(maps["time"]) - 1, 6).astype(int))[1:]
+    for column_of_panels, (axis, label) in enumerate((("x", "Along x (m)"), ("z", "Upwards (m)"))):
+        moved = maps[f"displacement_{axis}"][:, indices]
+        for share, colour in ((0.25, BLUE), (0.5, BLACK), (0.75, ORANGE)):
+            k = int(np.argmin(np.abs(x - share * x[-1])))
+            panels[0, column_of_panels].plot(maps["time"], moved[:, k], color=colour, label=f"x = {x[k]:.3g} m")
+        for row, shade in zip(rows, np.linspace(0.75, 0, len(rows))):
+            panels[1, column_of_panels].plot(x, moved[row], color=str(shade), label=f"{maps['time'][row]:.3g} s")
+        panels[0, column_of_panels].set_ylabel(label)
+        panels[1, column_of_panels].set_ylabel(label)
+        panels[0, column_of_panels].set_xlabel("Time (s)")
+        panels[1, column_of_panels].set_xlabel("x (m)")
+    panels[0, 0].legend()
+    panels[1, 1].legend(fontsize=7)
+    for axes, letter in zip(panels.flat, "abcd"):
+        panel_letter(axes, letter)
+    return figure

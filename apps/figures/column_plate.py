@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figure of a plate that moves into a box of soil."""
+from .column_box import Mesh
+from .common import BLACK, BLUE, GREY, panel_letter, plt
+
+
+def has_plate(column):
+    return bool(column.plate)
+
+
+def plate(column):
+    """Force against the plate and pressure beside it over its way; displacement and shear strain at the end."""
+    if not has_plate(column) or not column.maps:
+        return None
+    figure, panels = plt.subplot_mosaic([["force", "pressure"], ["map", "map"]], figsize=(7.2, 5.6),
+                                        height_ratios=(1, 1.25), layout="constrained")
+    way = 1e3 * column.plate["displacement"]
+    panels["force"].plot(way, column.plate["force"] / 1e3, color=BLACK)
+    panels["force"].axhline(column.plate["force"][0] / 1e3, color=GREY, linewidth=0.7)
+    panels["force"].set_ylabel("Force against the plate (kN/m)")
+    panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
+    panels["pressure"].set_ylabel("Normal stress beside it (kPa)")
+    for name in ("force", "pressure"):
+        panels[name].set_xlabel("Way of the plate into the soil (mm)")
+        panels[name].set_ylim(bottom=min(0, panels[name].get_ylim()[0]))
+    mesh, maps = Mesh(column.maps), column.maps
+    gamma = 100 * maps["gamma"][-1] if "gamma" in maps else 100 * abs(maps["gamma_xz"][-1])
+    elements = mesh.show(panels["map"], len(maps["time"]) - 1, gamma, 0, max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6),
+                         "magma_r")
+    figure.colorbar(elements, ax=panels["map"], label=r"$|\gamma_{xz}|$ (%)", fraction=0.03, pad=0.01)
+    panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)
+    panels["map"].set_xlabel("x (m)")
+    for axes, letter in zip(panels.values(), "abc"):
+        panel_letter(axes, letter)
+    return figure

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/box_motion.hpp"
+
+#include <cmath>
+
+namespace isostat
+{
+namespace
+{
+/// u and its x where `size` of u is largest, the smallest x if there are several; over all ranks.
+template <typename Size>
+std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &area, const Vector &displacement,
+                              const std::vector<Place> &places, unsigned component, const Size &size)
+{
+  struct
+  {
+    double size = 0;
+    int rank = 0;
+  } best;
+  MPI_Comm_rank(space.communicator(), &best.rank);
+  double found[2] = {0, 0};
+  for (std::size_t i = component; i < places.size(); i += 3)
+    if (const double u = displacement.local_element(i); area.local_element(i) > 0)
+      if (size(u) > best.size || (size(u) == best.size && size(u) > 0 && places[i][0] < found[1]))
+        {
+          best.size = size(u);
+          found[0] = u;
+          found[1] = places[i][0];
+        }
+  if (space.shared_out())
+    {
+      MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, space.communicator());
+      MPI_Bcast(found, 2, MPI_DOUBLE, best.rank, space.communicator());
+    }
+  return {found[0], found[1]};
+}
+} // namespace
+
+BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement)
+{
+  const Vector area = space.face_area(Face::surface);
+  const std::vector<Place> places = space.node_places();
+  const auto along = [&](unsigned component, auto size) {
+    return extreme(space, area, displacement, places, component, size);
+  };
+  BoxMotion motion;
+  const long node = space.find_dof(space.mesh().on_line(0), 0);
+  motion.on_line = node < 0 ? 0 : displacement.local_element(static_cast<unsigned>(node));
+  if (space.shared_out())
+    MPI_Allreduce(MPI_IN_PLACE, &motion.on_line, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
+  const auto put = [&](double &u, double &x, std::array<double, 2> found) { u = found[0], x = found[1]; };
+  put(motion.largest, motion.largest_x, along(0, [](double u) { return std::abs(u); }));
+  put(motion.deepest, motion.deepest_x, along(2, [](double u) { return -u; }));
+  put(motion.highest, motion.highest_x, along(2, [](double u) { return u; }));
+  motion.deepest = 0 - motion.deepest; // never -0
+  return motion;
+}
+} // namespace isostat

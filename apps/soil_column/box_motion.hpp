@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fem/space/discretisation.hpp"
+
+namespace isostat
+{
+/// How the surface of a box has moved against the box.
+struct BoxMotion
+{
+  double on_line = 0;                ///< along x, on the vertical of the histories, m
+  double largest = 0, largest_x = 0; ///< along x, by size; where it was at the start, m
+  double deepest = 0, deepest_x = 0; ///< settlement, m; where
+  double highest = 0, highest_x = 0; ///< heave, m; where
+};
+
+/// @param displacement  since the start   Collective.   tested: tests/apps/box_test.py
+BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement);
+} // namespace isostat

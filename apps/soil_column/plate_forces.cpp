@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/soil_column/plate_forces.hpp"
+
+#include <limits>
+#include <numeric>
+
+namespace isostat
+{
+void PlateResult::follow(double displacement, double force, double step_residual)
+{
+  if (displacement == 0)
+    start = largest = smallest = force;
+  if (force > largest)
+    largest = force, largest_at = displacement;
+  if (force < smallest)
+    smallest = force, smallest_at = displacement;
+  last = force;
+  residual = std::max(residual, step_residual);
+}
+
+double soil_weight(const ColumnScene &scene)
+{
+  double weight = 0;
+  for (const ColumnLayer &layer : scene.layers)
+    weight += scene.water.gravity * layer.density * layer.thickness * scene.mesh.width;
+  return weight;
+}
+
+PlateForces::PlateForces(const ColumnScene &scene, const FiniteElementSpace &space, std::span<const Stress> stresses)
+    : plate_(scene.plate), patch_(plate_patch(scene)), space_(space), area_(space.face_area(patch_face(0)))
+{
+  for (std::size_t i = 0; i < area_.locally_owned_size(); i += 3)
+    length_ += area_.local_element(i);
+  find_points();
+  find_start(scene, stresses);
+}
+
+/// Internal forces less the weight, a part of which acts on nodes of the plate.
+void PlateForces::find_start(const ColumnScene &scene, std::span<const Stress> stresses)
+{
+  Vector force = space_.displacement_vector();
+  space_.add_internal_force(stresses, force);
+  const std::vector<Vector> volumes = space_.layer_volumes();
+  for (std::size_t i = 0; i < area_.locally_owned_size(); ++i)
+    if (area_.local_element(i) > 0)
+      {
+        start_[i % 3] += force.local_element(i);
+        for (std::size_t k = 0; i % 3 == 2 && k < volumes.size(); ++k)
+          start_[2] += scene.water.gravity * scene.layers[k].density * volumes[k].local_element(i);
+      }
+}
+
+std::array<double, 2> PlateForces::forces(const Statics &run) const
+{
+  const unsigned normal = plate_.axis(), along = 2 - normal;
+  return {plate_.inwards() * (start_[normal] + run.reaction({patch_face(0), normal})),
+          plate_.rough ? start_[along] + run.reaction({patch_face(0), along}) : 0.0};
+}
+
+double PlateForces::pressure(std::span<const Stress> stresses) const
+{
+  double sum = 0, weight = 0;
+  for (std::size_t q : points_)
+    {
+      sum -= space_.weight[q] * stresses[q][plate_.axis()];
+      weight += space_.weight[q];
+    }
+  return sum / weight;
+}
+
+double PlateForces::distance(const Place &place) const
+{
+  switch (plate_.on)
+    {
+    case PlateSide::surface:
+      return space_.mesh().depth(place);
+    case PlateSide::base:
+      return place[2];
+    case PlateSide::left:
+      return place[0];
+    default:
+      return space_.mesh().width[0] - place[0];
+    }
+}
+
+/// Of the elements at the plate the row of points that is nearest to it.
+void PlateForces::find_points()
+{
+  const auto beside = [&](std::size_t q) {
+    const double along = space_.position[q][2 - plate_.axis()];
+    return along > patch_.from && along < patch_.to;
+  };
+  double nearest = std::numeric_limits<double>::max();
+  for (std::size_t q = 0; q < space_.n_points(); ++q)
+    if (beside(q))
+      nearest = std::min(nearest, distance(space_.position[q]));
+  for (std::size_t q = 0; q < space_.n_points(); ++q)
+    if (beside(q) && distance(space_.position[q]) < 1.5 * nearest)
+      points_.push_back(q);
+}
+} // namespace isostat

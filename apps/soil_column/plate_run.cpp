@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A rigid plate on a part of the boundary of a box moves slowly: footing, trapdoor, wall.
+#include "apps/soil_column/plate_forces.hpp"
+#include "apps/soil_column/statics_run.hpp"
+
+namespace isostat
+{
+namespace
+{
+StaticsSettings settings_of(const ColumnScene &scene)
+{
+  const Plate &plate = scene.plate;
+  const double way = plate.inwards() * plate.displacement;
+  StaticsSettings settings;
+  settings.displacements = {{{patch_face(0), plate.axis()}, [way](double t, const Place &) { return way * t; }}};
+  settings.newton = plate.newton;
+  settings.min_force = 1e-3 * soil_weight(scene); // before the plate has a force of its own
+  return settings;
+}
+
+const std::vector<RecordColumn> columns = {
+    {"step"},           {"displacement", "m"}, {"force", "N/m"}, {"shear_force", "N/m"},
+    {"pressure", "Pa"}, {"iterations"},        {"trials"},       {"substeps"},
+    {"rejected"},       {"residual"}};
+
+template <class Result, class Visit>
+void for_each_number(Result &r, const Visit &visit)
+{
+  visit("plate_start", r.start), visit("plate_last", r.last), visit("plate_residual", r.residual);
+  visit("plate_largest", r.largest), visit("plate_largest_at", r.largest_at);
+  visit("plate_smallest", r.smallest), visit("plate_smallest_at", r.smallest_at);
+}
+
+class PlateRun : public StaticsRun<2>
+{
+public:
+  explicit PlateRun(const ColumnRequest &request)
+      : StaticsRun<2>(request, std::array<Motion, 3>{}, settings_of(request.scene)),
+        forces_(scene_, space_, run_.stresses())
+  {
+    if (!resumed_)
+      return;
+    for_each_number(result_, [&](const char *name, double &value) { value = resumed_->number(name); });
+    const std::vector<double> &start = resumed_->vector("plate_in_situ");
+    forces_.set_start({start.at(0), start.at(1), start.at(2)});
+  }
+
+private:
+  void start() override
+  {
+    progress_.say(fmt::format("{} points, {} steps{}", space_.n_points(), scene_.plate.steps,
+                              resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
+    on_first_rank([&] {
+      rows_ = std::make_unique<Recorder>(request_.folder / "plate", columns,
+                                         static_cast<std::size_t>(resumed_ ? run_.n_steps() + 1 : 0));
+    });
+    if (!resumed_)
+      record_plate();
+  }
+
+  void step() override
+  {
+    const Stopwatch watch;
+    run_.step((static_cast<double>(run_.n_steps()) + 1) / scene_.plate.steps - run_.time());
+    times_.solver += watch.seconds();
+    ++times_.steps;
+    record_plate();
+  }
+
+  void record_plate()
+  {
+    record();
+    const auto [force, shear] = forces_.forces(run_);
+    const double pressure = forces_.pressure(run_.stresses()), moved = run_.time() * scene_.plate.displacement;
+    const StaticsEffort &effort = run_.effort();
+    if (rows_)
+      rows_->append(std::vector<double>{static_cast<double>(run_.n_steps()), moved, force, shear, pressure,
+                                        1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
+                                        1.0 * effort.rejected, run_.residual()});
+    result_.follow(moved, force, run_.residual());
+    progress_.say(
+        fmt::format("step {:>4} of {}  displacement {:+.5g} m  force {:.5g} kN/m  pressure {:.5g} kPa  {} trials, "
+                    "{} sub-steps, residual {:.1e}",
+                    run_.n_steps(), scene_.plate.steps, moved, force / 1e3, pressure / 1e3, effort.trials,
+                    effort.substeps, run_.residual()));
+  }
+
+  bool is_done() const override { return run_.n_steps() >= scene_.plate.steps; }
+  double n_total() const override { return scene_.plate.steps; }
+  void add_to(ColumnCheckpoint &checkpoint) override
+  {
+    if (rows_)
+      rows_->flush();
+    for_each_number(result_, [&](const char *name, double value) { checkpoint.numbers[name] = value; });
+    checkpoint.vectors["plate_in_situ"] = {forces_.start().begin(), forces_.start().end()};
+  }
+  void add_results(ColumnSummary &summary) override
+  {
+    result_.length = forces_.length();
+    summary.plate = result_;
+  }
+
+  PlateForces forces_;
+  PlateResult result_;
+  std::unique_ptr<Recorder> rows_;
+};
+} // namespace
+
+RunResult run_plate(const ColumnRequest &request) { return PlateRun(request).go(); }
+} // namespace isostat

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/soil_column/column_run.hpp"
+#include "fem/solve/statics.hpp"
+
+namespace isostat
+{
+/// A run whose steps are equilibria, each of which is recorded.
+template <int dim>
+class StaticsRun : public ColumnRun<dim, Statics>
+{
+  using Run = ColumnRun<dim, Statics>;
+
+public:
+  using Run::Run;
+
+protected:
+  using Run::space_, Run::run_, Run::files_, Run::follower_, Run::instant_;
+
+  /// A row, a profile and a ParaView file of every step.
+  void record()
+  {
+    const Vector &u = run_.displacement();
+    instant_.step = run_.n_steps();
+    instant_.time = run_.time();
+    instant_.displacement.assign(u.begin(), u.begin() + u.locally_owned_size());
+    instant_.velocity.assign(instant_.displacement.size(), 0.0);
+    instant_.acceleration = instant_.velocity;
+    gradients_of(space_, u, instant_.gradients);
+    instant_.stresses.assign(run_.stresses().begin(), run_.stresses().end());
+    instant_.pressure = run_.point_pressure();
+    follower_.follow(u, instant_.pressure, run_.time());
+    this->write([&] {
+      files_.record(instant_);
+      files_.write_rows();
+      files_.profile(instant_);
+      files_.paraview(instant_);
+    });
+  }
+
+  double time_of(std::uint64_t) const override { return run_.time(); } ///< of the last good sub-step
+  bool has_long_steps() const override { return true; }
+};
+} // namespace isostat

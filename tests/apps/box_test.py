@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""soil_column with a box of soil between walls whose surface is inclined: what it leaves, on how many ranks and after
+which restarts."""
+import json
+import re
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+
+from column_support import ColumnTest, settings
+from support import PATIENCE, main
+
+BOX = """title = "slope in a box"
+[mesh]
+dimension = 2
+width = "12 m"
+cells_across = 6
+sides = "walls"
+ground_x = ["0 m", "12 m"]
+ground_z = ["3.6 m", "2.4 m"]
+[water]
+drainage = "coupled"
+[[layer]]
+name = "sand"
+thickness = "3.6 m"
+cells = 3
+density = "1950 kg/m3"
+permeability = "1e-4 m/s"
+material = "iwan"
+shear_velocity = "140 m/s"
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.2 g"
+frequency = "2 Hz"
+duration = "2 s"
+ramp = "0.5 s"
+[analysis]
+duration = "2 s"
+[output]
+depths = ["0.5 m", "2 m"]
+profile_interval = "0.1 s"
+paraview_interval = "1 s"
+"""
+DISTRIBUTED = settings(mesh__distributed="true", analysis__duration="0.5 s")
+
+
+class Box(ColumnTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("box.toml", BOX)
+
+    def maps(self, name):
+        with h5py.File(self.folder / name / "maps.h5") as file:
+            return {key: np.asarray(values) for key, values in file.items()}
+
+    def test_what_it_leaves(self):
+        rows, summary = self.rows_of(BOX)
+        moved = summary["surface_motion"]
+        self.assertEqual(moved["x"], 6)
+        self.assertGreater(moved["along_x"], 0.005, "it flows down the slope, towards +x")
+        self.assertGreater(moved["settlement"], 0.002)
+        self.assertLess(moved["settlement_x"], 6, "it sinks at the upper end")
+        self.assertGreater(moved["heave_x"], 6, "and rises at the lower one")
+        self.assert_near(rows["d0_depth"][0], 0.5, 0.4, "the nearest of points 0.6 m apart")
+        maps = self.maps("run")
+        n = 6 * 3
+        self.assertEqual(maps["corner_x"].shape, (4 * n,))
+        self.assertEqual(maps["ru"].shape, (len(maps["time"]), 9 * n))
+        area = 0.0  # of polygons: corners go round each element anticlockwise
+        for x, z in zip(maps["corner_x"].reshape(-1, 4), maps["corner_z"].reshape(-1, 4)):
+            part = 0.5 * np.sum(x * np.roll(z, -1) - np.roll(x, -1) * z)
+            self.assertGreater(part, 0)
+            area += part
+        self.assert_near(area, 12 * 3, 1e-9, "round-off")
+        walls = np.isin(maps["corner_x"], (0, 12))
+        self.assertEqual(np.abs(maps["displacement_x"][:, walls]).max(), 0)
+        base = maps["corner_z"] == 0
+        self.assertEqual(np.abs(maps["displacement_z"][:, base]).max(), 0)
+        text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
+        self.assertRegex(text, r"surface moved +\+0\.\d+ m along x at x = 6 m")
+
+    def test_at_rest_it_stays_still_to_the_bit(self):
+        rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
+        self.assertEqual(summary["surface_motion"]["largest"], 0)
+        self.assertGreater(np.abs(rows["d1_tau_xz"][0]), 10, "the slope has a static shear stress")
+        for name in ("surface_ux", "surface_uz", "d0_u", "d1_u"):
+            self.assertEqual(np.abs(rows[name]).max(), 0, name)
+
+    def test_a_level_box_far_from_its_walls_is_a_column(self):
+        level = re.sub(r"ground_. = .*\n", "", BOX).replace('"12 m"', '"120 m"').replace("cells_across = 6",
+                                                                                       "cells_across = 30")
+        box, _ = self.rows_of(level, "level")
+        column, _ = self.rows_of(re.sub(r"\[mesh\][^\[]*", "", level), "column")
+        for name in ("surface_ux", "d1_ru"):
+            self.assert_near(box[name], column[name], 0.02 * np.abs(column[name]).max(),
+                             f"{name}: 60 m, fifteen depths, from the walls; nearest points differ in places of Gauss")
+
+    def test_ranks_are_alike_to_the_bit(self):
+        for n in (1, 2, 3):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *settings(analysis__duration="0.3 s")))
+            self.assert_same_files("on1", f"on{n}")
+
+    def test_one_mesh_over_ranks(self):
+        found = {}
+        options = [part for part in DISTRIBUTED]
+        scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
+        for n in (1, 2, 4):
+            self.assert_done(self.run_on_ranks(n, scene, "-o", f"on{n}", *options))
+            found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
+            for key in ("along_x", "largest", "settlement", "heave"):
+                one = found[1]["surface_motion"][key]
+                self.assert_near(found[n]["surface_motion"][key], one, 1e-7 * abs(one),
+                                 f"round-off of sums over the ranks ({key})")
+
+    def test_goes_on_where_it_was_stopped(self):
+        options = settings(output__checkpoint="1e-9 min")
+        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
+        with subprocess.Popen(self.command("soil_column", self.scene, "-o", "parts", "--no-figures", *options),
+                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+            end = time.time() + 60 * PATIENCE
+            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGKILL)
+            process.communicate(timeout=30 * PATIENCE)
+        self.assert_done(self.run_on_ranks(2, self.scene, "-o", "parts", "--resume", *options))
+        self.assert_same_files("whole", "parts")
+
+
+if __name__ == "__main__":
+    main()

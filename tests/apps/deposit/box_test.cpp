@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A box of soil between walls in a scene: what it becomes, and what is refused.
+#include "apps/deposit/box.hpp"
+
+#include "tests/apps/deposit/scene_texts.hpp"
+#include "tests/support/refusal.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+std::string box(const std::string &more = "", const std::string &of_mesh = "")
+{
+  return sand + "permeability = \"1e-5 m/s\"\n[mesh]\ndimension = 2\nwidth = \"10 m\"\nsides = \"walls\"\n" + of_mesh +
+         more + dynamic;
+}
+
+const std::string ground = "ground_x = [\"0 m\", \"4 m\", \"10 m\"]\nground_z = [\"5 m\", \"5 m\", \"2 m\"]\n";
+
+void expect_refusal(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
+{
+  test::expect_parts(test::refusal([&] { parse_column_scene(text, "box.toml", overrides); }), parts);
+}
+
+TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
+{
+  const ColumnScene scene = parse_column_scene(
+      box("[load]\nsurcharge = \"20 kPa\"\nsurcharge_from = \"4 m\"\nsurcharge_to = \"6 m\"\n", ground), "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
+  const MeshSpec mesh = mesh_spec(scene);
+  EXPECT_EQ(mesh.ground.at(7), 3.5);
+  EXPECT_EQ(mesh.line[0], 5); // the middle
+  EXPECT_EQ(mesh.ground_at(5), 4.5);
+  EXPECT_EQ(scene.load.surcharge_at(3.9), 0);
+  EXPECT_EQ(scene.load.surcharge_at(4), 1e4);
+  EXPECT_EQ(scene.load.surcharge_at(5), 2e4);
+  EXPECT_EQ(scene.load.surcharge_at(6.1), 0);
+}
+
+TEST(BoxScene, WithoutWallsAllIsAsItWas)
+{
+  const ColumnScene scene = parse_column_scene(sand + dry + dynamic, "s");
+  EXPECT_EQ(scene.mesh.sides, Sides::tied);
+  EXPECT_TRUE(mesh_spec(scene).ground.is_level());
+  EXPECT_EQ(mesh_spec(scene).line[0], 0);
+  ColumnLoad load;
+  load.surcharge = 3;
+  EXPECT_EQ(load.surcharge_at(123), 3);
+}
+
+TEST(BoxScene, RefusesKeysOfABoxWhereTheSidesAreTied)
+{
+  expect_refusal(sand + dry + "[output]\nx = \"1 m\"\n" + dynamic, {"box.toml:9", "output.x", "belongs to a box"});
+  expect_refusal(sand + dry + "[load]\nsurcharge_to = \"1 m\"\n" + dynamic, {"load.surcharge_to", "sides = \"walls\""});
+}
+
+TEST(BoxScene, RefusesWhatCannotBeInABox)
+{
+  expect_refusal(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
+  expect_refusal(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
+                 {"base.kind", "must be \"rigid\""});
+  expect_refusal(box("[slope]\nangle = \"5 deg\"\n"), {"slope.angle", "ground_x"});
+  expect_refusal(box("[water]\ntable = \"1 m\"\n"), {"water.table", "must be 0 m"});
+}
+
+TEST(BoxScene, RefusesGroundThatIsNone)
+{
+  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"5 m\"]\n"),
+                 {"mesh.ground_x", "2 points", "1;"});
+  expect_refusal(box("", "ground_x = [\"3 m\", \"3 m\"]\nground_z = [\"5 m\", \"4 m\"]\n"), {"3 m after 3 m"});
+  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"4 m\", \"3 m\"]\n"),
+                 {"mesh.ground_z", "must reach 5 m", "reaches 4 m"});
+}
+
+TEST(BoxScene, RefusesPlacesOutside)
+{
+  expect_refusal(box("[output]\nx = \"10 m\"\n"), {"output.x", "[0 m, 10 m)"});
+  expect_refusal(box("[load]\nsurcharge_to = \"11 m\"\n"), {"load.surcharge_to", "from 0 m to 11 m of 10 m"});
+  expect_refusal(box("[load]\nsurcharge_from = \"5 m\"\nsurcharge_to = \"4 m\"\n"), {"from 5 m to 4 m"});
+}
+} // namespace
+} // namespace isostat
