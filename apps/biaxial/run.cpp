@@ -12,6 +12,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace isostat
 {
@@ -34,10 +35,19 @@ const char *method_of(const NewtonSettings &newton)
   return newton.relaxation_iterations == 0 ? "Newton's method" : "Newton's method and relaxation";
 }
 
+constexpr double small = 0.1; ///< strain and rotation [-] up to which geometry of second order is a matter of per cent
+
 const std::vector<RecordColumn> columns = {
     {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
     {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
     {"shear_mean"}, {"shear_quantile"}, {"shear_max"}};
+
+std::string beyond_small(const BiaxialSummary &s)
+{
+  return fmt::format("from an axial strain of {:.3g} % on strains or rotations of the mesh are beyond {:g} %, but its "
+                     "geometry takes them as small",
+                     100 * *s.large_from, 100 * small);
+}
 
 /// One run from its start to its end.
 class BiaxialRun
@@ -110,6 +120,8 @@ private:
         lateral -= part * gradients[q][0];
         mean += part * point.shear;
         shear.push_back(point.shear);
+        summary_.max_strain = std::max(summary_.max_strain, 0.5 * (std::abs(point.volumetric) + point.shear));
+        summary_.max_rotation = std::max(summary_.max_rotation, 0.5 * std::abs(gradients[q][2] - gradients[q][6]));
       }
     std::sort(shear.begin(), shear.end());
     const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
@@ -123,6 +135,11 @@ private:
     summary_.volumetric_strain = volume;
     summary_.last_stress = stress;
     summary_.localisation = median > 0 ? quantile / median : 1;
+    if (!summary_.large_from && std::max(summary_.max_strain, summary_.max_rotation) > small)
+      {
+        summary_.large_from = vertical;
+        progress_.say("  note: " + beyond_small(summary_));
+      }
     if (summary_.steps == 0 || stress > summary_.peak_stress)
       {
         summary_.peak_stress = stress;
@@ -186,6 +203,10 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
                       s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
   text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
   text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
+  text += fmt::format("  at a point          strain up to {:.3g} %, rotation up to {:.3g} deg\n", 100 * s.max_strain,
+                      s.max_rotation * 180 / std::numbers::pi);
+  if (s.large_from)
+    text += "  warning             " + beyond_small(s) + "\n";
   text += fmt::format("  equilibrium         {}: {} iterations, {} trials, {} sub-steps, {} rejected\n",
                       method_of(scene.newton), s.iterations, s.trials, s.substeps, s.rejected);
   if (!s.complete)
@@ -211,6 +232,9 @@ Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
           {"last_stress_Pa", s.last_stress},
           {"volumetric_strain", s.volumetric_strain},
           {"localisation", s.localisation},
+          {"max_strain", s.max_strain},
+          {"max_rotation_deg", s.max_rotation * 180 / std::numbers::pi},
+          {"large_strain_from", s.large_from ? Json(*s.large_from) : Json()},
           {"iterations", s.iterations},
           {"trials", s.trials},
           {"substeps", s.substeps},

@@ -4,6 +4,8 @@
 #include "apps/common/scene_program.hpp"
 #include "base/files/json.hpp"
 
+#include <optional>
+
 namespace isostat
 {
 using BiaxialRequest = RunRequest<BiaxialScene>;
@@ -19,6 +21,9 @@ struct BiaxialSummary
   double last_stress = 0;                  ///< Pa
   double volumetric_strain = 0;            ///< at the end, compression positive
   double localisation = 0;                 ///< 90 % quantile of the points' shear strain over its median; uniform: 1
+  double max_strain = 0;   ///< largest amount of a principal strain of a point so far: the mesh takes it as small
+  double max_rotation = 0; ///< largest rotation of a point in the plane so far, (u_x,z - u_z,x)/2, alike, rad
+  std::optional<double> large_from; ///< axial strain at which one of the two was first beyond a tenth
   std::size_t iterations = 0, trials = 0, substeps = 0, rejected = 0, tangents = 0;
   double wall_seconds = 0, material_seconds = 0, tangent_seconds = 0, rve_steps = 0;
 };

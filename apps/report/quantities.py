@@ -28,8 +28,9 @@ SHOWN = {
     "biaxial": {
         "steps": "-", "points": "-", "width_m": "m", "height_m": "m", "cells_across": "-", "cells_up": "-",
         "confinement_Pa": "kPa", "axial_strain": "%", "peak_stress_Pa": "kPa", "peak_strain": "%",
-        "last_stress_Pa": "kPa", "volumetric_strain": "%", "localisation": "-", "iterations": "-", "trials": "-",
-        "substeps": "-", "rejected": "-", "tangents": "-", "rve_steps": "-"},
+        "last_stress_Pa": "kPa", "volumetric_strain": "%", "localisation": "-", "max_strain": "%",
+        "max_rotation_deg": "deg", "large_strain_from": "%", "iterations": "-", "trials": "-", "substeps": "-",
+        "rejected": "-", "tangents": "-", "rve_steps": "-"},
 }
 IN_SI = ("_deg", "_m", "_Pa")  # ends of names that tell the unit in the file
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/neighbours/periodic_grid.hpp"
 
+#include "dem/domain/lattice.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace isostat
 {
@@ -14,6 +17,7 @@ using Index3 = std::array<int, 3>;
 /// Grains sorted into grid cells by their wrapped places: grains of cell c are order[begin[c] .. begin[c+1]).
 struct WrappedCells
 {
+  Eigen::Matrix3i periods;     ///< the edges that rows run along, in whole numbers of those given
   std::array<Vec3, 27> offset; ///< of images through -1, 0, 1 faces along each edge, m
   Index3 n;
   std::vector<Eigen::Vector3i> turns; ///< whole edges that were taken off each grain's place
@@ -40,11 +44,12 @@ Index3 cells_along(const Mat3 &to_fraction, double minimum, std::size_t n_grains
   return n;
 }
 
-WrappedCells sort_into_cells(const Packing &packing, const Mat3 &edges, double minimum)
+WrappedCells sort_into_cells(const Packing &packing, const Mat3 &given_edges, double minimum)
 {
   const std::size_t n_grains = packing.n_grains();
-  const Mat3 to_fraction = edges.inverse();
   WrappedCells cells;
+  cells.periods = compact_periods(given_edges);
+  const Mat3 edges = given_edges * cells.periods.cast<double>(), to_fraction = edges.inverse();
   for (int image = 0; image < 27; ++image)
     cells.offset[image] = edges * Eigen::Vector3i(image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1).cast<double>();
   cells.n = cells_along(to_fraction, minimum, n_grains);
@@ -116,7 +121,7 @@ void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const
       const double dx = q[0] - x, dy = q[1] - y, dz = q[2] - z, reach = reach_i + q[3];
       const std::uint32_t j = *later;
       if (dx * dx + dy * dy + dz * dz < reach * reach)
-        out.push_back({j, image_code(cells.turns[i] - cells.turns[j] + shift)});
+        out.push_back({j, image_code(cells.periods * (cells.turns[i] - cells.turns[j] + shift))});
     }
 }
 
@@ -133,6 +138,15 @@ void collect_partners(const WrappedCells &cells, std::uint32_t i, double skin, s
         }
 }
 } // namespace
+
+double max_reach(const Packing &packing)
+{
+  std::vector<double> radii = packing.radii();
+  if (radii.size() < 2)
+    return radii.empty() ? 0 : 2 * radii[0];
+  std::partial_sort(radii.begin(), radii.begin() + 2, radii.end(), std::greater());
+  return radii[0] + radii[1];
+}
 
 std::pair<std::vector<ContactList::Pair>, std::vector<ImageCode>> find_pairs(const Packing &packing, const Mat3 &edges,
                                                                              double skin)

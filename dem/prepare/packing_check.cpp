@@ -2,6 +2,7 @@
 #include "dem/prepare/packing_check.hpp"
 
 #include "base/error.hpp"
+#include "dem/domain/lattice.hpp"
 #include "dem/neighbours/cell_grid.hpp"
 #include "dem/neighbours/periodic_grid.hpp"
 
@@ -22,7 +23,7 @@ void look_at_pairs(const Snapshot &s, PackingFigures &f)
   std::vector<ImageCode> images;
   if (!s.cell)
     pairs = find_pairs(s.grains, 0.0);
-  else if (f.overlaps_known = s.cell->widths().minCoeff() > 4.01 * s.grains.max_radius(); f.overlaps_known)
+  else if (f.overlaps_known = shortest_period(s.cell->edges) > 2.005 * max_reach(s.grains); f.overlaps_known)
     std::tie(pairs, images) = find_pairs(s.grains, s.cell->edges, 0.0);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     {
@@ -87,7 +88,7 @@ std::string figures_text(const PackingFigures &f, const Snapshot &s)
 {
   const bool leans = s.cell && !Mat3(s.cell->edges).isDiagonal(1e-12);
   const std::string overlap =
-      !f.overlaps_known ? "not looked at: the cell is narrower than two of its grains"
+      !f.overlaps_known ? "not looked at: the cell repeats itself within two of its grains"
       : f.overlap > 0   ? fmt::format("{:.3g} % of the radius, grains {} and {}", 100 * f.overlap, f.first, f.second)
                         : "none";
   return fmt::format("  grains           {}\n  d50              {:.4g} mm\n  diameters        {:.4g} to {:.4g} mm\n"

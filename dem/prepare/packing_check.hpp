@@ -20,7 +20,7 @@ struct PackingFigures
   std::size_t n_deep = 0;                    ///< pairs that overlap by more than too_deep
   double beyond_wall = 0;                    ///< largest part of a radius that stands beyond a wall [-]
   std::uint32_t outermost = 0;               ///< id of that grain
-  bool overlaps_known = true; ///< false: the cell is narrower than two of its grains, so that pairs meet twice
+  bool overlaps_known = true; ///< false: the cell repeats itself within two of its grains, so that pairs meet twice
 };
 
 /// Overlap, of the smaller radius, above which a packing is no state that contact laws know.

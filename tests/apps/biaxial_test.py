@@ -96,6 +96,21 @@ class Biaxial(AppTest):
         self.assertEqual(inside.sum(), 4)
         self.assertGreater(maps["shear_strain"][-1][inside].min(), maps["shear_strain"][-1][~inside].mean())
 
+    def test_strains_that_the_mesh_cannot_take_as_small_are_told_of(self):
+        for strain, large in ((0.05, False), (0.24, True)):
+            result = self.run_block(ELASTIC.format(degree=1), "--set", f"test.axial_strain={strain}")
+            self.assert_done(result)
+            summary = json.loads((self.folder / "run/summary.json").read_text(encoding="utf-8"))
+            self.assert_close(summary["max_strain"], strain, 1e-9, "a direct solution of a uniform block")
+            self.assert_below(summary["max_rotation_deg"], 1e-9, "round-off: a uniform block does not rotate")
+            text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
+            self.assertIn(f"strain up to {100 * strain:.3g} %, rotation up to", text)
+            self.assertEqual(text.count("beyond 10 %"), int(large))
+            if large:
+                self.assert_near(summary["large_strain_from"], 0.12, 1e-12, "the first of two steps, of 12 % each")
+            else:
+                self.assertIsNone(summary["large_strain_from"])
+
     def test_packings(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
         self.assert_done(self.run_app("specimen_library", scene, *FEW, "-n", "2", "-o", "library.h5"))

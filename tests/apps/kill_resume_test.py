@@ -104,6 +104,18 @@ class ResumeInACell(Resume):
                           output="energy = true", motion="inertial_number = 1e-4")
 
 
+class ResumeInASmallCell(Resume):
+    """The same where a cell of few grains is sheared by 200 %, exchanged for others of its lattice on the way."""
+
+    def scene_text(self):
+        stages = (REBALANCE.format(steps=2500) + '[[stage]]\nkind = "undrained-simple-shear"\nstrain = 2\n'
+                  'strain_rate = "60 1/s"\n' + '[[stage]]\nkind = "undrained-cyclic-simple-shear"\n'
+                  'stress_ratio = 0.1\nmax_steps = 8000\n')
+        text = tiny_scene(specimen='domain = "periodic-cell"\npreparation_friction = "18 deg"', stages=stages,
+                          output="energy = true", motion="inertial_number = 1e-4")
+        return text.replace("grains = 200", "grains = 70").replace("2.7 mm", "1.9129 mm")
+
+
 class Output(AppTest):
     """Output never changes a trajectory."""
 

@@ -22,6 +22,7 @@ struct Watcher : RunObserver
   void record(const Assembly &a, const DriveState &, const Observation &seen, bool) override
   {
     rows.push_back({seen, -a.stress(), a.volume()});
+    narrowest = std::min(narrowest, a.cell()->widths().minCoeff());
   }
   bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
   double max_change_of_volume() const
@@ -32,6 +33,7 @@ struct Watcher : RunObserver
     return worst;
   }
   std::vector<Row> rows;
+  double narrowest = HUGE_VAL; ///< m
   std::uint64_t stop_at = 0;
 };
 
@@ -178,22 +180,71 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
                       "the overshoot of a reversal, at most 500 Pa, and rows that miss the crest");
 }
 
+namespace
+{
+/// Stops at each of these steps and goes on from what a checkpoint would hold, to the end of `whole`.
+void expect_same_end(const Stage &stage, const Snapshot &initial, const std::vector<std::uint64_t> &stops,
+                     const Snapshot &whole)
+{
+  Snapshot now = initial;
+  DriveState state;
+  Watcher watcher;
+  for (const std::uint64_t stop : stops)
+    {
+      Assembly assembly(now);
+      watcher.stop_at = stop;
+      ASSERT_EQ(run_programme(programme(stage), assembly, state, watcher), RunOutcome::interrupted);
+      now = assembly.checkpoint();
+    }
+  Assembly last(now);
+  watcher.stop_at = 0;
+  ASSERT_EQ(run_programme(programme(stage), last, state, watcher), RunOutcome::finished);
+  now = last.checkpoint();
+  EXPECT_EQ(now.grains.position, whole.grains.position);
+  EXPECT_EQ(now.grains.spin, whole.grains.spin);
+  EXPECT_EQ(now.cell->edges, whole.cell->edges);
+  EXPECT_EQ(now.cell->rotation, whole.cell->rotation);
+  EXPECT_EQ(now.cell->flips, whole.cell->flips);
+}
+} // namespace
+
 TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)
 {
   const Stage stage = test::sheared_to<UndrainedSimpleShear>(2e-3);
-  const Result whole = run(stage, medium());
-  Assembly first(medium());
-  DriveState state;
-  Watcher watcher;
-  watcher.stop_at = whole.end.step / 2;
-  ASSERT_EQ(run_programme(programme(stage), first, state, watcher), RunOutcome::interrupted);
-  Assembly second(first.checkpoint());
-  watcher.stop_at = 0;
-  ASSERT_EQ(run_programme(programme(stage), second, state, watcher), RunOutcome::finished);
-  const Snapshot end = second.checkpoint();
-  EXPECT_EQ(end.grains.position, whole.end.grains.position);
-  EXPECT_EQ(end.grains.spin, whole.end.grains.spin);
-  EXPECT_EQ(end.cell->edges, whole.end.cell->edges);
-  EXPECT_EQ(end.cell->rotation, whole.end.cell->rotation);
+  const Snapshot whole = run(stage, medium()).end;
+  expect_same_end(stage, medium(), {whole.step / 2}, whole);
+}
+
+TEST(CellProgramme, ASmallCellIsShearedToThreeHundredPercent)
+{
+  // 70 grains: where it leans, the cell is narrower than two of the largest, but no grain is near two images of another
+  test::CellRecipe recipe;
+  recipe.grading = test::small_grading(70);
+  recipe.degrees = 18;
+  recipe.law->young = 5e8; // soft: a fifth of the steps
+  const Snapshot small = test::prepare_in_cell(recipe);
+  auto stage = test::sheared_to<UndrainedSimpleShear>(3);
+  stage.strain_rate = 20;
+  const Result result = run(stage, small, 500);
+  double tau = 0, sigma = 0;
+  for (const auto &row : result.watcher.rows)
+    if (row.seen.gamma > 1)
+      {
+        tau += row.seen.tau;
+        sigma += row.stress(1, 1);
+      }
+  const auto &last = result.watcher.rows.back();
+  const double diameters = result.watcher.narrowest / (2 * small.grains.max_radius());
+  std::printf("cell down to %.3f diameters wide; %llu steps, %llu flips; tau/sigma_v %.3f on average beyond 100 %%, p' "
+              "%.0f kPa at the end\n",
+              diameters, static_cast<unsigned long long>(result.end.step),
+              static_cast<unsigned long long>(result.end.cell->flips), tau / sigma, last.stress.trace() / 3e3);
+  EXPECT_BELOW_BECAUSE(diameters, 2, "the cell has been narrow");
+  EXPECT_NEAR_BECAUSE(last.seen.gamma, 3, 1e-3, "the last step overshoots");
+  EXPECT_GE(result.end.cell->flips, 3u);
+  EXPECT_BELOW_BECAUSE(result.watcher.max_change_of_volume(), 1e-12,
+                       "the volume is set from its logarithm, so that it does not drift");
+  EXPECT_NEAR_BECAUSE(tau / sigma, 0.6, 0.2, "560 grains of the same kind: 0.59; so few scatter by 0.1");
+  expect_same_end(stage, small, {result.end.step / 5, result.end.step / 2}, result.end);
 }
 } // namespace isostat

@@ -36,6 +36,45 @@ TEST(RveElement, EachTrialStartsFromTheCommittedState)
   EXPECT_EQ(tried.pack(), straight.pack());
 }
 
+TEST(RveElement, TrialsLeaveNoTraceWhereTheCellIsExchangedForOthersOfItsLattice)
+{
+  // 70 grains sheared by 180 %; once it leans their cell is narrower than two of them, but no two images are as near
+  test::CellRecipe recipe = test::soft_recipe(4, 100e3);
+  recipe.grading = test::small_grading(70);
+  RveSettings settings;
+  settings.motion.strain_rate = 100;
+  settings.max_increment = 0.05;
+  const ElementSettings how = {settings, true, 6};
+  RveElement tried(Rve(test::prepare_in_cell(recipe), settings), how);
+  RveElement straight = tried;
+  std::uint64_t flips = 0;
+  int trials_through_a_flip = 0;
+  double narrowest = HUGE_VAL;
+  const Assembly &now = tried.rve().assembly();
+  for (int k = 0; k < 90; ++k)
+    {
+      tried.trial(shear(0.03)); // also through every flip that comes next
+      trials_through_a_flip += now.cell()->flips != flips;
+      if (k % 3 == 0)
+        {
+          tried.rollback();
+          ASSERT_EQ(now.cell()->flips, flips);
+        }
+      const ElementTrial got = tried.trial(shear(0.02)), expected = straight.trial(shear(0.02));
+      ASSERT_TRUE(expected.accepted) << expected.reason;
+      ASSERT_EQ(got.stress, expected.stress) << k;
+      tried.commit(), straight.commit();
+      flips = now.cell()->flips;
+      narrowest = std::min(narrowest, now.cell()->widths().minCoeff() / (2 * now.packing().max_radius()));
+    }
+  std::printf("%llu flips, %d of them in trials that were given up; the cell was %.3f diameters wide\n",
+              static_cast<unsigned long long>(flips), trials_through_a_flip, narrowest);
+  EXPECT_GE(flips, 2u);
+  EXPECT_GE(trials_through_a_flip, 2);
+  EXPECT_LT(narrowest, 2);
+  EXPECT_EQ(tried.pack(), straight.pack());
+}
+
 TEST(RveElement, RollbackLeavesNoTrace)
 {
   RveElement tried = element(true), straight = element(true);

@@ -7,6 +7,7 @@
 #include "tests/support/near.hpp"
 #include "tests/support/random.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -98,6 +99,8 @@ std::vector<Cell> cells()
   return {{"cubic", cube.asDiagonal(), 200},
           {"sheared", leaning(cube, 0.6, -0.6, 0.5), 200},
           {"sheared_far", leaning(cube, 1.4, -0.9, 1.2), 200},
+          {"leaning_by_five", leaning(cube, 5.3, -4.2, 3.1), 200}, // widths below a grain; periods that are not
+          {"narrow_by_leaning", leaning(Vec3::Constant(0.91), 0.6, -0.6, 0.5), 60},
           {"left_handed", leaning(Vec3(2, -2, 2), 0.3, 0.5, -0.2), 200},
           {"elongated", leaning(Vec3(20, 1.3, 1.5), 0.1, 0, 0.4), 200},
           {"flat", leaning(Vec3(6, 6, 0.95), 0.5, 0.01, 0), 200},
@@ -134,6 +137,27 @@ TEST(FindPairsInACell, EqualsBruteForceOverImages)
         }
   std::printf("%zu pairs, %zu of them with an image\n", found, across);
   EXPECT_GT(across, 1000u);
+}
+
+TEST(FindPairsInACell, OneGrainNearlyAsLargeAsTheCell)
+{
+  Random random(3);
+  std::size_t found = 0;
+  for (int run = 0; run < 50; ++run)
+    {
+      const Mat3 edges = leaning(Vec3::Constant(0.95), 2 * random(), 2 * random(), 2 * random());
+      Packing packing = random_packing(random, 40, edges, 0.08, 3);
+      packing.position[4 * 17 + 3] = 0.34;
+      ASSERT_BELOW_BECAUSE(2 * max_reach(packing), 0.94, "two different grains fit side by side");
+      ASSERT_GT(4 * packing.max_radius(), 0.95);
+      const auto expected = near_pairs(packing, edges, 1e-3, 4);
+      const auto [pairs, images] = find_pairs(packing, edges, 1e-3);
+      ASSERT_EQ(pairs.size(), expected.size());
+      for (std::size_t p = 0; p < pairs.size(); ++p)
+        ASSERT_EQ(image_shift(images[p]), expected.at(pairs[p]).shift);
+      found += pairs.size();
+    }
+  EXPECT_GT(found, 1000u);
 }
 
 TEST(FindPairsInACell, NoneOneAndTwo)
@@ -316,14 +340,31 @@ TEST(VerletListOfACell, ACellTooNarrowForItsGrainsIsRefused)
     VerletList list;
     list.update(packing, PeriodicCell::with_edges(lengths), 0, contacts);
   };
-  EXPECT_NO_THROW(update({1.01, 1.01, 1.01}));
-  EXPECT_THROW(update({3, 0.99, 3}), RunFailure);
+  EXPECT_NO_THROW(update({0.91, 0.91, 0.91})); // each grain beside itself is no matter: they are of two sizes
+  EXPECT_THROW(update({3, 0.89, 3}), RunFailure);
   EXPECT_THROW(update({0.3, 3, 3}), RunFailure);
-  PeriodicCell sheared = PeriodicCell::with_edges({1.1, 1.1, 1.1}); // edges are longer, widths smaller
+  // what counts is the distance to the next image, not the edges that were chosen for the lattice
+  PeriodicCell sheared = PeriodicCell::with_edges({0.91, 0.91, 0.91});
   sheared.edges.col(1) += 0.6 * sheared.edges.col(0);
+  sheared.edges.col(2) += 3 * sheared.edges.col(1);
+  ASSERT_BELOW_BECAUSE(sheared.widths().minCoeff(), 0.5, "narrower than a grain");
   ContactList contacts;
   VerletList list;
-  EXPECT_THROW(list.update(packing, sheared, 0, contacts), RunFailure);
+  EXPECT_NO_THROW(list.update(packing, sheared, 0, contacts));
+  PeriodicCell oblique = PeriodicCell::with_edges({3, 0.85, 3}); // edges are 3 long, their difference 0.85
+  oblique.edges.col(1) += oblique.edges.col(0);
+  ASSERT_GE(oblique.edges.colwise().norm().minCoeff(), 3);
+  try
+    {
+      VerletList().update(packing, oblique, 0, contacts);
+      FAIL() << "accepted";
+    }
+  catch (const RunFailure &failure)
+    {
+      EXPECT_THAT(failure.what(), testing::HasSubstr("shortest period of the periodic cell is 0.85 m"));
+      EXPECT_THAT(failure.what(), testing::HasSubstr("two largest diameters together, 0.9 m"));
+      EXPECT_THAT(failure.what(), testing::HasSubstr("Take more grains"));
+    }
 }
 
 TEST(VerletListOfACell, ACellThatGetsTooNarrowIsNoticedInTime)
