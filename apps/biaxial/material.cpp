@@ -101,6 +101,13 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
     }
   else
     block.material = formula_block(scene, space);
+  if (scene.nonlocal.length > 0)
+    {
+      auto nonlocal =
+          std::make_unique<Nonlocal>(std::move(block.material), scene.nonlocal, space.position, space.weight);
+      block.nonlocal = nonlocal.get();
+      block.material = std::move(nonlocal);
+    }
   const double p = -scene.test.confinement;
   block.material->set_initial_stress(std::vector<Stress>(space.n_points(), Stress{p, p, p, 0, 0, 0}));
   return block;

@@ -24,6 +24,7 @@ constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr Section sections[] = {
   {.name = "mesh", .text = "The block: plane strain, x across, z up."},
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
+  {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
@@ -64,6 +65,15 @@ constexpr Key test_keys[] = {
   {.path = "soil.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
    .text = "Each point has one of so many seeds, from `realisation` on, by lot; 1: all points have the same.",
    .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
+
+  {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+   .range = not_negative,
+   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation: twice "
+           "the distance of Gauss points or more. 0: its own strain.",
+   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
+  {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
+   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",
+   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.stiffness; }},
 
   {.path = "weak.cells", .kind = Kind::integer, .value = "0",
    .text = "Elements along each side of the square; 0: there is none.",
@@ -146,6 +156,10 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     document.refuse("newton.max_iterations",
                     "and newton.relaxation_iterations = 0; one of both must be at least 1, "
                     "or nothing looks for equilibrium. Set newton.relaxation_iterations = 200.");
+  if (scene.nonlocal.length > 0 && scene.newton.relaxation_iterations == 0)
+    document.refuse("nonlocal.length",
+                    "needs relaxation, because the tangent of a nonlocal material is not one of its points. Set "
+                    "newton.max_iterations = 0 and newton.relaxation_iterations = 1000.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

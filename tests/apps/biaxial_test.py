@@ -130,6 +130,26 @@ class Biaxial(AppTest):
         self.assert_near(np.abs(relaxed / newton - 1).max(), 0, 1e-4, "tolerance of 1e-6 over a tangent far below M")
         self.assert_refused(self.run_block(iwan, "--set", "newton.max_iterations=0"), "newton.max_iterations")
 
+    def test_length(self):
+        relaxed = ("--set", "nonlocal.length=0.5 m", "--set", "newton.max_iterations=0", "--set",
+                   "newton.relaxation_iterations=2000")
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *relaxed, name="uniform"))
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), name="local"))
+        stress = [self.history(name)["axial_stress"][-1] for name in ("uniform", "local")]
+        self.assert_close(stress[0], stress[1], 1e-5, "uniform strain is untouched; tolerance of 1e-6")
+        self.assertIn("length              0.5 m", (self.folder / "uniform/summary.txt").read_text(encoding="utf-8"))
+        self.assertNotIn("mean_shear_strain", self.maps("local"))
+        weak = [part for key in ("weak.cells=1", "weak.column=1", "weak.row=2", "weak.factor=0.2")
+                for part in ("--set", key)]
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *weak, name="local"))
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *weak, *relaxed))
+        maps, local = self.maps(), self.maps("local")
+        spread = [np.ptp(field[-1]) for field in (maps["mean_shear_strain"], maps["shear_strain"],
+                                                  local["shear_strain"])]
+        self.assertLess(spread[0], spread[1])
+        self.assertLess(spread[1], spread[2])
+        self.assert_refused(self.run_block(ELASTIC.format(degree=1), *relaxed[:2]), "nonlocal.length", "relaxation")
+
     def test_scene_is_read_back_and_refused(self):
         shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")
         self.assert_done(shown)
