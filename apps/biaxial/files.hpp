@@ -22,8 +22,8 @@ struct PointState
 PointState point_state(const Gradient &gradient, const Stress &stress);
 
 /// Maps of a block at some instants: maps.h5 with the points' `x`, `z` (m) and, a row for each instant, `axial_strain`
-/// and all of PointState (`mean_shear_strain` only where the material is nonlocal); paraview/block.pvd with displacement
-/// at the corners of the elements and the elements' means.
+/// and all of PointState (`mean_shear_strain` only where the material is nonlocal); paraview/block.pvd with the
+/// displacement at the corners of the elements and the elements' means.
 /// tested: tests/apps/biaxial_test.py
 class BlockFiles
 {
