@@ -38,6 +38,7 @@ std::unique_ptr<Material> formula_block(const BiaxialScene &scene, const Discret
   *weak.shear_modulus *= scene.weak.factor;
   weak.iwan.strength_ratio *= scene.weak.factor;
   weak.iwan.phase_transformation_ratio *= scene.weak.factor;
+  weak.mohr_coulomb = weakened(weak.mohr_coulomb, scene.weak.factor);
   std::vector<CompositeMaterial::Part> parts;
   for (int k = 0; k < 2; ++k)
     if (!places[k].empty())

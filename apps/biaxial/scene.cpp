@@ -6,6 +6,7 @@
 #include "base/scene/writer.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/material/mohr_coulomb_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -15,9 +16,10 @@ namespace
 {
 using namespace ranges;
 
-constexpr std::span<const char *const> materials(material_names, 3); ///< none of the user's own
+constexpr std::span<const char *const> materials(material_names, 4); ///< none of the user's own
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
-constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned mohr_coulomb = kind_bit(LayerMaterial::mohr_coulomb);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan | mohr_coulomb;
 constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 
 // clang-format off
@@ -51,11 +53,11 @@ constexpr Key block_keys[] = {
 
   {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = materials,
-   .text = "Linear elastic, parallel slip elements (Iwan), or a packing of grains at every Gauss point.",
+   .text = "Linear elastic, parallel slip elements (Iwan), friction and cohesion (Mohr-Coulomb), or a packing of grains at every Gauss point.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
    .presence = Presence::required, .value = "50 MPa", .range = positive, .kinds = formula,
-   .text = "Shear modulus of small strain; of iwan at 100 kPa.",
+   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
   {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
    .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
@@ -83,7 +85,7 @@ constexpr Key test_keys[] = {
   {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
   {.path = "weak.factor", .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan; of no meaning to grains.",
+   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning to grains.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
@@ -132,7 +134,10 @@ constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dime
 const SceneSchema &schema()
 {
   static const KeyTable keys{
-      block_keys, splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      block_keys,
+      splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      splice("soil", mohr_coulomb_keys(), mohr_coulomb,
+             [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
       splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
       splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
       test_keys};
@@ -152,6 +157,8 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     check_packings(document, "soil", scene.grains);
   if (scene.soil.material == LayerMaterial::iwan)
     check_iwan(document, "soil", scene.soil.iwan);
+  if (scene.soil.material == LayerMaterial::mohr_coulomb)
+    check_mohr_coulomb(document, "soil", scene.soil.mohr_coulomb);
   if (scene.newton.max_iterations == 0 && scene.newton.relaxation_iterations == 0)
     document.refuse("newton.max_iterations",
                     "and newton.relaxation_iterations = 0; one of both must be at least 1, "

@@ -71,6 +71,14 @@ IwanParameters ColumnLayer::sand() const
   return sand;
 }
 
+MohrCoulombParameters ColumnLayer::frictional_soil() const
+{
+  MohrCoulombParameters soil = mohr_coulomb;
+  soil.shear_modulus = small_strain_modulus();
+  soil.poisson_ratio = poisson_ratio;
+  return soil;
+}
+
 std::array<double, 3> ColumnLoad::traction(double time) const
 {
   std::array<double, 3> traction = {};

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
-// binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
-// air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings in coupling/scene/packings.cpp.
+// binds several keys is in apps/deposit/checks.cpp. Keys of formulas are in fem/material/iwan_scene.cpp and
+// fem/material/mohr_coulomb_scene.cpp, those of air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings
+// in coupling/scene/packings.cpp.
 #include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/material/mohr_coulomb_scene.hpp"
 #include "fem/water/pore_fluid_scene.hpp"
 
 namespace isostat
@@ -24,7 +26,8 @@ constexpr const char *analysis_choices[] = {"dynamic", "consolidation"};
 using namespace ranges;
 
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
-constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned mohr_coulomb = kind_bit(LayerMaterial::mohr_coulomb);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan | mohr_coulomb;
 constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr unsigned compliant = kind_bit(BaseKind::compliant);
 constexpr unsigned record = kind_bit(MotionKind::record);
@@ -44,8 +47,8 @@ constexpr Section sections[] = {
            "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic "
-           "and iwan, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic, "
+           "iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -148,16 +151,16 @@ constexpr Key ground_keys[] = {
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
-           "the mean effective stress, a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
+           "the mean effective stress, strength of friction and cohesion (Mohr-Coulomb), a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
            "isostat.column.run() in Python takes by the name of the layer (docs/python.md), not with mesh.distributed.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",
-   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan, at the reference pressure.",
+   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
   {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
    .presence = Presence::optional, .value = "80 MPa", .range = positive, .kinds = formula, .group = "stiffness",
-   .text = "Shear modulus G of small strain. Of iwan, at the reference pressure.",
+   .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
   {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
@@ -372,6 +375,8 @@ const SceneSchema &column_schema()
       splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
       splice("slope", slope_keys(), 0, [](ColumnScene &s) -> Slope & { return s.slope; }),
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
+      splice("layer", mohr_coulomb_keys(), mohr_coulomb,
+             [](ColumnScene &, ColumnLayer &l) -> MohrCoulombParameters & { return l.mohr_coulomb; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       splice("layer", drawn_specimen_keys(), grains,

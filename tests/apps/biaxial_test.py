@@ -29,6 +29,21 @@ poisson_ratio = 0.3
 axial_strain = 0.01
 steps = 2
 """
+FRICTION = """title = "friction"
+[mesh]
+cells_across = 2
+cells_up = 2
+[soil]
+material = "mohr_coulomb"
+shear_modulus = "50 MPa"
+poisson_ratio = 0.25
+friction_angle = "36 deg"
+dilatancy_angle = "8 deg"
+cohesion = "3 kPa"
+[test]
+axial_strain = 0.02
+steps = 10
+"""
 GRAINS = """title = "two elements"
 [mesh]
 cells_across = 1
@@ -62,6 +77,27 @@ class Biaxial(AppTest):
     def maps(self, name="run"):
         with h5py.File(self.folder / name / "maps.h5") as file:
             return {key: np.asarray(values) for key, values in file.items()}
+
+    def test_mohr_coulomb_block_is_the_closed_form(self):
+        self.assert_done(self.run_block(FRICTION))
+        rows, phi, psi = self.history(), np.radians(36), np.radians(8)
+        ratio = (1 + np.sin(phi)) / (1 - np.sin(phi))
+        solved = "Newton's method with a consistent tangent: 1e-6 of the force"
+        self.assert_close(rows["axial_stress"][-3:], ratio * 100e3 + 2 * 3e3 * np.sqrt(ratio), 1e-6, solved)
+        axial, lateral = np.diff(rows["axial_strain"])[-1], np.diff(rows["lateral_strain"])[-1]
+        self.assert_near((axial + lateral) / (axial - lateral), -np.sin(psi), 1e-6, solved)
+        self.assertLessEqual(max(rows["iterations"]), 4)
+        refused = self.run_block(FRICTION, "--set", "soil.dilatancy_angle=40 deg")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("soil.dilatancy_angle = 40 deg; must not exceed friction_angle", refused.stderr)
+
+    def test_weak_elements_have_less_strength(self):
+        self.assert_done(self.run_block(FRICTION, "--set", "weak.cells=2", "--set", "weak.factor=0.9"))
+        tangent = 0.9 * np.tan(np.radians(36))
+        sine = tangent / np.hypot(1, tangent)
+        ratio = (1 + sine) / (1 - sine)
+        self.assert_close(self.history()["axial_stress"][-1], ratio * 100e3 + 2 * 2.7e3 * np.sqrt(ratio), 1e-6,
+                          "a block that is weak everywhere: Newton's method to 1e-6 of the force")
 
     def test_elastic_block_is_the_closed_form(self):
         nu, strain = 0.3, 0.01

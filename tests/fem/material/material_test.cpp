@@ -3,6 +3,7 @@
 #include "fem/material/composite.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan.hpp"
+#include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/nonlocal.hpp"
 
 #include <cstring>
@@ -19,6 +20,7 @@ constexpr std::size_t n = 5;
 
 std::unique_ptr<Material> make_elastic() { return std::make_unique<Elastic>(ElasticParameters{}, n); }
 std::unique_ptr<Material> make_iwan() { return std::make_unique<Iwan>(IwanParameters{}, n); }
+std::unique_ptr<Material> make_mohr_coulomb() { return std::make_unique<MohrCoulomb>(MohrCoulombParameters{}, n); }
 std::unique_ptr<Material> make_layers()
 {
   std::vector<std::unique_ptr<Material>> parts;
@@ -154,6 +156,8 @@ TEST_P(MaterialProtocol, RefusesOtherBytes)
   EXPECT_THROW(m->unpack(Elastic({}, n + 1).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({.contraction = 0.1}, n).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({}, n - 1).pack()), InputError);
+  EXPECT_THROW(m->unpack(MohrCoulomb({.cohesion = 2e3}, n).pack()), InputError);
+  EXPECT_THROW(m->unpack(MohrCoulomb({}, n + 1).pack()), InputError);
   for (std::size_t size = 0; size < bytes.common.size(); size += 7)
     {
       auto cut = bytes;
@@ -219,7 +223,8 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol,
-                         testing::Values(make_elastic, make_iwan, make_layers, make_composite, make_nonlocal));
+                         testing::Values(make_elastic, make_iwan, make_mohr_coulomb, make_layers, make_composite,
+                                         make_nonlocal));
 
 TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {
