@@ -186,6 +186,22 @@ class Biaxial(AppTest):
         self.assertLess(spread[1], spread[2])
         self.assert_refused(self.run_block(ELASTIC.format(degree=1), *relaxed[:2]), "nonlocal.length", "relaxation")
 
+    def test_band_with_a_length_is_that_of_every_mesh(self):
+        scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/mohr_coulomb.toml"
+        stress = {}
+        for length in ("0.08 m", "0 m"):
+            for cells in (4, 8):
+                keys = (f"mesh.cells_across={cells}", f"mesh.cells_up={2 * cells}", f"weak.cells={cells // 4}",
+                        f"nonlocal.length={length}", "test.steps=15")
+                self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--overwrite", "--no-figures", "-q",
+                                              *[part for key in keys for part in ("--set", key)]))
+                stress[length, cells] = self.history()["axial_stress"]
+        coarse, fine = stress["0.08 m", 4], stress["0.08 m", 8]
+        self.assert_below(fine[-1] / fine.max(), 0.85, "or nothing softens")
+        self.assert_near(coarse / fine, 1, 5e-3, "measured 0.2 %")
+        apart = np.abs(stress["0 m", 4] / stress["0 m", 8] - 1).max()
+        self.assertGreater(apart, 0.2)  # at 0.7 %: a band of one point falls at once
+
     def test_scene_is_read_back_and_refused(self):
         shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")
         self.assert_done(shown)
