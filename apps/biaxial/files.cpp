@@ -26,7 +26,10 @@ constexpr MapQuantity quantities[] = {{"shear_strain", "-", &PointState::shear},
                                       {"p", "Pa", &PointState::p},
                                       {"q", "Pa", &PointState::q},
                                       {"void_ratio", "-", &PointState::void_ratio},
-                                      {"redundancy", "-", &PointState::redundancy}};
+                                      {"redundancy", "-", &PointState::redundancy},
+                                      {"mean_shear_strain", "-", &PointState::mean_shear}}; // the last: where it is
+
+double shear_strain(const Gradient &h) { return std::hypot(h[0] - h[8], h[2] + h[6]); }
 
 void add_array(pugi::xml_node parent, const char *type, const std::string &name, int components,
                const std::string &text)
@@ -72,7 +75,7 @@ void add_cells(pugi::xml_node cells, std::size_t n)
 PointState point_state(const Gradient &gradient, const Stress &stress)
 {
   PointState state;
-  state.shear = std::hypot(gradient[0] - gradient[8], gradient[2] + gradient[6]);
+  state.shear = shear_strain(gradient);
   state.volumetric = -(gradient[0] + gradient[4] + gradient[8]);
   state.p = -0.5 * (stress[0] + stress[2]);
   state.q = 0.5 * std::hypot(stress[0] - stress[2], 2 * stress[4]);
@@ -82,17 +85,22 @@ PointState point_state(const Gradient &gradient, const Stress &stress)
 BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material)
     : folder_(std::move(folder)), space_(space), material_(material),
       pictures_((fs::create_directories(folder_ / "paraview"), folder_ / "paraview/block.pvd")),
-      rows_(std::size(quantities))
+      rows_(std::size(quantities) - (material.nonlocal ? 0 : 1))
 {}
 
 void BlockFiles::map(double axial_strain, const Statics &statics)
 {
   std::vector<Gradient> gradients;
   gradients_of(space_, statics.displacement(), gradients);
+  std::vector<Gradient> means(material_.nonlocal ? gradients.size() : 0);
+  if (material_.nonlocal)
+    material_.nonlocal->average(gradients, means);
   std::vector<PointState> points;
   for (std::size_t q = 0; q < space_.n_points(); ++q)
     {
       PointState &point = points.emplace_back(point_state(gradients[q], statics.stresses()[q]));
+      if (material_.nonlocal)
+        point.mean_shear = shear_strain(means[q]);
       if (!material_.grains)
         continue;
       const Micromechanics grains = micromechanics(material_.grains->element(q)->snapshot());
@@ -142,7 +150,7 @@ void BlockFiles::write_vtu(const fs::path &path, const Vector &displacement,
   add_array(piece.append_child("PointData"), "Float64", "displacement", 3, displacements);
   pugi::xml_node data = piece.append_child("CellData");
   const std::size_t n = space_.points_per_cell();
-  for (const MapQuantity &quantity : quantities)
+  for (const MapQuantity &quantity : std::span(quantities).first(rows_.size()))
     {
       std::string text;
       for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)

@@ -16,12 +16,14 @@ struct PointState
   double volumetric = 0;                 ///< compression positive [-]
   double p = 0, q = 0;                   ///< (s1 + s3)/2 and (s1 - s3)/2 in the plane, compression positive, Pa
   double void_ratio = 0, redundancy = 0; ///< of its packing; 0 without [-]
+  double mean_shear = 0;                 ///< of the strain that a nonlocal material gets; 0 without [-]
 };
 
 PointState point_state(const Gradient &gradient, const Stress &stress);
 
 /// Maps of a block at some instants: maps.h5 with the points' `x`, `z` (m) and, a row for each instant, `axial_strain`
-/// and all of PointState; paraview/block.pvd with displacement at the corners of the elements and the elements' means.
+/// and all of PointState (`mean_shear_strain` only where the material is nonlocal); paraview/block.pvd with the
+/// displacement at the corners of the elements and the elements' means.
 /// tested: tests/apps/biaxial_test.py
 class BlockFiles
 {

@@ -38,6 +38,7 @@ std::unique_ptr<Material> formula_block(const BiaxialScene &scene, const Discret
   *weak.shear_modulus *= scene.weak.factor;
   weak.iwan.strength_ratio *= scene.weak.factor;
   weak.iwan.phase_transformation_ratio *= scene.weak.factor;
+  weak.mohr_coulomb = weakened(weak.mohr_coulomb, scene.weak.factor);
   std::vector<CompositeMaterial::Part> parts;
   for (int k = 0; k < 2; ++k)
     if (!places[k].empty())
@@ -101,6 +102,13 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
     }
   else
     block.material = formula_block(scene, space);
+  if (scene.nonlocal.length > 0)
+    {
+      auto nonlocal =
+          std::make_unique<Nonlocal>(std::move(block.material), scene.nonlocal, space.position, space.weight);
+      block.nonlocal = nonlocal.get();
+      block.material = std::move(nonlocal);
+    }
   const double p = -scene.test.confinement;
   block.material->set_initial_stress(std::vector<Stress>(space.n_points(), Stress{p, p, p, 0, 0, 0}));
   return block;

@@ -2,6 +2,7 @@
 #pragma once
 #include "apps/biaxial/scene.hpp"
 #include "coupling/batch/rve_material.hpp"
+#include "fem/material/nonlocal.hpp"
 #include "fem/space/discretisation.hpp"
 
 namespace isostat
@@ -20,7 +21,8 @@ bool in_weak_zone(const BiaxialScene &scene, const std::array<double, 3> &place)
 struct BlockMaterial
 {
   std::unique_ptr<Material> material;
-  const RveMaterial *grains = nullptr; ///< the same, if it is one of packings
+  const RveMaterial *grains = nullptr; ///< the same, or what it is given strains by, if that is one of packings
+  const Nonlocal *nonlocal = nullptr;  ///< the same, if it has a length
 };
 
 /// The material of all points at the confinement.

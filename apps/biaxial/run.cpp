@@ -197,6 +197,9 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
   text += fmt::format("  block               {} x {} m, {} x {} elements of degree {}, {} points, {}\n",
                       scene.mesh.width, scene.mesh.height, scene.mesh.cells_across, scene.mesh.cells_up,
                       scene.mesh.degree, s.points, material_names[static_cast<int>(scene.soil.material)]);
+  if (scene.nonlocal.length > 0)
+    text += fmt::format("  length              {:.4g} m, against differences of strain {:.3g} of the wave moduli\n",
+                        scene.nonlocal.length, scene.nonlocal.stiffness);
   text += fmt::format("  axial strain        {:.4g} % in {} steps{}\n", 100 * s.axial_strain, s.steps,
                       s.complete ? "" : ", then it stopped");
   text += fmt::format("  axial stress        {:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %\n",
@@ -226,6 +229,8 @@ Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
           {"cells_across", scene.mesh.cells_across},
           {"cells_up", scene.mesh.cells_up},
           {"confinement_Pa", scene.test.confinement},
+          {"nonlocal_length_m", scene.nonlocal.length},
+          {"nonlocal_stiffness", scene.nonlocal.stiffness},
           {"axial_strain", s.axial_strain},
           {"peak_stress_Pa", s.peak_stress},
           {"peak_strain", s.peak_strain},

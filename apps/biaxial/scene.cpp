@@ -6,6 +6,7 @@
 #include "base/scene/writer.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/material/mohr_coulomb_scene.hpp"
 #include "fem/solve/newton_scene.hpp"
 
 #include <fmt/format.h>
@@ -16,15 +17,17 @@ namespace
 {
 using namespace ranges;
 
-constexpr std::span<const char *const> materials(material_names, 3); ///< none of the user's own
+constexpr std::span<const char *const> materials(material_names, 4); ///< none of the user's own
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
-constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned mohr_coulomb = kind_bit(LayerMaterial::mohr_coulomb);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan | mohr_coulomb;
 constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 
 // clang-format off
 constexpr Section sections[] = {
   {.name = "mesh", .text = "The block: plane strain, x across, z up."},
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
+  {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
@@ -51,11 +54,11 @@ constexpr Key block_keys[] = {
 
   {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = materials,
-   .text = "Linear elastic, parallel slip elements (Iwan), or a packing of grains at every Gauss point.",
+   .text = "Linear elastic, parallel slip elements (Iwan), friction and cohesion (Mohr-Coulomb), or a packing of grains at every Gauss point.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
    .presence = Presence::required, .value = "50 MPa", .range = positive, .kinds = formula,
-   .text = "Shear modulus of small strain; of iwan at 100 kPa.",
+   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
   {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
    .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
@@ -66,6 +69,15 @@ constexpr Key test_keys[] = {
    .text = "Each point has one of so many seeds, from `realisation` on, by lot; 1: all points have the same.",
    .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
 
+  {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+   .range = not_negative,
+   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation: twice "
+           "the distance of Gauss points or more. 0: its own strain.",
+   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
+  {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
+   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",
+   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.stiffness; }},
+
   {.path = "weak.cells", .kind = Kind::integer, .value = "0",
    .text = "Elements along each side of the square; 0: there is none.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.cells; }},
@@ -74,7 +86,7 @@ constexpr Key test_keys[] = {
   {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
   {.path = "weak.factor", .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan; of no meaning to grains.",
+   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning to grains.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
@@ -108,7 +120,10 @@ constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dime
 const SceneSchema &schema()
 {
   static const KeyTable keys{
-      block_keys, splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      block_keys,
+      splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      splice("soil", mohr_coulomb_keys(), mohr_coulomb,
+             [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
       splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
       splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
       test_keys,
@@ -130,7 +145,13 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     check_packings(document, "soil", scene.grains);
   if (scene.soil.material == LayerMaterial::iwan)
     check_iwan(document, "soil", scene.soil.iwan);
+  if (scene.soil.material == LayerMaterial::mohr_coulomb)
+    check_mohr_coulomb(document, "soil", scene.soil.mohr_coulomb);
   check_newton(document, "newton", scene.newton);
+  if (scene.nonlocal.length > 0 && scene.newton.relaxation_iterations == 0)
+    document.refuse("nonlocal.length",
+                    "needs relaxation, because the tangent of a nonlocal material is not one of its points. Set "
+                    "newton.max_iterations = 0 and newton.relaxation_iterations = 1000.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

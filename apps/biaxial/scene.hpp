@@ -2,6 +2,7 @@
 // What a run of the biaxial block consists of. Lengths m, stresses Pa.
 #pragma once
 #include "apps/deposit/scene.hpp"
+#include "fem/material/nonlocal.hpp"
 #include "fem/solve/newton_settings.hpp"
 
 namespace isostat
@@ -54,6 +55,7 @@ struct BiaxialScene
   ColumnLayer soil; ///< its material; no thickness or weight
   RveMaterialSettings grains;
   std::uint64_t mixed_realisations = 1; ///< seeds of which each point has one by lot
+  NonlocalParameters nonlocal;          ///< of all of the soil; length 0: it is local
   WeakZone weak;
   BiaxialTest test;
   NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8}; ///< the smallest force scale is confinement times width

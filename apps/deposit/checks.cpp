@@ -5,6 +5,7 @@
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/material/mohr_coulomb_scene.hpp"
 #include "fem/water/pore_fluid.hpp"
 
 #include <fmt/format.h>
@@ -100,6 +101,8 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water shall move.");
   if (layer.material == LayerMaterial::iwan)
     check_iwan(document, prefix, layer.iwan);
+  if (layer.material == LayerMaterial::mohr_coulomb)
+    check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
   constexpr unsigned most = 1000000;
   if (layer.cells == 0 && !(layer.thickness / layer.cell_size <= most))
     document.refuse(prefix + ".cell_size", fmt::format("would give more than {} cells. Give a larger one.", most));

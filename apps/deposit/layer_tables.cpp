@@ -42,11 +42,11 @@ std::vector<toml::table> read_rows(const std::string &path)
 void check_layer(const SceneDocument &document, const std::string &prefix)
 {
   if (const toml::node *material = document.find(prefix + ".material"); material && material->is_string())
-    if (const std::string &word = material->as_string()->get(); word != "elastic" && word != "iwan")
-      document.refuse(prefix + ".table",
-                      fmt::format("does not belong to a layer of material \"{}\", only to elastic and "
-                                  "iwan. Remove it or change the material.",
-                                  word));
+    if (const std::string &word = material->as_string()->get();
+        word != "elastic" && word != "iwan" && word != "mohr_coulomb")
+      document.refuse(prefix + ".table", fmt::format("does not belong to a layer of material \"{}\", only to elastic, "
+                                                     "iwan and mohr_coulomb. Remove it or change the material.",
+                                                     word));
   for (const char *key : {"thickness", "shear_velocity", "shear_modulus", "density"})
     if (const std::string path = fmt::format("{}.{}", prefix, key); document.find(path))
       document.refuse(path, fmt::format("excludes table ({}), whose rows give it. Keep one of them.",

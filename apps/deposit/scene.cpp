@@ -71,6 +71,14 @@ IwanParameters ColumnLayer::sand() const
   return sand;
 }
 
+MohrCoulombParameters ColumnLayer::frictional_soil() const
+{
+  MohrCoulombParameters soil = mohr_coulomb;
+  soil.shear_modulus = small_strain_modulus();
+  soil.poisson_ratio = poisson_ratio;
+  return soil;
+}
+
 double ColumnLoad::surcharge_at(double x) const
 {
   double part = 1;

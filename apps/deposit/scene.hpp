@@ -5,6 +5,7 @@
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/specimen_request.hpp"
 #include "fem/material/iwan.hpp"
+#include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/soil.hpp"
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
@@ -47,12 +48,13 @@ enum class LayerMaterial
 {
   elastic,
   iwan,
+  mohr_coulomb,
   grains, ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
   user    ///< given to the run by C++ or Python (apps/deposit/soil_material.hpp)
 };
 
 /// Their words in scenes and summaries, and those of Drainage.
-inline constexpr const char *material_names[] = {"elastic", "iwan", "grains", "user"};
+inline constexpr const char *material_names[] = {"elastic", "iwan", "mohr_coulomb", "grains", "user"};
 inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
 
 /// A layer with its material.
@@ -61,13 +63,15 @@ struct ColumnLayer : Layer
   LayerMaterial material = LayerMaterial::elastic;
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
-  IwanParameters iwan;    ///< of no meaning to other materials; its stiffness is the layer's, see sand()
-  SpecimenRequest grains; ///< of no meaning to other materials
-  std::string table;      ///< only in files: when a scene has been read, its rows have become layers
+  IwanParameters iwan;                ///< of no meaning to other materials; its stiffness is the layer's, see sand()
+  MohrCoulombParameters mohr_coulomb; ///< likewise, see frictional_soil()
+  SpecimenRequest grains;             ///< of no meaning to other materials
+  std::string table;                  ///< only in files: when a scene has been read, its rows have become layers
 
   bool from_formula() const { return shear_modulus || shear_velocity; }
-  double small_strain_modulus() const; ///< G, Pa, whichever of the two was given (rho V_s^2)
-  IwanParameters sand() const;         ///< `iwan` with the stiffness of the layer
+  double small_strain_modulus() const;           ///< G, Pa, whichever of the two was given (rho V_s^2)
+  IwanParameters sand() const;                   ///< `iwan` with the stiffness of the layer
+  MohrCoulombParameters frictional_soil() const; ///< `mohr_coulomb` with the stiffness of the layer
 
   bool operator==(const ColumnLayer &) const = default;
 };

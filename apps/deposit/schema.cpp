@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a column's scene file. A new key is one entry here and one field in apps/deposit/scene.hpp; a rule that
-// binds several keys is in apps/deposit/checks.cpp. Keys of the Iwan sand are in fem/material/iwan_scene.cpp, those of
-// air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings in coupling/scene/packings.cpp.
+// binds several keys is in apps/deposit/checks.cpp. Keys of formulas are in fem/material/iwan_scene.cpp and
+// fem/material/mohr_coulomb_scene.cpp, those of air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings
+// in coupling/scene/packings.cpp.
 #include "apps/deposit/box.hpp"
+#include "apps/deposit/motion_keys.hpp"
 #include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
+#include "fem/material/mohr_coulomb_scene.hpp"
 #include "fem/water/pore_fluid_scene.hpp"
 
 namespace isostat
@@ -16,20 +19,15 @@ namespace
 {
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *axis_choices[] = {"x", "y", "z"};
-constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
-constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
-constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 
 using namespace ranges;
 
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
-constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan;
+constexpr unsigned mohr_coulomb = kind_bit(LayerMaterial::mohr_coulomb);
+constexpr unsigned formula = kind_bit(LayerMaterial::elastic) | iwan | mohr_coulomb;
 constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr unsigned compliant = kind_bit(BaseKind::compliant);
-constexpr unsigned record = kind_bit(MotionKind::record);
-constexpr unsigned harmonic = kind_bit(MotionKind::harmonic);
-constexpr unsigned ricker = kind_bit(MotionKind::ricker);
 constexpr unsigned loaded = kind_bit(LoadKind::step) | kind_bit(LoadKind::harmonic);
 constexpr unsigned dynamic = kind_bit(AnalysisKind::dynamic);
 constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
@@ -44,8 +42,8 @@ constexpr Section sections[] = {
            "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic "
-           "and iwan, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic, "
+           "iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -148,16 +146,16 @@ constexpr Key ground_keys[] = {
   {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
-           "the mean effective stress, a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
+           "the mean effective stress, strength of friction and cohesion (Mohr-Coulomb), a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
            "isostat.column.run() in Python takes by the name of the layer (docs/python.md), not with mesh.distributed.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",
-   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan, at the reference pressure.",
+   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
   {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
    .presence = Presence::optional, .value = "80 MPa", .range = positive, .kinds = formula, .group = "stiffness",
-   .text = "Shear modulus G of small strain. Of iwan, at the reference pressure.",
+   .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
   {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
@@ -182,57 +180,6 @@ constexpr Key loading_keys[] = {
    .presence = Presence::optional, .value = "1600 m/s", .range = positive, .kinds = compliant,
    .text = "Velocity of P waves in the rock; left out: twice the shear velocity.",
    .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
-
-  {.path = "motion.axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
-           "rigid body: no P waves; use coupled for them.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.axis; }},
-  {.path = "motion.kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
-   .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.kind; }},
-  {.path = "motion.file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
-   .kinds = record,
-   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file or "
-           "else from the working directory.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.file; }},
-  {.path = "motion.unit", .kind = Kind::choice, .value = "g", .choices = unit_choices, .kinds = record,
-   .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.unit; }},
-  {.path = "motion.baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
-   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
-           "drift of the displacement.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.baseline; }},
-  {.path = "motion.factor", .value = "1", .kinds = record, .group = "scale",
-   .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.factor; }},
-  {.path = "motion.peak", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
-   .presence = Presence::optional, .value = "0.2 g", .range = positive, .kinds = record, .group = "scale",
-   .text = "Largest acceleration to which the record is scaled; excludes `factor`.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.peak; }},
-  {.path = "motion.amplitude", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
-   .presence = Presence::required, .value = "0.1 g", .kinds = harmonic | ricker, .text = "Amplitude of the acceleration.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.amplitude; }},
-  {.path = "motion.frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
-   .presence = Presence::required, .value = "2 Hz", .range = positive, .kinds = harmonic | ricker,
-   .text = "Frequency of the sine; of a wavelet the one where its spectrum is largest.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.frequency; }},
-  {.path = "motion.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "10 s", .range = positive, .kinds = harmonic, .text = "Duration of the sine.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.duration; }},
-  {.path = "motion.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
-   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.ramp; }},
-  {.path = "motion.centre", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "0.75 s", .range = positive, .kinds = ricker,
-   .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.centre; }},
-  {.path = "motion.interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = harmonic | ricker,
-   .text = "Time between samples, straight in between; left out: 1 / (500 frequency).",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.interval; }},
-  {.path = "motion.again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "20 s", .range = positive,
-   .text = "Time at which the same motion starts for the second time; left out: it comes once.",
-   .field = [](ColumnScene &, ColumnMotion &m) -> Field { return &m.again; }},
 
   {.path = "load.kind", .kind = Kind::choice, .value = "none", .choices = load_choices,
    .text = "How the traction runs in time.",
@@ -378,11 +325,14 @@ const SceneSchema &column_schema()
       splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
       splice("slope", slope_keys(), 0, [](ColumnScene &s) -> Slope & { return s.slope; }),
       splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
+      splice("layer", mohr_coulomb_keys(), mohr_coulomb,
+             [](ColumnScene &, ColumnLayer &l) -> MohrCoulombParameters & { return l.mohr_coulomb; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       splice("layer", drawn_specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       loading_keys,
+      splice("motion", motion_keys(), 0, [](ColumnScene &, ColumnMotion &m) -> ColumnMotion & { return m; }),
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
       result_keys,
       splice("analysis", plate_keys(), kind_bit(AnalysisKind::plate),

@@ -58,9 +58,22 @@ double mean_pressure(const ColumnLayer &layer, const PlaneStress &stress)
   return (1 + 2 * layer.k0) / 3 * stress.normal;
 }
 
-/// Static shear stress that Iwan sand bears beside the deviator of its K0: docs/theory_column.md (33). Pa
+bool has_known_strength(const ColumnLayer &layer)
+{
+  return layer.material == LayerMaterial::iwan || layer.material == LayerMaterial::mohr_coulomb;
+}
+
+/// Static shear stress that Iwan sand bears beside the deviator of its K0: docs/theory_column.md (33); of a
+/// Mohr-Coulomb soil, before it softens, by its circle in the plane. Pa
 double shear_strength(const ColumnLayer &layer, const PlaneStress &stress)
 {
+  if (layer.material == LayerMaterial::mohr_coulomb)
+    {
+      const double friction = layer.mohr_coulomb.friction, cohesion = layer.mohr_coulomb.cohesion;
+      const double mean = (1 + layer.k0) / 2 * stress.normal, half = (1 - layer.k0) / 2 * stress.normal,
+                   radius = (mean * friction + cohesion) / std::hypot(1, friction);
+      return std::sqrt(std::max(0.0, radius * radius - half * half));
+    }
   const double strength = layer.iwan.strength_ratio * mean_pressure(layer, stress),
                normal = (1 - layer.k0) * stress.normal / std::sqrt(3.0);
   return std::sqrt(std::max(0.0, strength * strength - normal * normal));
@@ -145,7 +158,7 @@ std::optional<SlopeSafety> slope_safety(const ColumnScene &scene)
   std::optional<SlopeSafety> least;
   for_each_end(scene, [&](std::size_t k, double depth, const PlaneStress &stress) {
     const ColumnLayer &layer = scene.layers[k];
-    if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
+    if (!has_known_strength(layer) || stress.shear <= 0)
       return;
     const double factor = shear_strength(layer, stress) / stress.shear;
     if (!least || factor < least->factor)
@@ -161,16 +174,19 @@ void check_slope(const SceneDocument &document, const ColumnScene &scene)
     const ColumnLayer &layer = scene.layers[k];
     if (layer.material == LayerMaterial::grains && stress.shear > 0)
       check_packings_on_slope(document, scene, k, depth, stress);
-    if (layer.material != LayerMaterial::iwan || stress.shear <= 0)
+    if (!has_known_strength(layer) || stress.shear <= 0)
       return;
     if (stress.shear > shear_strength(layer, stress))
-      document.refuse(
-          fmt::format("layer.{}.strength_ratio", k),
-          fmt::format(
-              "is too low for the slope to stand: at a depth of {:.4g} m the static shear stress is {:.4g} kPa, "
-              "at a normal effective stress of {:.4g} kPa and with k0 = {}. Give a smaller slope.angle, a "
-              "larger strength_ratio, a k0 nearer to 1, or a deeper water.table.",
-              depth, stress.shear / 1e3, stress.normal / 1e3, number_text(layer.k0)));
+      {
+        const char *key = layer.material == LayerMaterial::iwan ? "strength_ratio" : "friction_angle";
+        document.refuse(
+            fmt::format("layer.{}.{}", k, key),
+            fmt::format(
+                "is too low for the slope to stand: at a depth of {:.4g} m the static shear stress is {:.4g} kPa, "
+                "at a normal effective stress of {:.4g} kPa and with k0 = {}. Give a smaller slope.angle, a "
+                "larger {}, a k0 nearer to 1, or a deeper water.table.",
+                depth, stress.shear / 1e3, stress.normal / 1e3, number_text(layer.k0), key));
+      }
   });
 }
 } // namespace isostat

@@ -131,7 +131,7 @@ void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
       if (!given.contains(layer.name))
         throw InputError(fmt::format("layer.{} (\"{}\"): its material is \"user\", but none was given for this name. "
                                      "Run it from Python with isostat.column.run(scene, materials={{\"{}\": ...}}), or "
-                                     "give the layer another material: elastic, iwan, grains.",
+                                     "give the layer another material: elastic, iwan, mohr_coulomb, grains.",
                                      i, layer.name, layer.name));
     }
   for (const auto &[name, make] : given)
@@ -146,6 +146,8 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
 {
   if (layer.material == LayerMaterial::iwan)
     return std::make_unique<Iwan>(layer.sand(), n_points);
+  if (layer.material == LayerMaterial::mohr_coulomb)
+    return std::make_unique<MohrCoulomb>(layer.frictional_soil(), n_points);
   return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
 }
 

@@ -56,7 +56,7 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads,
                            const UserMaterials &user = {});
 
-/// The material of one layer from a formula, without stress.   @pre layer.material is elastic or iwan
+/// The material of one layer from a formula, without stress.   @pre layer.material is elastic, iwan or mohr_coulomb
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
 
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally

@@ -29,7 +29,7 @@ def of_layer(table):
     velocity, modulus = quantity(table.get("shear_velocity")), quantity(table.get("shear_modulus"))
     if velocity is None and modulus is not None:
         velocity = float(np.sqrt(modulus / density))
-    elif velocity is None and table["material"] in ("elastic", "iwan"):
+    elif velocity is None and table["material"] in ("elastic", "iwan", "mohr_coulomb"):
         raise KeyError("shear_modulus")
     return {"height": quantity(table["thickness"]), "density": density, "velocity": velocity,
             "poisson_ratio": table.get("poisson_ratio", 0.3), "porosity": table.get("porosity", 0.4),

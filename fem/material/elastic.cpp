@@ -31,6 +31,8 @@ Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus)
   return c;
 }
 
+double bulk_modulus(const WaveModuli &moduli) { return std::max(moduli.p - 4.0 / 3 * moduli.s, moduli.s / 3); }
+
 Elastic::Elastic(const ElasticParameters &p, std::size_t n_points) : bulk_(p.bulk_modulus()), shear_(p.shear_modulus)
 {
   committed_.resize(n_points);

@@ -17,6 +17,10 @@ struct ElasticParameters
 /// Stiffness of Hooke's law: sigma = K tr(eps) 1 + 2 G dev(eps). Pa
 Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus);
 
+/// Bulk modulus of an isotropic material with these wave moduli; at least a third of its shear modulus, since those of
+/// packings are the largest of all directions and need not belong to one. Pa
+double bulk_modulus(const WaveModuli &moduli);
+
 /// Linear elastic isotropic soil: stress = committed stress + C : increment of strain. Tension positive.
 /// Serves as closed-form check of whatever the solver does.
 /// tested: tests/fem/material/elastic_test.cpp

@@ -68,8 +68,7 @@ bool Statics::set_metric(double factor)
   std::vector<WaveModuli> moduli(material_.n_points());
   material_.wave_moduli(moduli);
   for (std::size_t q = 0; q < moduli.size(); ++q)
-    tangents_[q] =
-        factor * isotropic_stiffness(std::max(moduli[q].p - 4.0 / 3 * moduli[q].s, moduli[q].s / 3), moduli[q].s);
+    tangents_[q] = factor * isotropic_stiffness(bulk_modulus(moduli[q]), moduli[q].s);
   return factorise();
 }
 

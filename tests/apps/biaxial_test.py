@@ -29,6 +29,21 @@ poisson_ratio = 0.3
 axial_strain = 0.01
 steps = 2
 """
+FRICTION = """title = "friction"
+[mesh]
+cells_across = 2
+cells_up = 2
+[soil]
+material = "mohr_coulomb"
+shear_modulus = "50 MPa"
+poisson_ratio = 0.25
+friction_angle = "36 deg"
+dilatancy_angle = "8 deg"
+cohesion = "3 kPa"
+[test]
+axial_strain = 0.02
+steps = 10
+"""
 GRAINS = """title = "two elements"
 [mesh]
 cells_across = 1
@@ -62,6 +77,27 @@ class Biaxial(AppTest):
     def maps(self, name="run"):
         with h5py.File(self.folder / name / "maps.h5") as file:
             return {key: np.asarray(values) for key, values in file.items()}
+
+    def test_mohr_coulomb_block_is_the_closed_form(self):
+        self.assert_done(self.run_block(FRICTION))
+        rows, phi, psi = self.history(), np.radians(36), np.radians(8)
+        ratio = (1 + np.sin(phi)) / (1 - np.sin(phi))
+        solved = "Newton's method with a consistent tangent: 1e-6 of the force"
+        self.assert_close(rows["axial_stress"][-3:], ratio * 100e3 + 2 * 3e3 * np.sqrt(ratio), 1e-6, solved)
+        axial, lateral = np.diff(rows["axial_strain"])[-1], np.diff(rows["lateral_strain"])[-1]
+        self.assert_near((axial + lateral) / (axial - lateral), -np.sin(psi), 1e-6, solved)
+        self.assertLessEqual(max(rows["iterations"]), 4)
+        refused = self.run_block(FRICTION, "--set", "soil.dilatancy_angle=40 deg")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("soil.dilatancy_angle = 40 deg; must not exceed friction_angle", refused.stderr)
+
+    def test_weak_elements_have_less_strength(self):
+        self.assert_done(self.run_block(FRICTION, "--set", "weak.cells=2", "--set", "weak.factor=0.9"))
+        tangent = 0.9 * np.tan(np.radians(36))
+        sine = tangent / np.hypot(1, tangent)
+        ratio = (1 + sine) / (1 - sine)
+        self.assert_close(self.history()["axial_stress"][-1], ratio * 100e3 + 2 * 2.7e3 * np.sqrt(ratio), 1e-6,
+                          "a block that is weak everywhere: Newton's method to 1e-6 of the force")
 
     def test_elastic_block_is_the_closed_form(self):
         nu, strain = 0.3, 0.01
@@ -144,6 +180,42 @@ class Biaxial(AppTest):
         newton, relaxed = self.history()["axial_stress"], self.history("relaxed")["axial_stress"]
         self.assert_near(np.abs(relaxed / newton - 1).max(), 0, 1e-4, "tolerance of 1e-6 over a tangent far below M")
         self.assert_refused(self.run_block(iwan, "--set", "newton.max_iterations=0"), "newton.max_iterations")
+
+    def test_length(self):
+        relaxed = ("--set", "nonlocal.length=0.5 m", "--set", "newton.max_iterations=0", "--set",
+                   "newton.relaxation_iterations=2000")
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *relaxed, name="uniform"))
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), name="local"))
+        stress = [self.history(name)["axial_stress"][-1] for name in ("uniform", "local")]
+        self.assert_close(stress[0], stress[1], 1e-5, "uniform strain is untouched; tolerance of 1e-6")
+        self.assertIn("length              0.5 m", (self.folder / "uniform/summary.txt").read_text(encoding="utf-8"))
+        self.assertNotIn("mean_shear_strain", self.maps("local"))
+        weak = [part for key in ("weak.cells=1", "weak.column=1", "weak.row=2", "weak.factor=0.2")
+                for part in ("--set", key)]
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *weak, name="local"))
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), *weak, *relaxed))
+        maps, local = self.maps(), self.maps("local")
+        spread = [np.ptp(field[-1]) for field in (maps["mean_shear_strain"], maps["shear_strain"],
+                                                  local["shear_strain"])]
+        self.assertLess(spread[0], spread[1])
+        self.assertLess(spread[1], spread[2])
+        self.assert_refused(self.run_block(ELASTIC.format(degree=1), *relaxed[:2]), "nonlocal.length", "relaxation")
+
+    def test_band_with_a_length_is_that_of_every_mesh(self):
+        scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/mohr_coulomb.toml"
+        stress = {}
+        for length in ("0.08 m", "0 m"):
+            for cells in (4, 8):
+                keys = (f"mesh.cells_across={cells}", f"mesh.cells_up={2 * cells}", f"weak.cells={cells // 4}",
+                        f"nonlocal.length={length}", "test.steps=15")
+                self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--overwrite", "--no-figures", "-q",
+                                              *[part for key in keys for part in ("--set", key)]))
+                stress[length, cells] = self.history()["axial_stress"]
+        coarse, fine = stress["0.08 m", 4], stress["0.08 m", 8]
+        self.assert_below(fine[-1] / fine.max(), 0.85, "or nothing softens")
+        self.assert_near(coarse / fine, 1, 5e-3, "measured 0.2 %")
+        apart = np.abs(stress["0 m", 4] / stress["0 m", 8] - 1).max()
+        self.assertGreater(apart, 0.2)  # at 0.7 %: a band of one point falls at once
 
     def test_scene_is_read_back_and_refused(self):
         shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")

@@ -75,7 +75,7 @@ TEST(ColumnSceneError, Materials)
       {"column.toml:6: layer.0.strength_ratio = 0.6; does not belong to a layer of material \"elastic\", only "
        "to iwan. Remove it or change the material."});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
-                   {"must be \"elastic\", \"iwan\", \"grains\" or \"user\""});
+                   {"must be \"elastic\", \"iwan\", \"mohr_coulomb\", \"grains\" or \"user\""});
   expect_complaint("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
   expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
                    {"layer.1.phase_transformation_ratio=0.6"});
@@ -83,6 +83,27 @@ TEST(ColumnSceneError, Materials)
   expect_complaint(sand + undrained + dynamic, {"must be in [4, 128]"}, {"layer.0.elements=140"});
   expect_complaint(sand + "dilatoin = 3\n" + undrained + dynamic,
                    {"column.toml:6: layer.0.dilatoin", "mean layer.dilation?"});
+}
+
+TEST(ColumnSceneError, MohrCoulomb)
+{
+  const std::string soil = "[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
+                           "m/s\"\ncells = 5\n";
+  const std::string rest = dry + dynamic;
+  EXPECT_EQ(complaint(soil + rest), "accepted");
+  expect_complaint(soil + "friction_angle = \"90 deg\"\n" + rest,
+                   {"column.toml:6: layer.0.friction_angle = 90 deg; must be in [0 deg, 90 deg) because tan()"});
+  expect_complaint(soil + "friction_angle = \"30 deg\"\ndilatancy_angle = \"31 deg\"\n" + rest,
+                   {"column.toml:7: layer.0.dilatancy_angle = 31 deg; must not exceed friction_angle", "smaller"});
+  expect_complaint(soil + "cohesion = \"-1 kPa\"\n" + rest, {"layer.0.cohesion = -1 kPa; must be >= 0 kPa"});
+  expect_complaint(soil + "softening_strain = 0.1\n" + rest,
+                   {"column.toml:6: layer.0.softening_strain = 0.1; has no effect", "residual_friction_angle"});
+  expect_complaint(soil + "residual_friction_angle = \"33 deg\"\n" + rest,
+                   {"layer.0.softening_strain; must be above 0", "softening_strain = 0.1"});
+  expect_complaint(soil + rest, {"--set layer.0.residual_friction_angle", "must not exceed friction_angle"},
+                   {"layer.0.softening_strain=0.1", "layer.0.residual_friction_angle=41 deg"});
+  expect_complaint(layer + "cohesion = \"5 kPa\"\n" + rest,
+                   {"does not belong to a layer of material \"elastic\", only to mohr_coulomb."});
 }
 
 TEST(ColumnSceneError, MeshAndWater)

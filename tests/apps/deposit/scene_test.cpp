@@ -241,6 +241,7 @@ TEST(ColumnScene, RoundTripToTheBit)
             item.density = scene.water.density + 1 / 3.0;
             item.saturation = scene.water.drainage == Drainage::coupled ? item.saturation : 1;
             item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanParameters{};
+            item.mohr_coulomb = {}; // its own test is below
             if (item.material == LayerMaterial::iwan)
               item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;
           }
@@ -267,6 +268,26 @@ TEST(ColumnScene, RoundTripToTheBit)
       }
 }
 
+TEST(ColumnScene, MohrCoulombLayerComesBackWithItsStiffness)
+{
+  const std::string text = "[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
+                           "m/s\"\ncells = 5\n";
+  const ColumnScene plain = parse_column_scene(text + dry + dynamic, "s");
+  EXPECT_EQ(plain.layers[0].mohr_coulomb, MohrCoulombParameters{}); // defaults of the keys and of the struct
+  const ColumnScene scene = parse_column_scene(
+      text +
+          "friction_angle = \"36.5 deg\"\ndilatancy_angle = \"6 deg\"\ncohesion = \"2 kPa\"\nsoftening_strain = 0.2\n" +
+          "residual_friction_angle = \"31 deg\"\nresidual_dilatancy_angle = \"0 deg\"\nexponent = 0.5\n" + dry +
+          dynamic,
+      "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
+  const MohrCoulombParameters soil = scene.layers[0].frictional_soil();
+  EXPECT_EQ(soil.shear_modulus, 2000.0 * 200 * 200);
+  EXPECT_EQ(soil.poisson_ratio, 0.3);
+  EXPECT_EQ(soil.residual_dilatancy, 0.0);
+  EXPECT_FALSE(soil.residual_cohesion);
+}
+
 TEST(ColumnScene, PrintedDefaultsAreAScene)
 {
   const ColumnScene scene = parse_column_scene(default_column_scene(), "default.toml");
@@ -279,10 +300,12 @@ TEST(ColumnScene, PrintedDefaultsAreAScene)
 
 TEST(ColumnSchema, EveryKeyIsDescribed)
 {
-  std::map<std::string, unsigned> paths;
+  std::map<std::string, unsigned> kinds; // of each path so far
   for (const Key &key : column_schema().keys)
     {
-      EXPECT_TRUE(paths.try_emplace(key.path, 0).second) << key.path << " twice";
+      constexpr unsigned all = ~0u;
+      EXPECT_EQ(kinds[key.path] & (key.kinds ? key.kinds : all), 0u) << key.path << " twice for the same kind";
+      kinds[key.path] |= key.kinds ? key.kinds : all;
       EXPECT_TRUE(std::string_view(key.text).ends_with('.')) << key.path;
       EXPECT_TRUE(key.field) << key.path;
       EXPECT_TRUE(key.section().empty() || column_schema().find_section(key.section())) << key.path;

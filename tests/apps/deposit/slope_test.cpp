@@ -60,6 +60,16 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
   // beside a deviator of k0 = 0.5, sqrt(0.6^2 (2/3)^2 - 0.25/3) of the normal stress is left
   EXPECT_NEAR_BECAUSE(factor(sand + "strength_ratio = 0.6\n" + dry + slope("10") + dynamic),
                       std::sqrt(0.16 - 0.25 / 3) / tangent, exact);
+  // Mohr-Coulomb at k0 = 1: its circle has the radius sin(phi) of the normal stress, and a cohesion adds c cos(phi)
+  const std::string frictional = "[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
+                                 "m/s\"\ncells = 5\nk0 = 1.0\ndilatancy_angle = \"0 deg\"\n";
+  EXPECT_NEAR_BECAUSE(
+      factor(frictional + "friction_angle = \"30 deg\"\ncohesion = \"0 kPa\"\n" + dry + slope("10") + dynamic),
+      0.5 / tangent, exact);
+  const double weight = 5 * 2000 * 9.81; // at the base, where cohesion helps least
+  EXPECT_NEAR_BECAUSE(
+      factor(frictional + "friction_angle = \"30 deg\"\ncohesion = \"10 kPa\"\n" + dry + slope("10") + dynamic),
+      (0.5 + 10e3 * std::cos(30 * degree) / (weight * std::cos(10 * degree))) / tangent, exact);
   EXPECT_FALSE(slope_safety(parse_column_scene(loose + dry + dynamic, "level")));
   EXPECT_FALSE(slope_safety(parse_column_scene(layer + dry + slope("10") + dynamic, "elastic")));
 }
@@ -76,6 +86,10 @@ TEST(SlopeScene, WhatCannotStandIsRefused)
   // beside a deviator of k0 = 0.5: tan = 0.2769
   expect_refusal(sand + "strength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
   EXPECT_NO_THROW(parse_column_scene(sand + "strength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
+  expect_refusal("[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
+                 "m/s\"\ncells = 5\nfriction_angle = \"30 deg\"\ncohesion = \"0 kPa\"\n" +
+                     dry + slope("29") + dynamic,
+                 {"column.toml:6: layer.0.friction_angle = 30 deg; is too low for the slope to stand", "k0 = 0.5"});
   expect_refusal(loose + dry + slope("61") + dynamic,
                  {"slope.angle", "in [0 deg, 60 deg] because x points down", "no slope of soil is steeper"});
   expect_refusal(loose + dry + slope("-1") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});

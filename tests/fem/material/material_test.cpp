@@ -3,6 +3,8 @@
 #include "fem/material/composite.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan.hpp"
+#include "fem/material/mohr_coulomb.hpp"
+#include "fem/material/nonlocal.hpp"
 
 #include <cstring>
 #include <gmock/gmock.h>
@@ -18,6 +20,7 @@ constexpr std::size_t n = 5;
 
 std::unique_ptr<Material> make_elastic() { return std::make_unique<Elastic>(ElasticParameters{}, n); }
 std::unique_ptr<Material> make_iwan() { return std::make_unique<Iwan>(IwanParameters{}, n); }
+std::unique_ptr<Material> make_mohr_coulomb() { return std::make_unique<MohrCoulomb>(MohrCoulombParameters{}, n); }
 std::unique_ptr<Material> make_layers()
 {
   std::vector<std::unique_ptr<Material>> parts;
@@ -33,6 +36,15 @@ std::unique_ptr<Material> make_composite()
   parts.push_back({std::make_unique<Iwan>(IwanParameters{}, 3), {4, 0, 2}});
   parts.push_back({std::make_unique<Elastic>(ElasticParameters{}, 2), {1, 3}});
   return std::make_unique<CompositeMaterial>(std::move(parts));
+}
+
+/// Points 0, 2, 4 and points 1, 3 lie side by side, all others out of reach.
+std::unique_ptr<Material> make_nonlocal()
+{
+  const std::vector<std::array<double, 3>> positions = {
+      {0, 0, 0}, {9, 0, 0}, {0.1, 0, 0.1}, {9, 0, 0.1}, {0, 0.1, 0.1}};
+  const std::vector<double> volumes = {1, 2, 0.5, 1, 1};
+  return std::make_unique<Nonlocal>(make_iwan(), NonlocalParameters{.length = 0.1}, positions, volumes);
 }
 
 /// What the solver relies on, of every material.
@@ -144,6 +156,8 @@ TEST_P(MaterialProtocol, RefusesOtherBytes)
   EXPECT_THROW(m->unpack(Elastic({}, n + 1).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({.contraction = 0.1}, n).pack()), InputError);
   EXPECT_THROW(m->unpack(Iwan({}, n - 1).pack()), InputError);
+  EXPECT_THROW(m->unpack(MohrCoulomb({.cohesion = 2e3}, n).pack()), InputError);
+  EXPECT_THROW(m->unpack(MohrCoulomb({}, n + 1).pack()), InputError);
   for (std::size_t size = 0; size < bytes.common.size(); size += 7)
     {
       auto cut = bytes;
@@ -208,7 +222,9 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol, testing::Values(make_elastic, make_iwan, make_layers, make_composite));
+INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol,
+                         testing::Values(make_elastic, make_iwan, make_mohr_coulomb, make_layers, make_composite,
+                                         make_nonlocal));
 
 TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {

@@ -125,6 +125,30 @@ inline SecantMaterial::Law locking(double shear_modulus, double gamma_0)
   };
 }
 
+/// G gamma to the peak, then (peak - residual) exp[-(gamma - gamma_peak)/fall] + residual.
+struct Softening
+{
+  double modulus = 5e7, peak = 1e5, residual = 0.3e5; // Pa
+  double fall = 1e-2;                                 // of strain
+
+  double at_peak() const { return peak / modulus; }
+  double stress(double gamma) const
+  {
+    return gamma <= at_peak() ? modulus * gamma : residual + (peak - residual) * std::exp(-(gamma - at_peak()) / fall);
+  }
+  SecantMaterial::Law law() const
+  {
+    return [*this](double gamma) {
+      if (gamma <= at_peak())
+        return SecantMaterial::Secant{modulus, 0};
+      const double tau = stress(gamma), slope = -(tau - residual) / fall;
+      return SecantMaterial::Secant{tau / gamma, (slope - tau / gamma) / gamma};
+    };
+  }
+  /// All strengths times a factor.
+  Softening times(double factor) const { return {modulus, factor * peak, factor * residual, fall}; }
+};
+
 /// A column of sand of unit height that the surface shears along x; the base is fixed.
 inline MeshSpec sheared_column_mesh(unsigned cells = 4, double permeability = 1e-5)
 {

@@ -16,39 +16,20 @@ namespace
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr double modulus = 5e7, peak = 1e5, residual = 0.3e5, fall = 1e-2, weakness = 0.95; // Pa; strain of the fall
-
-/// G gamma to the strength, then (peak - residual) exp[-(gamma - gamma_p)/fall] + residual; strengths times `factor`.
-double softening_stress(double gamma, double factor)
-{
-  const double at_peak = factor * peak / modulus;
-  return gamma <= at_peak ? modulus * gamma
-                          : factor * (residual + (peak - residual) * std::exp(-(gamma - at_peak) / fall));
-}
-
-SecantMaterial::Law softening(double factor)
-{
-  return [=](double gamma) {
-    const double at_peak = factor * peak / modulus;
-    if (gamma <= at_peak)
-      return SecantMaterial::Secant{modulus, 0};
-    const double tau = softening_stress(gamma, factor);
-    const double slope = -(tau - factor * residual) / fall;
-    return SecantMaterial::Secant{tau / gamma, (slope - tau / gamma) / gamma};
-  };
-}
+constexpr double weakness = 0.95;
+const Softening strong, weak = strong.times(weakness);
 
 /// Stress of a column of four layers, the lowest of them weak and softening, the others on their way back.
 double stress_past_peak(double displacement)
 {
-  double below = weakness * residual, above = weakness * peak;
+  double below = weak.residual, above = weak.peak;
   for (int k = 0; k < 100; ++k)
     {
       const double tau = (below + above) / 2;
-      double low = weakness * peak / modulus, high = 1;
+      double low = weak.at_peak(), high = 1;
       for (int i = 0; i < 100; ++i)
-        (softening_stress((low + high) / 2, weakness) > tau ? low : high) = (low + high) / 2;
-      (0.25 * low + 0.75 * tau / modulus > displacement ? below : above) = tau; // more strain: less stress
+        (weak.stress((low + high) / 2) > tau ? low : high) = (low + high) / 2;
+      (0.25 * low + 0.75 * tau / strong.modulus > displacement ? below : above) = tau; // more strain: less stress
     }
   return below;
 }
@@ -60,8 +41,8 @@ struct Column
     std::vector<CompositeMaterial::Part> parts(2);
     for (std::size_t q = 0; q < space.n_points(); ++q)
       parts[space.position[q][2] < 0.25 ? 1 : 0].places.push_back(q);
-    parts[0].material = std::make_unique<SecantMaterial>(1e8, softening(1), parts[0].places.size());
-    parts[1].material = std::make_unique<SecantMaterial>(1e8, softening(weakness), parts[1].places.size());
+    parts[0].material = std::make_unique<SecantMaterial>(1e8, strong.law(), parts[0].places.size());
+    parts[1].material = std::make_unique<SecantMaterial>(1e8, weak.law(), parts[1].places.size());
     soil = std::make_unique<CompositeMaterial>(std::move(parts));
     StaticsSettings settings;
     settings.newton = newton;
@@ -120,7 +101,7 @@ TEST(StaticsRelaxation, LeavesAnEquilibriumThatNoSoilKeeps)
   newton.statics->step(0.01);
   relaxation.statics->step(0.01);
   std::printf("Newton %.5g Pa, relaxation %.5g Pa\n", newton.stress(), relaxation.stress());
-  EXPECT_GT(newton.stress(), 0.9 * softening_stress(0.01, 1)) << "as steep as it is, the residual leads there";
+  EXPECT_GT(newton.stress(), 0.9 * strong.stress(0.01)) << "as steep as it is, the residual leads there";
   EXPECT_CLOSE_BECAUSE(relaxation.stress(), stress_past_peak(0.01), 1e-5, "tolerance of 1e-7");
 }
 
@@ -139,14 +120,14 @@ struct Understated : SecantMaterial
       : SecantMaterial(
             1e8,
             [](double) {
-              return Secant{modulus, 0};
+              return Secant{strong.modulus, 0};
             },
             n_points),
         part_(part)
   {}
   void wave_moduli(std::span<WaveModuli> moduli) const override
   {
-    std::fill(moduli.begin(), moduli.end(), WaveModuli{part_ * (1e8 + 4 * modulus / 3), part_ * modulus});
+    std::fill(moduli.begin(), moduli.end(), WaveModuli{part_ * (1e8 + 4 * strong.modulus / 3), part_ * strong.modulus});
   }
 
 private:

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/motion_keys.hpp"
+
+#include "base/scene/ranges.hpp"
+
+namespace isostat
+{
+namespace
+{
+using namespace ranges;
+
+constexpr const char *axis_choices[] = {"x", "y", "z"};
+constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
+constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
+constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
+
+constexpr unsigned record = kind_bit(MotionKind::record);
+constexpr unsigned harmonic = kind_bit(MotionKind::harmonic);
+constexpr unsigned ricker = kind_bit(MotionKind::ricker);
+
+// clang-format off
+constexpr Key keys[] = {
+  {.path = "axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
+           "rigid body: no P waves; use coupled for them.",
+   .field = [](ColumnMotion &m) -> Field { return &m.axis; }},
+  {.path = "kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
+   .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
+   .field = [](ColumnMotion &m) -> Field { return &m.kind; }},
+  {.path = "file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
+   .kinds = record,
+   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file or "
+           "else from the working directory.",
+   .field = [](ColumnMotion &m) -> Field { return &m.file; }},
+  {.path = "unit", .kind = Kind::choice, .value = "g", .choices = unit_choices, .kinds = record,
+   .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",
+   .field = [](ColumnMotion &m) -> Field { return &m.unit; }},
+  {.path = "baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
+   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
+           "drift of the displacement.",
+   .field = [](ColumnMotion &m) -> Field { return &m.baseline; }},
+  {.path = "factor", .value = "1", .kinds = record, .group = "scale",
+   .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
+   .field = [](ColumnMotion &m) -> Field { return &m.factor; }},
+  {.path = "peak", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
+   .presence = Presence::optional, .value = "0.2 g", .range = positive, .kinds = record, .group = "scale",
+   .text = "Largest acceleration to which the record is scaled; excludes `factor`.",
+   .field = [](ColumnMotion &m) -> Field { return &m.peak; }},
+  {.path = "amplitude", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
+   .presence = Presence::required, .value = "0.1 g", .kinds = harmonic | ricker, .text = "Amplitude of the acceleration.",
+   .field = [](ColumnMotion &m) -> Field { return &m.amplitude; }},
+  {.path = "frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
+   .presence = Presence::required, .value = "2 Hz", .range = positive, .kinds = harmonic | ricker,
+   .text = "Frequency of the sine; of a wavelet the one where its spectrum is largest.",
+   .field = [](ColumnMotion &m) -> Field { return &m.frequency; }},
+  {.path = "duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::required, .value = "10 s", .range = positive, .kinds = harmonic, .text = "Duration of the sine.",
+   .field = [](ColumnMotion &m) -> Field { return &m.duration; }},
+  {.path = "ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
+   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end.",
+   .field = [](ColumnMotion &m) -> Field { return &m.ramp; }},
+  {.path = "centre", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "0.75 s", .range = positive, .kinds = ricker,
+   .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency.",
+   .field = [](ColumnMotion &m) -> Field { return &m.centre; }},
+  {.path = "interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = harmonic | ricker,
+   .text = "Time between samples, straight in between; left out: 1 / (500 frequency).",
+   .field = [](ColumnMotion &m) -> Field { return &m.interval; }},
+  {.path = "again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .presence = Presence::optional, .value = "20 s", .range = positive,
+   .text = "Time at which the same motion starts for the second time; left out: it comes once.",
+   .field = [](ColumnMotion &m) -> Field { return &m.again; }},
+};
+// clang-format on
+} // namespace
+
+SceneFragment<ColumnMotion> motion_keys() { return {keys}; }
+} // namespace isostat

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "apps/deposit/scene.hpp"
+#include "base/scene/fragment.hpp"
+
+namespace isostat
+{
+/// The keys of [[motion]].
+SceneFragment<ColumnMotion> motion_keys();
+} // namespace isostat

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/material/mohr_coulomb.hpp"
+
+#include "fem/material/mohr_coulomb_scene.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+/// All residual values in their place, so that no parameter is missing.
+MohrCoulombParameters completed(MohrCoulombParameters p)
+{
+  p.residual_friction = p.residual_friction.value_or(p.friction);
+  p.residual_cohesion = p.residual_cohesion.value_or(p.cohesion);
+  p.residual_dilatancy = p.residual_dilatancy.value_or(p.dilatancy);
+  return p;
+}
+
+/// All parameters, in the order of their keys.   @pre completed
+std::vector<double> as_numbers(MohrCoulombParameters p)
+{
+  std::vector<double> numbers;
+  for (const Key &key : all_mohr_coulomb_keys().keys)
+    {
+      const Field field = key.field(&p, nullptr);
+      const auto *const *real = std::get_if<double *>(&field);
+      numbers.push_back(real ? **real : **std::get<std::optional<double> *>(field));
+    }
+  return numbers;
+}
+
+std::string said(const Key &key, double scale)
+{
+  return std::string("mohr_coulomb: ") + key.path + " = " +
+         (key.kind == Kind::quantity ? format_bound(scale, key.dimension, key.unit) : number_text(scale)) + "; ";
+}
+
+void check(const MohrCoulombParameters &p)
+{
+  const std::vector<double> values = as_numbers(completed(p));
+  const MohrCoulombProblem problem = mohr_coulomb_problem(p);
+  const auto scale = [](const Key &key, double value) { // the one of its range
+    return key.kind == Kind::quantity && key.dimension == Dimension::angle ? std::atan(value) * 180 / std::numbers::pi
+                                                                           : value;
+  };
+  for (std::size_t i = 0; const Key &key : all_mohr_coulomb_keys().keys)
+    if (const double value = scale(key, values[i++]); !key.range.contains(value))
+      throw InputError(said(key, value) + "must be " + range_text(key) + (*key.reason ? " " : "") + key.reason +
+                       "; give a value in that range");
+  for (std::size_t i = 0; const Key &key : all_mohr_coulomb_keys().keys)
+    {
+      const double value = scale(key, values[i++]);
+      if (problem.key && key.name() == problem.key)
+        throw InputError(said(key, value) + problem.text);
+    }
+}
+
+std::string at_point(std::size_t i) { return "mohr_coulomb: point " + std::to_string(i) + ": "; }
+
+bool is_finite(const Stress &stress)
+{
+  return std::all_of(stress.begin(), stress.end(), [](double s) { return std::isfinite(s); });
+}
+} // namespace
+
+MohrCoulombParameters weakened(const MohrCoulombParameters &soil, double factor)
+{
+  MohrCoulombParameters p = soil;
+  for (double *strength : {&p.friction, &p.cohesion, &p.dilatancy})
+    *strength *= factor;
+  for (std::optional<double> *strength : {&p.residual_friction, &p.residual_cohesion, &p.residual_dilatancy})
+    if (*strength)
+      **strength *= factor;
+  return p;
+}
+
+MohrCoulomb::MohrCoulomb(const MohrCoulombParameters &p, std::size_t n_points)
+    : parameters_(completed(p)), n_points_(n_points)
+{
+  check(p);
+  lambda_per_shear_ = 2 * p.poisson_ratio / (1 - 2 * p.poisson_ratio);
+  committed_.assign(n_points * stride, 0.0);
+  for (std::size_t i = 0; i < n_points; ++i)
+    committed_[i * stride + modulus] = p.shear_modulus;
+  trial_ = committed_;
+  increments_.resize(n_points);
+}
+
+MohrCoulombStrength MohrCoulomb::strength(double kappa) const
+{
+  const MohrCoulombParameters &p = parameters_;
+  if (p.softening_strain == 0)
+    return MohrCoulombStrength::of(p.friction, p.cohesion, p.dilatancy);
+  const double part = std::min(1.0, kappa / p.softening_strain);
+  const auto now = [&](double peak, double residual) { return (1 - part) * peak + part * residual; };
+  return MohrCoulombStrength::of(now(p.friction, *p.residual_friction), now(p.cohesion, *p.residual_cohesion),
+                                 now(p.dilatancy, *p.residual_dilatancy));
+}
+
+void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
+{
+  assert(effective.size() == n_points_);
+  const MohrCoulombParameters &p = parameters_;
+  std::vector<double> states(committed_.size(), 0.0);
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      const Stress &s = effective[i];
+      double *state = &states[i * stride];
+      const double pressure = std::max(-(s[0] + s[1] + s[2]) / 3, 1e-3 * p.reference_pressure);
+      std::copy(s.begin(), s.end(), state);
+      state[modulus] = p.shear_modulus * std::pow(pressure / p.reference_pressure, p.exponent);
+      if (!is_finite(s))
+        throw InputError(at_point(i) + "the initial stress is not a number; give one");
+      constexpr double round_off = 1e-9;
+      if (const double beyond = yield(s); beyond > round_off * std::abs(s[0] + s[1] + s[2]))
+        throw InputError(at_point(i) + "initial principal stresses are beyond the strength by " +
+                         number_text(beyond / 1e3) +
+                         " kPa of (s_1 - s_3) + (s_1 + s_3) sin(phi) - 2 c cos(phi); choose k0 nearer to 1, or a "
+                         "larger friction_angle or cohesion");
+    }
+  committed_ = std::move(states);
+  has_trial_ = false;
+}
+
+void MohrCoulomb::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
+{
+  assert(increments.size() == n_points_ && stresses.size() == n_points_);
+  has_trial_ = false;
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      const double *from = &committed_[i * stride];
+      double *to = &trial_[i * stride];
+      const Step d = step(from, increments[i]);
+      if (!is_finite(d.stress))
+        throw RunFailure(at_point(i) + "the stress is not a number; take smaller steps");
+      std::copy(d.stress.begin(), d.stress.end(), to);
+      to[plastic] = d.plastic;
+      to[modulus] = from[modulus];
+      stresses[i] = d.stress;
+      increments_[i] = increments[i];
+    }
+  has_trial_ = true;
+}
+
+void MohrCoulomb::stiffness(std::span<Stiffness> tangents) const
+{
+  for (std::size_t i = 0; i < n_points_; ++i)
+    tangents[i] = tangent(&committed_[i * stride], has_trial_ ? increments_[i] : Gradient{});
+}
+
+void MohrCoulomb::wave_moduli(std::span<WaveModuli> moduli) const
+{
+  for (std::size_t i = 0; i < n_points_; ++i)
+    {
+      const double shear = committed_[i * stride + modulus];
+      moduli[i] = {(lambda_per_shear_ + 2) * shear, shear};
+    }
+}
+
+MaterialState MohrCoulomb::pack() const
+{
+  ByteWriter out;
+  out.text(name());
+  out.numbers(as_numbers(parameters_));
+  return {out.take(), packed_rows(committed_, n_points_)};
+}
+
+void MohrCoulomb::unpack(const MaterialState &state)
+{
+  ByteReader in(state.common, name());
+  in.expect(in.text(), name());
+  std::vector<double> stored = as_numbers(parameters_);
+  in.numbers(stored, "parameters");
+  if (stored != as_numbers(parameters_))
+    in.fail("its parameters are others");
+  in.expect_end();
+  std::vector<double> states(committed_.size());
+  unpack_rows(state, name(), states, n_points_);
+  committed_ = std::move(states);
+  has_trial_ = false;
+}
+} // namespace isostat
