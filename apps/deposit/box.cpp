@@ -18,6 +18,10 @@ constexpr const char *side_choices[] = {"tied", "walls"};
 
 // clang-format off
 constexpr Key in_mesh[] = {
+  {.path = "points", .kind = Kind::integer, .value = "0", .range = {0, 4}, .reason = "because elements are quadratic at most",
+   .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
+           "degree 2 (reduced integration) takes fewer packings.",
+   .field = [](ColumnMesh &m) -> Field { return &m.points; }},
   {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
    .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension 2), a box "
            "whose smooth walls move with its rigid base. The soil settles into equilibrium before "

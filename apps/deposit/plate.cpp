@@ -19,23 +19,24 @@ constexpr const char *sides[] = {"surface", "base", "left", "right"};
 
 // clang-format off
 constexpr Key of_plate[] = {
-  {.path = "plate.on", .kind = Kind::choice, .value = "surface", .choices = sides,
+  {.path = "on", .kind = Kind::choice, .value = "surface", .choices = sides,
    .text = "A footing on the surface, a trapdoor in the base, a left or right wall.",
    .field = [](Plate &p) -> Field { return &p.on; }},
-  {.path = "plate.from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
+  {.path = "from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
    .value = "0 m", .range = not_negative,
    .text = "x where it begins, on a wall z, on a boundary between elements; left out: at the end of its side.",
    .field = [](Plate &p) -> Field { return &p.from; }},
-  {.path = "plate.to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
+  {.path = "to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
    .value = "2 m", .range = positive, .text = "Where it ends, likewise.",
    .field = [](Plate &p) -> Field { return &p.to; }},
-  {.path = "plate.displacement", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0.1 m",
+  {.path = "displacement", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0.1 m",
    .text = "How far it moves into the soil; negative: away from it.",
    .field = [](Plate &p) -> Field { return &p.displacement; }},
-  {.path = "plate.rough", .kind = Kind::boolean, .value = "true",
+  {.path = "rough", .kind = Kind::boolean, .value = "true",
    .text = "Whether the soil sticks to it; false: it slides freely.",
    .field = [](Plate &p) -> Field { return &p.rough; }},
-  {.path = "plate.steps", .kind = Kind::integer, .value = "100", .range = counts, .text = "Equal steps of its way.",
+  {.path = "load_steps", .kind = Kind::integer, .value = "100", .range = counts,
+   .reason = one_or_more, .text = "Equal steps of its way.",
    .field = [](Plate &p) -> Field { return &p.steps; }},
 };
 // clang-format on
@@ -52,7 +53,7 @@ double length_of_side(const ColumnScene &scene)
 SceneFragment<Plate> plate_keys()
 {
   static const KeyTable keys{of_plate,
-                             splice("plate", newton_keys(), 0, [](Plate &p) -> NewtonSettings & { return p.newton; })};
+                             splice("", newton_keys(), 0, [](Plate &p) -> NewtonSettings & { return p.newton; })};
   return {keys.keys()};
 }
 
@@ -79,11 +80,11 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("load.kind", "must be \"none\" beside a plate; a surcharge may be there.");
   const Patch patch = plate_patch(scene);
   if (const double length = length_of_side(scene); !(patch.from < patch.to && patch.to <= length * (1 + 1e-9)))
-    document.refuse(scene.plate.to ? "analysis.plate.to" : "analysis.plate.from",
+    document.refuse(scene.plate.to ? "analysis.to" : "analysis.from",
                     fmt::format("must leave a plate on its side: from {} m to {} m of {} m.", number_text(patch.from),
                                 number_text(patch.to), number_text(length)));
   if (scene.plate.displacement == 0)
-    document.refuse("analysis.plate.displacement", "must not be 0 m, or nothing moves.");
-  check_newton(document, "analysis.plate", scene.plate.newton);
+    document.refuse("analysis.displacement", "must not be 0 m, or nothing moves.");
+  check_newton(document, "analysis", scene.plate.newton);
 }
 } // namespace isostat

@@ -43,7 +43,7 @@ struct Plate
   bool operator==(const Plate &) const = default;
 };
 
-/// The keys of [analysis.plate].
+/// The keys of [analysis].
 SceneFragment<Plate> plate_keys();
 
 /// The part of the boundary that a plate has.

@@ -152,6 +152,7 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.width = {scene.mesh.width, scene.mesh.width};
   mesh.cells_across = {scene.mesh.cells_across, scene.mesh.cells_across};
   mesh.degree = scene.mesh.degree;
+  mesh.points_per_direction = scene.mesh.points;
   mesh.ground = ground_line(scene.mesh);
   mesh.line[0] = scene.output.x.value_or(scene.mesh.sides == Sides::walls ? scene.mesh.width / 2 : 0);
   if (scene.analysis.kind == AnalysisKind::plate)

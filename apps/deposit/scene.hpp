@@ -28,6 +28,7 @@ struct ColumnMesh
   unsigned degree = 2;       ///< of the displacement
   double width = 1;          ///< along x, in 3D along y too, m
   unsigned cells_across = 1; ///< along the same
+  unsigned points = 0;       ///< Gauss points of an element along each axis; 0: those of MeshSpec
   Sides sides = Sides::tied;
   std::vector<double> ground_x, ground_z; ///< points of a surface that is not level, m; empty: level
   bool distributed = false;               ///< one mesh over all ranks instead of a copy on each

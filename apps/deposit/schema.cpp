@@ -4,7 +4,7 @@
 // fem/material/mohr_coulomb_scene.cpp, those of air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings
 // in coupling/scene/packings.cpp.
 #include "apps/deposit/box.hpp"
-#include "apps/deposit/motion_keys.hpp"
+#include "apps/deposit/ground_motion_keys.hpp"
 #include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
@@ -332,7 +332,7 @@ const SceneSchema &column_schema()
       splice("layer", drawn_specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       loading_keys,
-      splice("motion", motion_keys(), 0, [](ColumnScene &, ColumnMotion &m) -> ColumnMotion & { return m; }),
+      splice("motion", ground_motion_keys(), 0, [](ColumnScene &, ColumnMotion &m) -> ColumnMotion & { return m; }),
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
       result_keys,
       splice("analysis", plate_keys(), kind_bit(AnalysisKind::plate),

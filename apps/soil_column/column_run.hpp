@@ -132,11 +132,8 @@ protected:
   }
 
 private:
-  double settled()
-  {
-    const bool anew = request_.use != FolderUse::resume; // else the checkpoint brings the soil as it was
-    return scene_.mesh.sides == Sides::walls && anew ? settle(scene_, space_, *soil_.material) : 0;
-  }
+  /// A resumed run settles, too: the time step is that of the stiffness then.
+  double settled() { return scene_.mesh.sides == Sides::walls ? settle(scene_, space_, *soil_.material) : 0; }
 
   /// Those of a shaken block; a plate holds what it moves, and the soil along it if it is rough.
   static Supports supports_of(const ColumnScene &scene)

@@ -50,6 +50,42 @@ TEST(BoxScene, WithoutWallsAllIsAsItWas)
   EXPECT_EQ(load.surcharge_at(123), 3);
 }
 
+const std::string plate = "[water]\ndrainage = \"dry\"\n[analysis]\nkind = \"plate\"\ndisplacement = \"-0.2 m\"\n";
+
+std::string with_plate(const std::string &of_mesh = "", const std::string &more = "")
+{
+  return sand + "[mesh]\ndimension = 2\nwidth = \"10 m\"\nsides = \"walls\"\n" + of_mesh + plate + more;
+}
+
+TEST(BoxScene, PlatesComeThroughTextAndGoToTheMesh)
+{
+  const ColumnScene scene = parse_column_scene(
+      with_plate(ground,
+                 "on = \"right\"\nfrom = \"0.5 m\"\nrough = false\nload_steps = 7\nrelaxation_iterations = 9\n"),
+      "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
+  EXPECT_EQ(scene.plate.displacement, -0.2);
+  EXPECT_EQ(scene.plate.newton.relaxation_iterations, 9u);
+  EXPECT_EQ(scene.plate.axis(), 0u);
+  EXPECT_EQ(scene.plate.inwards(), -1);
+  const MeshSpec mesh = mesh_spec(scene);
+  ASSERT_EQ(mesh.patches.size(), 1u);
+  EXPECT_EQ(mesh.patches[0].of, Face::x_high);
+  EXPECT_EQ(mesh.patches[0].from, 0.5);
+  EXPECT_EQ(mesh.patches[0].to, 2); // up to the ground there
+  EXPECT_TRUE(mesh_spec(parse_column_scene(box(), "s")).patches.empty());
+}
+
+TEST(BoxScene, RefusesPlatesThatAreNone)
+{
+  expect_refusal(with_plate("", "to = \"11 m\"\n"), {"analysis.to", "from 0 m to 11 m of 10 m"});
+  expect_refusal(with_plate(), {"analysis.displacement", "nothing moves"}, {"analysis.displacement=0 m"});
+  expect_refusal(with_plate(), {"mesh.sides", "\"walls\" beside a plate"}, {"mesh.sides=tied"});
+  expect_refusal(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
+  expect_refusal(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
+  expect_refusal(box(), {"analysis.on", "only to plate"}, {"analysis.on=base"});
+}
+
 TEST(BoxScene, RefusesKeysOfABoxWhereTheSidesAreTied)
 {
   expect_refusal(sand + dry + "[output]\nx = \"1 m\"\n" + dynamic, {"box.toml:9", "output.x", "belongs to a box"});

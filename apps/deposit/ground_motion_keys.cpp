@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/deposit/motion_keys.hpp"
+#include "apps/deposit/ground_motion_keys.hpp"
 
 #include "base/scene/ranges.hpp"
 
@@ -74,5 +74,5 @@ constexpr Key keys[] = {
 // clang-format on
 } // namespace
 
-SceneFragment<ColumnMotion> motion_keys() { return {keys}; }
+SceneFragment<ColumnMotion> ground_motion_keys() { return {keys}; }
 } // namespace isostat

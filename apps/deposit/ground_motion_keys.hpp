@@ -6,5 +6,5 @@
 namespace isostat
 {
 /// The keys of [[motion]].
-SceneFragment<ColumnMotion> motion_keys();
+SceneFragment<ColumnMotion> ground_motion_keys();
 } // namespace isostat
