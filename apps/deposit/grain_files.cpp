@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 #include <mpi.h>
 #include <numeric>
 
@@ -38,18 +39,19 @@ std::vector<std::size_t> counted_to(std::size_t n)
 } // namespace
 
 GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil,
-                       const std::vector<double> &depths, const ColumnCheckpoint *resumed)
+                       const FiniteElementSpace &space, const ColumnCheckpoint *resumed)
     : folder_(std::move(folder)), grains_(*soil.grains),
-      pictured_(nearest_grains(soil, depths, scene.grain_output.snapshot_depths)),
-      followed_(nearest_grains(soil, depths, scene.grain_output.path_depths)),
-      n_snapshots_(counter(resumed, "grain_snapshots")), n_path_rows_(counter(resumed, "grain_paths"))
+      pictured_(nearest_grains(soil, space.mesh(), space.position, scene.grain_output.snapshot_depths)),
+      followed_(nearest_grains(soil, space.mesh(), space.position, scene.grain_output.path_depths)),
+      n_snapshots_(counter(resumed, "grain_snapshots")), n_path_rows_(counter(resumed, "grain_paths")),
+      places_(soil.grains_places), redundancy_(space.n_points(), std::numeric_limits<double>::quiet_NaN())
 {
   if (resumed)
     min_ = {resumed->number("min_IR"), resumed->number("min_IR_depth"), resumed->number("min_IR_time")};
   for (std::size_t place : soil.grains_places)
-    depths_.push_back(depths[place]);
+    depths_.push_back(space.mesh().depth(space.position[place]));
   history_.columns = counted_to(Micromechanics::columns().size());
-  history_.points = nearest_grains(soil, depths, scene.output.depths);
+  history_.points = nearest_grains(soil, space.mesh(), space.position, scene.output.depths);
   for (const char *name : profile_columns)
     profiles_.columns.push_back(column_number(name));
   profiles_.points = counted_to(depths_.size());
@@ -145,9 +147,12 @@ void GrainFiles::record(std::uint64_t step, double time)
 void GrainFiles::profile(std::uint64_t step, double time)
 {
   const std::vector<double> row = append(profiles_, step, time);
-  for (std::size_t at = 2; at < row.size(); at += 1 + profiles_.columns.size())
-    if (row[at + 1] < min_.redundancy)
-      min_ = {row[at + 1], row[at], time};
+  for (std::size_t k = 0, at = 2; at < row.size(); ++k, at += 1 + profiles_.columns.size())
+    {
+      redundancy_[places_[profiles_.points[k]]] = row[at + 1];
+      if (row[at + 1] < min_.redundancy)
+        min_ = {row[at + 1], row[at], time};
+    }
 }
 
 void GrainFiles::snapshots(double time)

@@ -20,9 +20,9 @@ namespace isostat
 class GrainFiles
 {
 public:
-  /// On every rank.   @param depths  of the points of the mesh, m   @param resumed  null: start anew
+  /// On every rank.   @param resumed  null: start anew
   GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
-             const std::vector<double> &depths, const ColumnCheckpoint *resumed);
+             const FiniteElementSpace &space, const ColumnCheckpoint *resumed);
 
   /// Starts or cuts the files.   Collective.   @param resumed  null: start anew   @throws RunFailure  on all ranks
   void open(const ColumnCheckpoint *resumed);
@@ -42,6 +42,8 @@ public:
     double redundancy = 1e300, depth = 0, time = 0;
   };
   const Minimum &minimum() const { return min_; }
+  /// Redundancy index in the last row of the profiles, of each point of the mesh; not-a-number where there is no packing.
+  const std::vector<double> &redundancy() const { return redundancy_; }
 
 private:
   /// Micromechanics of some points, side by side.
@@ -70,5 +72,7 @@ private:
   std::vector<std::unique_ptr<PvdCollection>> pictures_;
   std::vector<std::unique_ptr<Recorder>> paths_;
   Minimum min_;
+  std::vector<std::size_t> places_; ///< of the points of grains_ in the mesh
+  std::vector<double> redundancy_;
 };
 } // namespace isostat

@@ -33,13 +33,22 @@ void for_each_corner(const FiniteElementSpace &space, const F &f)
     for (std::size_t corner : anticlockwise)
       f(4 * cell + corner, space.cell_dofs[3 * (cell * space.n_nodes + corner)]);
 }
+
+std::vector<ProfileFile::Series> further_series(const FiniteElementSpace &space, bool packings)
+{
+  std::vector<ProfileFile::Series> series = {{"displacement_x", "m", 4 * space.n_cells()},
+                                             {"displacement_z", "m", 4 * space.n_cells()}};
+  if (packings)
+    series.push_back({"redundancy", "-", space.n_points()});
+  return series;
+}
 } // namespace
 
 BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &space,
-                 std::span<const double> vertical_stress, std::span<const double> velocities, std::size_t resume_rows)
+                 std::span<const double> vertical_stress, std::span<const double> velocities, std::size_t resume_rows,
+                 bool packings)
     : space_(space), vertical_stress_(vertical_stress), points_(space.n_points()),
-      file_(path, depths(space), vertical_stress, velocities, resume_rows,
-            {{"displacement_x", "m", 4 * space.n_cells()}, {"displacement_z", "m", 4 * space.n_cells()}})
+      file_(path, depths(space), vertical_stress, velocities, resume_rows, further_series(space, packings))
 {
   std::iota(points_.begin(), points_.end(), 0);
   std::vector<Place> corners;
@@ -50,11 +59,12 @@ BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &sp
   file_.add("corner_z", along(2, corners), "m");
 }
 
-void BoxMaps::append(const ColumnInstant &instant)
+void BoxMaps::append(const ColumnInstant &instant, std::span<const double> redundancy)
 {
   std::vector<double> values = columns_at(instant, points_, vertical_stress_);
   for (unsigned axis : {0, 2})
     for_each_corner(space_, [&](std::size_t, unsigned dof) { values.push_back(instant.displacement[dof + axis]); });
+  values.insert(values.end(), redundancy.begin(), redundancy.end());
   file_.append(instant.time, values);
 }
 } // namespace isostat

@@ -6,7 +6,7 @@ namespace isostat
 {
 /// The whole of a box at instants, in maps.h5: what ProfileFile has, of every point of the mesh, their `x` and `z` (m),
 /// and of each element's corners (anticlockwise) `corner_x`, `corner_z` (m) and, at each instant, `displacement_x`,
-/// `displacement_z` (m).
+/// `displacement_z` (m). With packings `redundancy`, the index I_R of every point, not-a-number where there is none.
 /// tested: tests/apps/box_test.py
 class BoxMaps
 {
@@ -14,9 +14,10 @@ public:
   /// @param vertical_stress, velocities  of every point, Pa, m/s   @pre the mesh is not shared out
   /// @throws as ProfileFile
   BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &space, std::span<const double> vertical_stress,
-          std::span<const double> velocities, std::size_t resume_rows);
+          std::span<const double> velocities, std::size_t resume_rows, bool packings);
 
-  void append(const ColumnInstant &instant);
+  /// @param redundancy  of every point, if there are packings
+  void append(const ColumnInstant &instant, std::span<const double> redundancy);
   void flush() { file_.flush(); }
 
 private:

@@ -207,17 +207,19 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
   return soil;
 }
 
-std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
-                                        const std::vector<double> &requested)
+std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const MeshSpec &mesh, std::span<const Place> places,
+                                        const std::vector<double> &depths)
 {
   std::vector<std::size_t> points;
-  for (double depth : requested)
+  for (double depth : depths)
     {
-      const auto away = [&](std::size_t place) { return std::abs(depths[place] - depth); };
-      const auto &places = soil.grains_places;
-      const auto best = std::min_element(places.begin(), places.end(),
-                                         [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
-      points.push_back(static_cast<std::size_t>(best - places.begin()));
+      const auto away = [&](std::size_t q) {
+        return std::hypot(places[q][0] - mesh.line[0], places[q][1] - mesh.line[1], mesh.depth(places[q]) - depth);
+      };
+      const auto &all = soil.grains_places;
+      const auto best =
+          std::min_element(all.begin(), all.end(), [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
+      points.push_back(static_cast<std::size_t>(best - all.begin()));
     }
   return points;
 }

@@ -63,8 +63,8 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
 /// K0 times as much. Between walls that is where settle() begins, without the surcharge.
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh);
 
-/// The points of `soil.grains` nearest to some depths.
-/// @param depths, requested  of the points of the mesh, below the surface, m
-std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const std::vector<double> &depths,
-                                        const std::vector<double> &requested);
+/// The points of `soil.grains` nearest to some depths on the vertical of the histories (MeshSpec::line).
+/// @param places  of the points of the mesh   @param depths  below the surface, m
+std::vector<std::size_t> nearest_grains(const SoilMaterial &soil, const MeshSpec &mesh, std::span<const Place> places,
+                                        const std::vector<double> &depths);
 } // namespace isostat

@@ -59,7 +59,8 @@ class Mesh:
 
 
 def box_maps(column):
-    """r_u at its largest and at the end, shear strain at the end, over the mesh as it has moved."""
+    """r_u where its mean is largest and at the end, shear strain at the end, I_R where its mean is smallest, over the mesh
+    as it has moved."""
     if not is_box(column):
         return None
     maps, mesh = column.maps, Mesh(column.maps)
@@ -71,8 +72,12 @@ def box_maps(column):
         worst = int(np.argmax(mean))
         fields = [("ru", worst, maps["ru"][worst], 0, 1, "viridis", r"$r_u$"),
                   ("ru", len(mean) - 1, maps["ru"][-1], 0, 1, "viridis", r"$r_u$")] + fields
+    if "redundancy" in maps:
+        mean = maps["redundancy"].mean(axis=1)
+        worst = int(np.argmin(mean))
+        fields.append(("redundancy", worst, maps["redundancy"][worst], 0, 2, "RdBu", r"$I_R$"))
     figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)
-    for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abc"):
+    for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abcd"):
         elements = mesh.show(axes, row, values, low, high, colours)
         figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01)
         axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)

@@ -48,10 +48,7 @@ private:
   {
     if (soil_.grains && !scene_.mesh.distributed)
       {
-        std::vector<double> depths;
-        for (const Place &place : space_.position)
-          depths.push_back(space_.mesh().depth(place));
-        grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, depths, resumed_.get());
+        grain_files_ = std::make_unique<GrainFiles>(request_.folder, scene_, soil_, space_, resumed_.get());
         grain_files_->open(resumed_.get());
       }
     if (soil_.grains)
@@ -108,7 +105,7 @@ private:
         if (row)
           files_.record(instant_);
         if (profile)
-          files_.profile(instant_);
+          files_.profile(instant_, grain_files_ ? std::span(grain_files_->redundancy()) : std::span<const double>());
         if (paraview)
           files_.paraview(instant_);
         files_.write_rows();

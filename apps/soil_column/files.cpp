@@ -23,6 +23,7 @@ ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const D
                               const std::array<Motion, 3> &motions, std::size_t stride)
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
       paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides == Sides::walls),
+      packings_(scene.has_grains() && scene.analysis.kind == AnalysisKind::dynamic),
       history_(scene, space, motions, stride)
 {
   if (!scene.mesh.distributed)
@@ -39,7 +40,7 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
                                               chosen(velocities, line_->points), counter(resumed, "profiles"));
   if (line_ && box_)
     maps_ = std::make_unique<BoxMaps>(folder_ / "maps.h5", space_, history_.vertical_stress(), velocities,
-                                      counter(resumed, "profiles"));
+                                      counter(resumed, "profiles"), packings_);
   if (paraview_)
     {
       fs::create_directories(folder_ / "paraview");
@@ -56,13 +57,13 @@ void ColumnFiles<dim>::write_rows(bool at_the_end)
 }
 
 template <int dim>
-void ColumnFiles<dim>::profile(const ColumnInstant &instant)
+void ColumnFiles<dim>::profile(const ColumnInstant &instant, std::span<const double> redundancy)
 {
   if (!profiles_)
     return;
   profiles_->append(instant.time, columns_at(instant, line_->points, history_.vertical_stress()));
   if (maps_)
-    maps_->append(instant);
+    maps_->append(instant, redundancy);
 }
 
 template <int dim>

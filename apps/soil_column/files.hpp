@@ -29,7 +29,8 @@ public:
   void record(const ColumnInstant &instant) { history_.add(instant); }
   /// Rows that are complete; at the end of a run all.
   void write_rows(bool at_the_end = false);
-  void profile(const ColumnInstant &instant);
+  /// @param redundancy  index I_R at every point of the mesh; empty without packings
+  void profile(const ColumnInstant &instant, std::span<const double> redundancy = {});
   void paraview(const ColumnInstant &instant);
 
   /// Brings all files up to date, then writes a checkpoint with what belongs to them and the peaks.
@@ -45,7 +46,7 @@ private:
   std::filesystem::path folder_;
   std::string scene_text_;
   const Discretisation<dim> &space_;
-  bool paraview_, box_;
+  bool paraview_, box_, packings_; ///< whether there is one, are any that profiles show
   ColumnHistory<dim> history_;
   std::optional<ColumnLine> line_;
   std::unique_ptr<Recorder> recorder_;
