@@ -4,7 +4,7 @@
 //
 //      ____v____  smooth plate, moves down
 //   -> |       | <-
-//   -> |   #   | <-  constant pressure      elastic, sand (iwan), packings of grains at the Gauss points;
+//   -> |   #   | <-  constant pressure      elastic, iwan, mohr_coulomb, packings at the Gauss points;
 //   -> |       | <-                         # weak elements
 //      ---------  smooth plate
 //

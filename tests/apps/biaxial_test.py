@@ -91,6 +91,18 @@ class Biaxial(AppTest):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("soil.dilatancy_angle = 40 deg; must not exceed friction_angle", refused.stderr)
 
+    def test_a_band_forms_where_strength_falls(self):
+        scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/softening.toml"
+        small = ("--set", "mesh.cells_across=4", "--set", "mesh.cells_up=8", "--set", "weak.row=3")
+        self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--no-figures", "-q", *small, "--set",
+                                      "test.axial_strain=0.02", "--set", "test.steps=20"))
+        stress, shear = self.history()["axial_stress"], self.maps()["shear_strain"][-1]
+        self.assert_near(stress.max(), 464.2e3, 15e3, "the peak of the uniform block lies between two steps of 0.1 %")
+        self.assertTrue(339e3 < stress[-1] < 0.85 * stress.max(), stress)  # residual strength, 343 kPa, and a tolerance
+        elements = shear.reshape(-1, 4).mean(axis=1)
+        self.assertGreater(elements.max(), 3 * shear.mean())
+        self.assert_below(np.median(elements) / shear.mean(), 0.5, "elements apart from the band do not shear with it")
+
     def test_weak_elements_have_less_strength(self):
         self.assert_done(self.run_block(FRICTION, "--set", "weak.cells=2", "--set", "weak.factor=0.9"))
         tangent = 0.9 * np.tan(np.radians(36))

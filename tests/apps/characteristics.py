@@ -1,37 +1,37 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Bearing capacity of heavy frictional soil by the method of characteristics (Sokolovskii 1965; Martin 2005).
 
-Plane strain, c = 0, unit weight gamma = 1, surcharge q; x along the surface from the edge of a
-smooth strip, which is at x < 0, z down. With s the mean stress (compression positive), a the angle of its largest
-principal stress to z, e = pi/4 - phi/2:
+Plane strain, c = 0, unit weight gamma = 1, surcharge q; x along the surface from the edge of a strip, which is at
+x < 0, z down. With s the mean stress (compression positive), a the angle of its largest principal stress to z,
+e = pi/4 - phi/2:
 
     beta   dx/dz = tan(a + e)    ds + 2 s tan(phi) da = gamma (dz - tan(phi) dx)
     alpha  dx/dz = tan(a - e)    ds - 2 s tan(phi) da = gamma (dz + tan(phi) dx)
 
 Beta lines start at the free surface (a = pi/2), cross the alpha lines that leave the edge and the surface, and end at
-the strip (a = 0). Differences are those of the mean of both ends, order 2.   tested: tests/apps/limit_loads_test.py
+the strip: a = 0 if it is smooth; if it is rough a = -pi/4 - phi/2, where alpha lines touch it and friction is fully
+mobilised. Differences are those of the mean of both ends, order 2.   tested: tests/apps/limit_loads_test.py
 """
 import math
 
 
-class SmoothStrip:
-    def __init__(self, friction, surcharge=1e-6, fan=30, ratio=1.15):
+class Strip:
+    def __init__(self, friction, rough=False, surcharge=1e-5, fan=30, ratio=1.15):
         """friction   phi, rad     surcharge   over gamma times the length of surface that is solved, 1
         fan   alpha lines that leave the edge     ratio   of the distances of beta lines from the edge"""
         self.tangent, self.sine, self.e = math.tan(friction), math.sin(friction), math.pi / 4 - friction / 2
-        self.surcharge = surcharge
+        self.surcharge, self.rough = surcharge, rough
+        self.end = -math.pi / 4 - friction / 2 if rough else 0.0
         start = surcharge / (1 - self.sine)
-        angles = [math.pi / 2 * (1 - k / fan) for k in range(fan + 1)]
-        line = [(0.0, 0.0, start * math.exp(2 * self.tangent * (math.pi / 2 - a)), a) for a in angles]
-        self.pressure = [(0.0, line[-1][2] * (1 + self.sine))]  # below the strip: distance from the edge, stress
+        angles = [math.pi / 2 + (self.end - math.pi / 2) * k / fan for k in range(fan + 1)]
+        self.lines = [[(0.0, 0.0, start * math.exp(2 * self.tangent * (math.pi / 2 - a)), a) for a in angles]]
         steps = math.ceil(math.log(50 / surcharge) / math.log(ratio))  # the first is small against q/gamma
         for k in range(-steps, 1):
             new = [(ratio**k, 0.0, start, math.pi / 2)]
-            for point in line:
+            for point in self.lines[-1]:
                 new.append(self._meeting(point, new[-1]))
             new.append(self._at_strip(new[-1]))
-            self.pressure.append((-new[-1][0], new[-1][2] * (1 + self.sine)))
-            line = new
+            self.lines.append(new)
 
     def _meeting(self, a, b):
         """Where the alpha line from a meets the beta line from b: x, z, s, angle."""
@@ -52,17 +52,48 @@ class SmoothStrip:
 
     def _at_strip(self, b):
         xb, zb, sb, tb = b
-        x, s = xb - math.tan(tb / 2 + self.e) * zb, sb
+        x, s = xb - math.tan((tb + self.end) / 2 + self.e) * zb, sb
         for _ in range(50):
-            before, s = s, sb + self.tangent * (sb + s) * tb - zb - self.tangent * (x - xb)
+            before, s = s, sb + self.tangent * (sb + s) * (tb - self.end) - zb - self.tangent * (x - xb)
             if abs(s / before - 1) < 1e-14:
                 break
-        return x, 0.0, s, 0.0
+        return x, 0.0, s, self.end
+
+    def pressure(self, point):
+        """Vertical stress, and the shear stress on horizontal planes."""
+        _, _, s, a = point
+        return s * (1 + self.sine * math.cos(2 * a)), s * self.sine * math.sin(2 * a)
 
     def factor(self):
         """N_gamma: load of a strip of width B over gamma B^2 / 2, without surcharge.
 
-        Far from the edge, where q no longer counts, the pressure grows by gamma N_gamma per length from either edge to
-        the middle, k = dp/dx: load k B^2/4 = N_gamma gamma B^2/2."""
-        (x1, p1), (x2, p2) = self.pressure[-2:]
-        return (p2 - p1) / (x2 - x1) / 2
+        Far from the edge, where q no longer counts, lengths have no scale but the distance from the edge."""
+        return self._with_wedge() if self.rough else self._up_to_the_middle()
+
+    def _up_to_the_middle(self):
+        """The pressure grows from either edge to the middle, k = dp/dx: load k B^2/4 = N_gamma gamma B^2/2."""
+        first, last = (line[-1] for line in self.lines[-2:])
+        return (self.pressure(last)[0] - self.pressure(first)[0]) / (first[0] - last[0]) / 2
+
+    def _with_wedge(self):
+        """Below the middle part is a rigid wedge on the alpha line that comes to the middle with a = 0. The longest
+        such line counts; its end makes B. Load: the pressure outside the wedge, and what bears it less its weight."""
+        for first in reversed(range(len(self.lines))):
+            start = len(self.lines[first]) - 1
+            way = [line[start + k] for k, line in enumerate(self.lines[first:])]
+            if way[-1][3] >= 0:
+                break
+        turn = next(k for k, point in enumerate(way) if point[3] >= 0)
+        part = -way[turn - 1][3] / (way[turn][3] - way[turn - 1][3])
+        middle = tuple(a + part * (b - a) for a, b in zip(way[turn - 1], way[turn]))
+        outside = [line[-1] for line in self.lines[:first + 1]]
+        load = self._borne(outside) + self._borne([*way[:turn], middle])
+        return load / middle[0]**2
+
+    def _borne(self, points):
+        """Vertical force that soil below a line bears from above, less the weight between line and surface."""
+        force = 0
+        for a, b in zip(points, points[1:]):
+            (normal_a, shear_a), (normal_b, shear_b) = self.pressure(a), self.pressure(b)
+            force += (normal_a + normal_b - a[1] - b[1]) / 2 * (a[0] - b[0]) + (shear_a + shear_b) / 2 * (b[1] - a[1])
+        return force

@@ -27,7 +27,7 @@ def cohesion_factor(friction):
 
 
 # N_gamma by friction angle, deg, of a smooth and of a rough strip on soil without cohesion and surcharge (Martin 2005,
-# method of characteristics, exact to the digits shown).
+# method of characteristics, exact to the digits shown; characteristics.py finds the same within 0.1 %).
 WEIGHT_FACTORS = {20: (1.579, 2.839), 25: (3.461, 6.491), 30: (7.653, 14.75), 35: (17.58, 34.48), 40: (43.19, 85.57)}
 
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import limit_loads as limit
-from characteristics import SmoothStrip
+from characteristics import Strip
 from support import ToleranceTest, main
 
 PRINTED = "the digits that are printed"
@@ -20,16 +20,17 @@ class Footing(ToleranceTest):
             self.assert_close(limit.cohesion_factor(phi), n_c, 5e-4, PRINTED)
         self.assert_near(limit.cohesion_factor(1e-7), limit.cohesion_factor(0.0), 2e-6, "the limit, linear in phi")
 
-    def test_characteristics_give_the_smooth_table(self):
-        for degrees, (smooth, _) in limit.WEIGHT_FACTORS.items():
-            found = SmoothStrip(math.radians(degrees)).factor()
-            self.assert_close(found, smooth, 1e-3, "30 lines of the fan, order 2: 0.05 %, and the digits of the table")
+    def test_characteristics_give_the_table(self):
+        for degrees, (smooth, rough) in limit.WEIGHT_FACTORS.items():
+            for is_rough, expected in ((False, smooth), (True, rough)):
+                found = Strip(math.radians(degrees), is_rough).factor()
+                self.assert_close(found, expected, 3e-3, "30 lines of the fan, and surcharge of 1e-5")
 
     def test_characteristics_converge_and_know_surcharge(self):
-        fine = SmoothStrip(math.radians(30), fan=60, ratio=1.072).factor()
-        self.assert_close(fine, 7.653, 3e-4, "60 lines and the four digits that are printed")
-        strip = SmoothStrip(math.radians(30))
-        self.assert_close(strip.pressure[0][1], limit.surcharge_factor(math.radians(30)) * strip.surcharge, 1e-12,
+        coarse, fine = Strip(math.radians(30)), Strip(math.radians(30), fan=60, ratio=1.072, surcharge=1e-6)
+        self.assert_close(fine.factor(), 7.653, 3e-4, "60 lines and the four digits of the table")
+        self.assert_close(coarse.pressure(coarse.lines[0][-1])[0],
+                          limit.surcharge_factor(math.radians(30)) * coarse.surcharge, 1e-12,
                           "at the edge there is surcharge alone: round-off")
 
     def test_rough_strips_bear_more_but_not_twice(self):
@@ -38,7 +39,7 @@ class Footing(ToleranceTest):
 
     def test_between_the_angles(self):
         self.assert_close(limit.weight_factor(math.radians(30), True), 14.75, 1e-12, "an angle of the table")
-        found = SmoothStrip(math.radians(27)).factor()
+        found = Strip(math.radians(27)).factor()
         self.assert_close(limit.weight_factor(math.radians(27), False), found, 0.01, "as documented")
         with self.assertRaisesRegex(ValueError, "must be in .20, 40. deg"):
             limit.weight_factor(math.radians(45), False)

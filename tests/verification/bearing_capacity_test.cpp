@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Collapse of weightless Mohr-Coulomb soil with associated flow below a smooth flexible strip: c N_c + q N_q (Prandtl
+// 1921, Reissner 1924). Half of it, x from 0 (symmetry).
+#include "base/error.hpp"
+#include "fem/material/mohr_coulomb.hpp"
+#include "fem/solve/statics.hpp"
+#include "tests/support/near.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace isostat
+{
+namespace
+{
+constexpr double cohesion = 10e3, modulus = 20e6; // Pa; half of the strip is 1 m
+
+MeshSpec block(double width, double height, unsigned cells_per_metre)
+{
+  MeshSpec spec;
+  spec.soil.layers = {{.name = "soil", .thickness = height}};
+  spec.soil.layers[0].cells = static_cast<unsigned>(std::lround(height * cells_per_metre));
+  spec.width = {width, 1};
+  spec.cells_across = {static_cast<unsigned>(std::lround(width * cells_per_metre)), 1};
+  spec.degree = 2;
+  spec.points_per_direction = 2; // reduced integration: associated flow does not lock
+  return spec;
+}
+
+struct Strip : Discretisation<2>
+{
+  Strip(double width, double height, unsigned cells_per_metre)
+      : Discretisation<2>(
+            block(width, height, cells_per_metre),
+            {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}, {Face::x_low, 0}, {Face::x_high, 0}}})
+  {
+    for (unsigned i = 1; i < displacement_vector().locally_owned_size(); i += 3) // plane strain
+      fixed_dofs.push_back(i);
+    std::sort(fixed_dofs.begin(), fixed_dofs.end());
+    fixed_dofs.erase(std::unique(fixed_dofs.begin(), fixed_dofs.end()), fixed_dofs.end());
+  }
+};
+
+struct Collapse
+{
+  double load, settlement; ///< beyond the surcharge, Pa; of the middle of the strip, m
+};
+
+/// The largest load that has an equilibrium, within 0.25 % of `expected`.
+Collapse collapse(const Strip &space, double friction, double surcharge, double expected)
+{
+  MohrCoulombParameters p;
+  p.shear_modulus = modulus;
+  p.friction = p.dilatancy = friction;
+  p.cohesion = cohesion;
+  MohrCoulomb soil(p, space.n_points());
+  soil.set_initial_stress(std::vector<Stress>(space.n_points(), {-surcharge, -surcharge, -surcharge, 0, 0, 0}));
+  StaticsSettings settings;
+  settings.newton = {.tolerance = 1e-5, .max_iterations = 20, .max_halvings = 2};
+  settings.tractions = {{Face::surface, [expected](double time, const Place &place) {
+                           const double part = place[0] < 1 - 1e-9 ? 1 : (place[0] < 1 + 1e-9 ? 0.5 : 0);
+                           return Place{0, 0, -part * time * expected};
+                         }}};
+  Statics statics(space, soil, settings);
+  try
+    {
+      for (double done = 0; done < 1.5; done = statics.time())
+        statics.step(done < 0.79 ? 0.05 : 0.01);
+      ADD_FAILURE() << "no collapse at one and a half times the load";
+    }
+  catch (const RunFailure &)
+    {}
+  const long middle = space.find_dof({0, 0, space.mesh().soil.height()}, 2);
+  return {statics.time() * expected, -statics.displacement().local_element(middle)};
+}
+} // namespace
+
+TEST(BearingCapacity, OfAStripIsPrandtls)
+{
+  struct Case
+  {
+    double degrees, surcharge, width, height;
+    std::vector<unsigned> cells; ///< below half of the strip
+  };
+  for (const auto &[degrees, surcharge, width, height, meshes] :
+       {Case{0, 0, 4, 2, {2, 4}}, Case{20, 0, 8, 4, {2, 4}}, Case{20, 20e3, 8, 4, {2}}})
+    {
+      const double friction = std::tan(degrees * std::numbers::pi / 180), sine = std::sin(std::atan(friction));
+      const double n_q = std::exp(std::numbers::pi * friction) * (1 + sine) / (1 - sine);
+      const double n_c = friction > 0 ? (n_q - 1) / friction : 2 + std::numbers::pi;
+      const double exact = cohesion * n_c + surcharge * n_q;
+      double last = 0;
+      for (unsigned cells : meshes)
+        {
+          const auto [load, settlement] = collapse(Strip(width, height, cells), friction, surcharge, exact - surcharge);
+          last = (load + surcharge) / exact - 1;
+          std::printf("phi %.0f deg, q %.0f kPa, %u cells per half strip: %.2f kPa, exact %.2f, %+.2f %%; settlement "
+                      "%.3f m\n",
+                      degrees, surcharge / 1e3, cells, (load + surcharge) / 1e3, exact / 1e3, 100 * last, settlement);
+        }
+      EXPECT_NEAR_BECAUSE(last, 0, 0.02, "two or four quadratic elements below half of the strip, loads within 0.25 %");
+    }
+}
+} // namespace isostat
