@@ -10,7 +10,8 @@ fig_band.png            axial stress beside that of other runs, shear strain at 
 fig_grain_maps.png      void ratio and redundancy index at the end, of packings
 
 Of fig_rate_maps the last map is asked for the inclination of a band: the direction of the smallest spread of the points
-with the largest shear strain, printed with their number. Compression is positive.
+with the largest shear strain, printed with their number; of fig_band.png its thickness and inclination in the middle
+half of the block's width. Compression is positive.
 """
 import h5py
 import numpy as np
@@ -128,6 +129,33 @@ def report_band(block, field):
           f"{np.sqrt(max(values[0], 0) / values[1]):.2f}")
 
 
+def band_shape(block, field):
+    """Thickness (m) and inclination (deg) of a band: the width of its profile, the mean along it by the distance across
+    it, that is above half of its largest value. From the points in the middle half of the block's width; its direction
+    is the regression of z on x of those with more than 0.6 of what the uppermost fiftieth has. nan: the profile does
+    not fall to half on both sides."""
+    middle = np.abs(block.maps["x"] / block.size[0] - 0.5) < 0.25
+    place, field = np.stack([block.maps["x"], block.maps["z"]])[:, middle], field[middle]
+    weight = np.where(field > 0.6 * np.quantile(field, 0.98), field, 0)
+    place = place - (place * weight).sum(axis=1, keepdims=True) / weight.sum()
+    slope = (weight * place[0] * place[1]).sum() / (weight * place[0] ** 2).sum()
+    along = np.array([1, slope]) / np.hypot(1, slope)
+    across = np.array([-along[1], along[0]])
+    edges = np.linspace(-0.5, 0.5, 51) * block.size[0]
+    bins = np.digitize(across @ place, edges) - 1
+    inside = (bins >= 0) & (bins < 50) & (np.abs(along @ place) < 0.2 * block.size[0])
+    count = np.bincount(bins[inside], minlength=50)
+    centre = ((edges[1:] + edges[:-1]) / 2)[count > 0]
+    profile = np.bincount(bins[inside], field[inside], 50)[count > 0] / count[count > 0]
+    high = np.flatnonzero(profile > profile.max() / 2)
+    angle = np.degrees(np.arctan(abs(slope)))
+    if high[0] == 0 or high[-1] == len(profile) - 1:
+        return np.nan, angle
+    ends = [np.interp(profile.max() / 2, *np.array(sorted([(profile[k], centre[k]), (profile[j], centre[j])])).T)
+            for k, j in ((high[0] - 1, high[0]), (high[-1] + 1, high[-1]))]
+    return ends[1] - ends[0], angle
+
+
 def band(block):
     """All of a band in one figure. Shear strains are over their mean."""
     before, _, came = list(differences(block))[-1]
@@ -136,6 +164,9 @@ def band(block):
         elements = block.cells(field)
         print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} "
               f"to {elements.max():.2f}")
+    thickness, angle = band_shape(block, total)
+    print(f"band in the middle half of the width: {thickness:.3f} m thick at half of its shear strain, {angle:.0f} deg "
+          "to the horizontal")
     maps = [(total, 0, "Shear strain / mean", "since the start"),
             (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
     if block.maps["redundancy"].any():

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.biaxial import Block, band, rate_maps, shear_maps  # noqa: E402  (the path comes first)
+from figures.biaxial import Block, band, band_shape, rate_maps, shear_maps  # noqa: E402  (the path comes first)
 from support import AppTest, main, tiny_scene
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
@@ -134,6 +134,19 @@ class Biaxial(AppTest):
         for draw in band, shear_maps, rate_maps:
             panels = [axes for axes in draw(block).axes if axes.get_label() != "<colorbar>"]
             self.assertEqual([axes.get_xlabel() == "" for axes in panels], [False] * len(panels), draw.__name__)
+
+    def test_shape_of_a_band(self):
+        """A band with a Gaussian profile, whose width at half of it is 2.355 standard deviations."""
+        self.assert_done(self.run_block(ELASTIC.format(degree=1), "--set", "mesh.cells_across=24", "--set",
+                                        "mesh.cells_up=48", "--set", "test.steps=1"))
+        block = Block(self.folder / "run")
+        for angle in 40, 60:
+            across = np.array([-np.sin(np.radians(angle)), np.cos(np.radians(angle))])
+            distance = across @ [block.maps["x"] - 0.5, block.maps["z"] - 1.1]
+            thickness, found = band_shape(block, np.exp(-(distance / 0.08) ** 2 / 2))
+            self.assert_near(thickness, 2.355 * 0.08, 0.004, "bins of 20 mm smear the profile; measured 2.5 mm")
+            self.assert_near(found, angle, 0.5, "measured 0.08 deg")
+        self.assertTrue(np.isnan(band_shape(block, block.maps["x"])[0]))
 
     def test_weak_element_shears_more(self):
         weak = ("weak.cells=1", "weak.column=1", "weak.row=2", "weak.factor=0.5")
