@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace isostat
 {
@@ -137,6 +138,15 @@ void collect_partners(const WrappedCells &cells, std::uint32_t i, double skin, s
         }
 }
 } // namespace
+
+double max_reach(const Packing &packing)
+{
+  std::vector<double> radii = packing.radii();
+  if (radii.size() < 2)
+    return radii.empty() ? 0 : 2 * radii[0];
+  std::partial_sort(radii.begin(), radii.begin() + 2, radii.end(), std::greater());
+  return radii[0] + radii[1];
+}
 
 std::pair<std::vector<ContactList::Pair>, std::vector<ImageCode>> find_pairs(const Packing &packing, const Mat3 &edges,
                                                                              double skin)

@@ -104,15 +104,16 @@ void VerletList::choose_skin(double r_min)
 
 void VerletList::search(const Packing &packing, const Domain &domain, int threads)
 {
-  max_reach_ = 2 * packing.max_radius();
+  max_reach_ = max_reach(packing);
   // a short period bounds the skin: no pair may be near through two images at once
   const double period = domain.cell ? shortest_period(domain.cell->edges) : HUGE_VAL;
   const double room = 0.5 * period - max_reach_;
   if (!(room > 0)) // the list stays as it was
-    throw RunFailure(fmt::format("the shortest period of the periodic cell is {:.4g} m, less than twice the largest "
-                                 "diameter {:.4g} m: a grain would touch another one and its image at once. It is that "
-                                 "of the packing: no other choice of the cell's edges is wider. Take more grains.",
-                                 period, max_reach_));
+    throw RunFailure(fmt::format("the shortest period of the periodic cell is {:.4g} m, less than the two largest "
+                                 "diameters together, {:.4g} m: a grain would touch another one and its image at "
+                                 "once. It is that of the packing: no other choice of the cell's edges is wider. Take "
+                                 "more grains.",
+                                 period, 2 * max_reach_));
   wide_skin_ = std::min(wide_over_tight * skin_, 0.99 * room);
   skin_ = std::min(skin_, 0.5 * wide_skin_);
   wide_ = reference(packing, domain);

@@ -23,7 +23,7 @@ void look_at_pairs(const Snapshot &s, PackingFigures &f)
   std::vector<ImageCode> images;
   if (!s.cell)
     pairs = find_pairs(s.grains, 0.0);
-  else if (f.overlaps_known = shortest_period(s.cell->edges) > 4.01 * s.grains.max_radius(); f.overlaps_known)
+  else if (f.overlaps_known = shortest_period(s.cell->edges) > 2.005 * max_reach(s.grains); f.overlaps_known)
     std::tie(pairs, images) = find_pairs(s.grains, s.cell->edges, 0.0);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     {

@@ -259,7 +259,7 @@ TEST(RveHardCases, ACellTooNarrowForItsGrainsIsRefused)
     }
   catch (const RunFailure &failure)
     {
-      EXPECT_THAT(failure.what(), HasSubstr("less than twice the largest diameter"));
+      EXPECT_THAT(failure.what(), HasSubstr("less than the two largest diameters together"));
       EXPECT_THAT(failure.what(), HasSubstr("Take more grains"));
     }
 }
@@ -276,7 +276,7 @@ TEST(RveHardCases, ACellThatBecomesTooNarrowIsRefusedAndWidenedAgain)
   for (Rve *each : {&rve, &twin})
     for (int k = 0; k < 9; ++k)
       ASSERT_EQ(each->advance(narrow).outcome, RveOutcome::accepted) << "1 % of the width is free";
-  expect_rejected(rve, narrow, {"less than twice the largest diameter"});
+  expect_rejected(rve, narrow, {"less than the two largest diameters together"});
   for (int k = 0; k < 5; ++k)
     {
       ASSERT_EQ(rve.advance(wide).outcome, RveOutcome::accepted);

@@ -139,6 +139,27 @@ TEST(FindPairsInACell, EqualsBruteForceOverImages)
   EXPECT_GT(across, 1000u);
 }
 
+TEST(FindPairsInACell, OneGrainNearlyAsLargeAsTheCell)
+{
+  Random random(3);
+  std::size_t found = 0;
+  for (int run = 0; run < 50; ++run)
+    {
+      const Mat3 edges = leaning(Vec3::Constant(0.95), 2 * random(), 2 * random(), 2 * random());
+      Packing packing = random_packing(random, 40, edges, 0.08, 3);
+      packing.position[4 * 17 + 3] = 0.34;
+      ASSERT_BELOW_BECAUSE(2 * max_reach(packing), 0.94, "two different grains fit side by side");
+      ASSERT_GT(4 * packing.max_radius(), 0.95);
+      const auto expected = near_pairs(packing, edges, 1e-3, 4);
+      const auto [pairs, images] = find_pairs(packing, edges, 1e-3);
+      ASSERT_EQ(pairs.size(), expected.size());
+      for (std::size_t p = 0; p < pairs.size(); ++p)
+        ASSERT_EQ(image_shift(images[p]), expected.at(pairs[p]).shift);
+      found += pairs.size();
+    }
+  EXPECT_GT(found, 1000u);
+}
+
 TEST(FindPairsInACell, NoneOneAndTwo)
 {
   const Mat3 edges = leaning(Vec3::Ones(), 0.3, 0, 0.2);
@@ -319,18 +340,18 @@ TEST(VerletListOfACell, ACellTooNarrowForItsGrainsIsRefused)
     VerletList list;
     list.update(packing, PeriodicCell::with_edges(lengths), 0, contacts);
   };
-  EXPECT_NO_THROW(update({1.01, 1.01, 1.01}));
-  EXPECT_THROW(update({3, 0.99, 3}), RunFailure);
+  EXPECT_NO_THROW(update({0.91, 0.91, 0.91})); // each grain beside itself is no matter: they are of two sizes
+  EXPECT_THROW(update({3, 0.89, 3}), RunFailure);
   EXPECT_THROW(update({0.3, 3, 3}), RunFailure);
   // what counts is the distance to the next image, not the edges that were chosen for the lattice
-  PeriodicCell sheared = PeriodicCell::with_edges({1.01, 1.01, 1.01});
+  PeriodicCell sheared = PeriodicCell::with_edges({0.91, 0.91, 0.91});
   sheared.edges.col(1) += 0.6 * sheared.edges.col(0);
   sheared.edges.col(2) += 3 * sheared.edges.col(1);
   ASSERT_BELOW_BECAUSE(sheared.widths().minCoeff(), 0.5, "narrower than a grain");
   ContactList contacts;
   VerletList list;
   EXPECT_NO_THROW(list.update(packing, sheared, 0, contacts));
-  PeriodicCell oblique = PeriodicCell::with_edges({3, 0.9, 3}); // edges are 3 long, their difference 0.9
+  PeriodicCell oblique = PeriodicCell::with_edges({3, 0.85, 3}); // edges are 3 long, their difference 0.85
   oblique.edges.col(1) += oblique.edges.col(0);
   ASSERT_GE(oblique.edges.colwise().norm().minCoeff(), 3);
   try
@@ -340,8 +361,8 @@ TEST(VerletListOfACell, ACellTooNarrowForItsGrainsIsRefused)
     }
   catch (const RunFailure &failure)
     {
-      EXPECT_THAT(failure.what(), testing::HasSubstr("shortest period of the periodic cell is 0.9 m"));
-      EXPECT_THAT(failure.what(), testing::HasSubstr("largest diameter 0.5 m"));
+      EXPECT_THAT(failure.what(), testing::HasSubstr("shortest period of the periodic cell is 0.85 m"));
+      EXPECT_THAT(failure.what(), testing::HasSubstr("two largest diameters together, 0.9 m"));
       EXPECT_THAT(failure.what(), testing::HasSubstr("Take more grains"));
     }
 }
