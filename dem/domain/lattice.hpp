@@ -17,7 +17,7 @@ namespace isostat
 /// whole combination of them that leaves it shortest, until nothing gets shorter. A function of H alone; what is
 /// shorter by less than 1e-12 of itself counts as equally long. Edges that span no cell, or are not numbers, are left
 /// as they are.
-/// cost: about a microsecond; some more steps for each factor of ten that the cell leans
+/// cost: some microseconds; a few more steps for each factor of ten that the cell leans
 /// tested: tests/dem/domain/lattice_test.cpp
 Eigen::Matrix3i compact_periods(const Mat3 &edges);
 

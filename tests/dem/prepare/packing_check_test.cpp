@@ -46,7 +46,9 @@ TEST(PackingCheck, OverlapThroughAFaceOfTheCell)
   s.grains.set_centre(0, 1e-3 * Vec3(-0.5, 0.5, 0.5)); // 1.2 mm before the second: its image is 0.2 mm away
   s.cell = PeriodicCell::with_edges(1e-3 * Vec3(1.4, 1, 1));
   EXPECT_NEAR_BECAUSE(packing_figures(s).overlap, 1, 1e-9, "round-off of millimetres");
-  s.cell = PeriodicCell::with_edges(1e-3 * Vec3(1.4, 0.7, 1));
+  s.cell = PeriodicCell::with_edges(1e-3 * Vec3(1.4, 0.65, 1)); // radii of 0.2 and 0.1 mm
+  EXPECT_TRUE(packing_figures(s).overlaps_known);
+  s.cell = PeriodicCell::with_edges(1e-3 * Vec3(1.4, 0.55, 1));
   EXPECT_FALSE(packing_figures(s).overlaps_known);
 }
 
