@@ -5,8 +5,8 @@
 
 namespace isostat
 {
-/// Keys of [mesh]: points, and those that make a box of soil between walls, with a surface that need not be level: sides,
-/// ground_x, ground_z.
+/// Keys of [mesh]: points, and those that make a box of soil between walls, with a surface that need not be level:
+/// sides, ground_x, ground_z.
 SceneFragment<ColumnMesh> box_keys();
 /// Keys of [load]: the part of the surface that has the surcharge.
 SceneFragment<ColumnLoad> strip_load_keys();

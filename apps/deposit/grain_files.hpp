@@ -42,7 +42,8 @@ public:
     double redundancy = 1e300, depth = 0, time = 0;
   };
   const Minimum &minimum() const { return min_; }
-  /// Redundancy index in the last row of the profiles, of each point of the mesh; not-a-number where there is no packing.
+  /// Redundancy index in the last row of the profiles, of each point of the mesh; not-a-number where there is no
+  /// packing.
   const std::vector<double> &redundancy() const { return redundancy_; }
 
 private:

@@ -5,6 +5,6 @@
 
 namespace isostat
 {
-/// The keys of [[motion]].
+/// The keys of [[motion]].   tested: tests/apps/deposit/scene_test.cpp
 SceneFragment<ColumnMotion> ground_motion_keys();
 } // namespace isostat

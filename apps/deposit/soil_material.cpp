@@ -100,8 +100,8 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
     }
 }
 
-/// In situ stress in a box: K0 at the depth below the ground, and the shear stress by which the horizontal stress, which
-/// falls with the ground, is in equilibrium on every vertical: to the second order of the inclination.
+/// In situ stress in a box: K0 at the depth below the ground, and the shear stress by which the horizontal stress,
+/// which falls with the ground, is in equilibrium on every vertical: to the second order of the inclination.
 std::vector<Stress> between_walls(const ColumnScene &scene, const CellTables &mesh)
 {
   const MeshSpec spec = mesh_spec(scene);

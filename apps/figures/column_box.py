@@ -59,8 +59,8 @@ class Mesh:
 
 
 def box_maps(column):
-    """r_u where its mean is largest and at the end, shear strain at the end, I_R where its mean is smallest, over the mesh
-    as it has moved."""
+    """r_u where its mean is largest and at the end, shear strain at the end, I_R where its mean is smallest, over the
+    mesh as it has moved."""
     if not is_box(column):
         return None
     maps, mesh = column.maps, Mesh(column.maps)

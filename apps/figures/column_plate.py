@@ -24,9 +24,9 @@ def plate(column):
         panels[name].set_xlabel("Way of the plate into the soil (mm)")
         panels[name].set_ylim(bottom=min(0, panels[name].get_ylim()[0]))
     mesh, maps = Mesh(column.maps), column.maps
-    gamma = 100 * maps["gamma"][-1] if "gamma" in maps else 100 * abs(maps["gamma_xz"][-1])
-    elements = mesh.show(panels["map"], len(maps["time"]) - 1, gamma, 0, max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6),
-                         "magma_r")
+    gamma = 100 * abs(maps["gamma_xz"][-1])
+    high = max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6)
+    elements = mesh.show(panels["map"], len(maps["time"]) - 1, gamma, 0, high, "magma_r")
     figure.colorbar(elements, ax=panels["map"], label=r"$|\gamma_{xz}|$ (%)", fraction=0.03, pad=0.01)
     panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)
     panels["map"].set_xlabel("x (m)")

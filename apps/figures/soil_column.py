@@ -15,8 +15,8 @@ fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
 fig_spreading.png     slope: displacement of the surface in time; at the end displacement and shear strain over the
                       depth, beside static shear stress and normal effective stress of the start
-fig_box.png           box: r_u where its mean is largest and at the end, shear strain at the end, of packings I_R where its
-                      mean is smallest, over the mesh as it has moved
+fig_box.png           box: r_u where its mean is largest and at the end, shear strain at the end, of packings I_R where
+                      its mean is smallest, over the mesh as it has moved
 fig_surface.png       box: displacement of the surface in time and over the box
 fig_plate.png         plate: force against it and normal stress beside it over its way, shear strain at the end
 fig_loops.png         shear loops and stress paths at the output depths, coloured by time

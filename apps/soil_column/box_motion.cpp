@@ -2,6 +2,8 @@
 #include "apps/soil_column/box_motion.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -54,5 +56,18 @@ BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement
   put(motion.highest, motion.highest_x, along(2, [](double u) { return u; }));
   motion.deepest = 0 - motion.deepest; // never -0
   return motion;
+}
+
+std::string to_text(const BoxMotion &m, const MeshSpec &mesh)
+{
+  return fmt::format("  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
+                     "  surface sank             {:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m\n",
+                     m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x, m.highest, m.highest_x);
+}
+
+Json to_json(const BoxMotion &m, const MeshSpec &mesh)
+{
+  return {{"x", mesh.line[0]},       {"along_x", m.on_line},        {"largest", m.largest}, {"largest_x", m.largest_x},
+          {"settlement", m.deepest}, {"settlement_x", m.deepest_x}, {"heave", m.highest},   {"heave_x", m.highest_x}};
 }
 } // namespace isostat

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/files/json.hpp"
 #include "fem/space/discretisation.hpp"
 
 namespace isostat
@@ -15,4 +16,7 @@ struct BoxMotion
 
 /// @param displacement  since the start   Collective.   tested: tests/apps/box_test.py
 BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement);
+
+std::string to_text(const BoxMotion &motion, const MeshSpec &mesh);
+Json to_json(const BoxMotion &motion, const MeshSpec &mesh);
 } // namespace isostat

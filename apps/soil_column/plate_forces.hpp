@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/deposit/scene.hpp"
+#include "base/files/json.hpp"
 #include "fem/solve/statics.hpp"
 
 namespace isostat
@@ -18,6 +19,9 @@ struct PlateResult
   void follow(double displacement, double force, double step_residual);
 };
 
+std::string to_text(const PlateResult &result, const Plate &plate);
+Json to_json(const PlateResult &result);
+
 /// Weight of the soil of a box, N/m.
 double soil_weight(const ColumnScene &scene);
 
@@ -34,9 +38,9 @@ public:
   /// Of the plate on the soil at the start, x, y, z, N/m: what a resumed run has to know.
   const std::array<double, 3> &start() const { return start_; }
   void set_start(const std::array<double, 3> &start) { start_ = start; }
-  /// The force normal to the plate (compression positive), and that of the plate on the soil along it, towards +x or +z:
-  /// those in situ and what has come since. Nodes at its ends carry a part of the soil beside it: of a trapdoor, that of
-  /// an abutment; pressure() has no part in it. N/m
+  /// The force normal to the plate (compression positive), and that of the plate on the soil along it, towards +x or
+  /// +z: those in situ and what has come since. Nodes at its ends carry a part of the soil beside it: of a trapdoor,
+  /// that of an abutment; pressure() has no part in it. N/m
   std::array<double, 2> forces(const Statics &run) const;
   /// Mean stress normal to the plate at the row of points next to it, compression positive, Pa.
   double pressure(std::span<const Stress> stresses) const;

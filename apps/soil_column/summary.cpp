@@ -84,36 +84,17 @@ Json expansions_json(const std::vector<CapExpansion> &caps)
   return json;
 }
 
-std::string box_text(const BoxMotion &m, const MeshSpec &mesh)
+void add_grains(const GrainsSummary &g, Json &json)
 {
-  return fmt::format("  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
-                     "  surface sank             {:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m\n",
-                     m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x, m.highest, m.highest_x);
-}
-
-void add_box(const BoxMotion &m, const MeshSpec &mesh, Json &json)
-{
-  json["surface_motion"] = {{"x", mesh.line[0]},        {"along_x", m.on_line},    {"largest", m.largest},
-                            {"largest_x", m.largest_x}, {"settlement", m.deepest}, {"settlement_x", m.deepest_x},
-                            {"heave", m.highest},       {"heave_x", m.highest_x}};
-}
-
-std::string plate_text(const PlateResult &p, const Plate &plate)
-{
-  return fmt::format(
-      "  plate                    {:.4g} m long, {}, moved {:+.4g} m in {} steps\n"
-      "  force against it         {:.4g} kN/m in situ, largest {:.4g} kN/m at {:+.4g} m, smallest {:.4g} "
-      "kN/m at {:+.4g} m, {:.4g} kN/m at the end\n"
-      "  equilibrium              residual at most {:.1e} of the force scale\n",
-      p.length, plate.rough ? "rough" : "smooth", plate.displacement, plate.steps, p.start / 1e3, p.largest / 1e3,
-      p.largest_at, p.smallest / 1e3, p.smallest_at, p.last / 1e3, p.residual);
-}
-
-void add_plate(const PlateResult &p, Json &json)
-{
-  json["plate"] = {{"length", p.length},         {"force_in_situ", p.start},      {"largest_force", p.largest},
-                   {"largest_at", p.largest_at}, {"smallest_force", p.smallest},  {"smallest_at", p.smallest_at},
-                   {"force_at_the_end", p.last}, {"largest_residual", p.residual}};
+  json["packings"] = g.packings;
+  if (!g.seeds.empty())
+    json["seeds"] = g.seeds;
+  json["shear_velocities"] = {g.slowest, g.fastest};
+  if (!g.has_profiles)
+    return;
+  json["min_redundancy"] = g.min_redundancy;
+  json["min_redundancy_depth"] = g.min_redundancy_depth;
+  json["min_redundancy_time"] = g.min_redundancy_time;
 }
 } // namespace
 
@@ -153,7 +134,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (s.spreading)
     text += slope_text(*s.spreading, scene);
   if (s.box_motion)
-    text += box_text(*s.box_motion, mesh_spec(scene));
+    text += to_text(*s.box_motion, mesh_spec(scene));
   if (s.grains)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
@@ -169,7 +150,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
                               relative_residual(s.last));
   if (s.plate)
-    return text + plate_text(*s.plate, scene.plate);
+    return text + to_text(*s.plate, scene.plate);
   return text + fmt::format("  final settlement         {:.4f} mm, drained\n  degree of consolidation  {:.4f}\n",
                             1e3 * s.final_settlement, s.degree);
 }
@@ -240,22 +221,11 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
   if (s.spreading)
     add_slope(*s.spreading, scene, json);
   if (s.box_motion)
-    add_box(*s.box_motion, mesh_spec(scene), json);
+    json["surface_motion"] = to_json(*s.box_motion, mesh_spec(scene));
   if (s.plate)
-    add_plate(*s.plate, json);
+    json["plate"] = to_json(*s.plate);
   if (s.grains)
-    {
-      json["packings"] = s.grains->packings;
-      if (!s.grains->seeds.empty())
-        json["seeds"] = s.grains->seeds;
-      json["shear_velocities"] = {s.grains->slowest, s.grains->fastest};
-    }
-  if (s.grains && s.grains->has_profiles)
-    {
-      json["min_redundancy"] = s.grains->min_redundancy;
-      json["min_redundancy_depth"] = s.grains->min_redundancy_depth;
-      json["min_redundancy_time"] = s.grains->min_redundancy_time;
-    }
+    add_grains(*s.grains, json);
   return json;
 }
 

@@ -7,7 +7,8 @@ namespace isostat
 {
 class SceneDocument;
 
-/// Keys of a load step's solver: tolerance, max_iterations, iterations_per_tangent, relaxation_iterations, max_halvings.
+/// Keys of a load step's solver: tolerance, max_iterations, iterations_per_tangent, relaxation_iterations,
+/// max_halvings.
 /// tested: tests/apps/biaxial_test.py
 SceneFragment<NewtonSettings> newton_keys();
 /// @param prefix  of the keys, "newton"   @throws InputError  neither Newton's method nor relaxation

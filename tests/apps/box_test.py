@@ -126,7 +126,8 @@ class Box(ColumnTest):
         self.assert_done(bears)
         fails = self.run_column(self.write("fails.toml", weak + strip.format(2000)), "-o", "fails", "--quiet")
         self.assertEqual(fails.returncode, 1)
-        for words in ("does not settle under its weight and the surcharge", "no equilibrium", "more than the soil bears"):
+        for words in ("does not settle under its weight and the surcharge", "no equilibrium",
+                      "more than the soil bears"):
             self.assertIn(words, fails.stderr)
         self.assertFalse((self.folder / "fails/history.csv").exists())
 
