@@ -63,8 +63,8 @@ public:
   /// Cost, in us a point: 0.3 within the surface, 0.5 on it, 1.2 while it softens; a tangent 0.4, 0.6 and 1.6.
   /// @throws RunFailure naming the point if its stress is not a number
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  /// Consistent tangent, not symmetric if psi != phi. At the apex, where it is zero without softening, a millionth of
-  /// the elastic one is added.
+  /// Consistent tangent, not symmetric if psi != phi; without a trial the elastic one. At the apex, where it is zero
+  /// without softening, a millionth of the elastic one is added.
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
   MaterialState pack() const override;
