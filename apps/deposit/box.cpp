@@ -42,7 +42,7 @@ constexpr Key in_mesh[] = {
 constexpr Key in_load[] = {
   {.path = "surcharge_from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
-   .text = "x where the surcharge begins, between walls; left out: at the left wall. In a box the surcharge comes on when the soil has its K0 stress, and has no inertia.",
+   .text = "x where the surcharge begins, between walls; left out: at the left wall. In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia.",
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
   {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "12 m", .range = positive,

@@ -34,13 +34,19 @@ void for_each_corner(const FiniteElementSpace &space, const F &f)
       f(4 * cell + corner, space.cell_dofs[3 * (cell * space.n_nodes + corner)]);
 }
 
-std::vector<ProfileFile::Series> further_series(const FiniteElementSpace &space, bool packings)
+ProfileFile::Further of_a_box(const FiniteElementSpace &space, bool packings)
 {
-  std::vector<ProfileFile::Series> series = {{"displacement_x", "m", 4 * space.n_cells()},
-                                             {"displacement_z", "m", 4 * space.n_cells()}};
+  std::vector<Place> corners;
+  for_each_corner(space, [&](std::size_t corner, unsigned) { corners.push_back(space.corner[corner]); });
+  ProfileFile::Further further{
+      .series = {{"displacement_x", "m", corners.size()}, {"displacement_z", "m", corners.size()}},
+      .constants = {{"x", "m", along(0, space.position)},
+                    {"z", "m", along(2, space.position)},
+                    {"corner_x", "m", along(0, corners)},
+                    {"corner_z", "m", along(2, corners)}}};
   if (packings)
-    series.push_back({"redundancy", "-", space.n_points()});
-  return series;
+    further.series.push_back({"redundancy", "-", space.n_points()});
+  return further;
 }
 } // namespace
 
@@ -48,15 +54,9 @@ BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &sp
                  std::span<const double> vertical_stress, std::span<const double> velocities, std::size_t resume_rows,
                  bool packings)
     : space_(space), vertical_stress_(vertical_stress), points_(space.n_points()),
-      file_(path, depths(space), vertical_stress, velocities, resume_rows, further_series(space, packings))
+      file_(path, depths(space), vertical_stress, velocities, resume_rows, of_a_box(space, packings))
 {
   std::iota(points_.begin(), points_.end(), 0);
-  std::vector<Place> corners;
-  for_each_corner(space_, [&](std::size_t corner, unsigned) { corners.push_back(space_.corner[corner]); });
-  file_.add("x", along(0, space_.position), "m");
-  file_.add("z", along(2, space_.position), "m");
-  file_.add("corner_x", along(0, corners), "m");
-  file_.add("corner_z", along(2, corners), "m");
 }
 
 void BoxMaps::append(const ColumnInstant &instant, std::span<const double> redundancy)

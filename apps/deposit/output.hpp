@@ -58,10 +58,20 @@ public:
     std::string name, unit;
     std::size_t width;
   };
+  /// One that does not change.
+  struct Constant
+  {
+    std::string name, unit;
+    std::vector<double> values;
+  };
+  struct Further
+  {
+    std::vector<Series> series;
+    std::vector<Constant> constants;
+  };
   /// @param resume_rows  rows of an existing file that are kept; InputError if it has fewer, or other depths
-  /// @param more  further series
   ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
-              std::span<const double> shear_velocity, std::size_t resume_rows = 0, std::vector<Series> more = {});
+              std::span<const double> shear_velocity, std::size_t resume_rows = 0, const Further &further = {});
 
   /// @param values  all depths of the first quantity, then of the second ..., then further series
   void append(double time, std::span<const double> values);

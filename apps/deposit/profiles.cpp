@@ -17,12 +17,12 @@ constexpr std::uint64_t schema_version = 1;
 } // namespace
 
 ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
-                         std::span<const double> shear_velocity, std::size_t resume_rows, std::vector<Series> more)
+                         std::span<const double> shear_velocity, std::size_t resume_rows, const Further &further)
     : path_(std::move(path)), depths_(std::move(depths))
 {
   for (const auto &[name, unit] : point_columns)
     series_.push_back({name, unit, depths_.size()});
-  series_.insert(series_.end(), more.begin(), more.end());
+  series_.insert(series_.end(), further.series.begin(), further.series.end());
   waiting_.resize(series_.size());
   if (resume_rows > 0)
     load(resume_rows);
@@ -32,9 +32,11 @@ ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths,
   root.write("depth", std::span<const double>(depths_), "m");
   root.write("sigma_v0", sigma_v0, "Pa");
   root.write("shear_velocity", shear_velocity, "m/s");
+  for (const Constant &constant : further.constants)
+    root.write(constant.name, std::span(constant.values), constant.unit);
   root.create_series("time", "s");
   for (const Series &series : series_)
-    root.create_series(series.name.c_str(), series.unit.c_str(), series.width,
+    root.create_series(series.name, series.unit, series.width,
                        std::max<std::size_t>(1, 4096 / series.width));
   append_waiting(root); // with what is kept in the same go: a kill here loses nothing
   file.commit();
@@ -57,7 +59,7 @@ void ProfileFile::load(std::size_t rows)
   times_.resize(rows);
   for (std::size_t k = 0; k < series_.size(); ++k)
     {
-      waiting_[k] = root.read<double>(series_[k].name.c_str());
+      waiting_[k] = root.read<double>(series_[k].name);
       waiting_[k].resize(rows * series_[k].width);
     }
   n_rows_ = rows;
@@ -92,7 +94,7 @@ void ProfileFile::append_waiting(hdf5::Group root) const
 {
   root.append("time", times_);
   for (std::size_t k = 0; k < series_.size(); ++k)
-    root.append(series_[k].name.c_str(), waiting_[k]);
+    root.append(series_[k].name, waiting_[k]);
 }
 
 void ProfileFile::forget_waiting()

@@ -106,13 +106,15 @@ std::vector<Stress> between_walls(const ColumnScene &scene, const CellTables &me
 {
   const MeshSpec spec = mesh_spec(scene);
   const double height = spec.soil.height(), step = 1e-6 * scene.mesh.width;
+  const bool on_all = !scene.load.surcharge_from && !scene.load.surcharge_to;
+  const double everywhere = on_all ? scene.load.surcharge : 0; // what bears on a part comes on in settle()
   std::vector<Stress> stresses;
   for (std::size_t q = 0; q < mesh.n_points(); ++q)
     {
       const auto &[x, y, z] = mesh.position[q];
       const double scale = spec.ground_at(x) / height; // of the thickness of all layers
       const double inclination = (spec.ground_at(x + step) - spec.ground_at(x - step)) / (2 * step);
-      const double vertical = scale * spec.soil.vertical_effective_stress(z / scale);
+      const double vertical = scale * spec.soil.vertical_effective_stress(z / scale) + everywhere;
       const double k0 = spec.soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
       stresses.push_back({-k0 * vertical, -k0 * vertical, -vertical, 0, -k0 * inclination * vertical, 0});
     }

@@ -60,7 +60,8 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
 
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
-/// K0 times as much. Between walls that is where settle() begins, without the surcharge.
+/// K0 times as much. Between walls that is where settle() begins, without a surcharge
+/// on a part of the surface.
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh);
 
 /// The points of `soil.grains` nearest to some depths on the vertical of the histories (MeshSpec::line).

@@ -11,6 +11,7 @@ import h5py
 from biaxial_test import ELASTIC
 from column_support import SCENES, settings
 from grain_column_test import GrainColumnTest
+from plate_test import BOX as PLATE
 from support import CYCLIC, main, tiny_scene
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/file_formats.md"
@@ -98,6 +99,7 @@ class FileFormats(GrainColumnTest):
         for name, change in (("terzaghi", {}), ("uniform_layer", {"analysis__duration": "0.1 s"}),
                              ("silt_cap", {"analysis__duration": "0.1 s"})):
             self.assert_done(self.run_column(SCENES / f"{name}.toml", "-o", name, "-q", *settings(**change)))
+        self.assert_done(self.run_column(self.write("plate.toml", PLATE), "-o", "plate", "-q"))
         block = self.write("block.toml", ELASTIC.format(degree=1))
         self.assert_done(self.run_app("biaxial", block, "-o", "block", "-q", "--no-figures"))
 

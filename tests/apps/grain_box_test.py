@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""soil_column with packings of grains in a box whose ground is inclined: settled, shaken, on ranks and threads, and
+killed."""
+import random
+import re
+import signal
+
+import h5py
+import numpy as np
+
+import grain_column_test
+from column_support import settings
+from grain_column_test import GRAINS
+from support import main
+
+BOX = re.sub(r"(snapshot|path)_(depths|interval).*\n", "", GRAINS).replace(
+    "[mesh]\ndegree = 1\n", """[mesh]
+dimension = 2
+width = "6 m"
+cells_across = 2
+points = 2
+sides = "walls"
+ground_x = ["0 m", "6 m"]
+ground_z = ["3 m", "2.6 m"]
+""").replace('"undrained"', '"coupled"').replace("cells = 5", 'cells = 1\npermeability = "1e-4 m/s"').replace(
+    "safety = 0.7", "safety = 0.5").replace('duration = "0.3 s"', 'duration = "0.2 s"')
+
+
+class Box(grain_column_test.GrainColumnTest):
+    stop = grain_column_test.Bits.stop
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("box.toml", BOX.format(cache=self.cache))
+
+    def test_ranks_threads_and_kills(self):
+        self.assert_done(self.run_column(self.scene, "-o", "whole", "-q"))
+        for n in (2, 3):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", "-q"))
+            self.assert_same_bytes("whole", f"on{n}")
+        self.assert_done(self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2))
+        self.assert_same_bytes("whole", "threads")
+        code, message = self.stop(2, signal.SIGKILL, random.Random(1).uniform(0, 0.5))
+        self.assertNotEqual(code, 0, message)
+        self.assert_done(self.run_column(self.scene, "-o", "parts", "-q", "--resume"))
+        self.assert_same_bytes("whole", "parts")
+
+    def test_maps_have_the_redundancy_of_each_packing(self):
+        self.assert_done(self.run_column(self.scene, "-o", "run", "-q", *settings(analysis__duration="0.05 s")))
+        with h5py.File(self.folder / "run/maps.h5") as file:
+            redundancy, x, z = (np.asarray(file[name]) for name in ("redundancy", "x", "z"))
+            moved = np.asarray(file["displacement_x"])
+        self.assertEqual(redundancy.shape[1], 8)
+        self.assertEqual((len(x), len(z)), (8, 8))
+        self.assertTrue(((redundancy > 0.5) & (redundancy < 3)).all(), redundancy)
+        self.assertEqual(np.abs(moved[0]).max(), 0)
+        self.assertGreater(np.abs(moved[-1]).max(), 1e-6)
+        profiles = np.genfromtxt(self.folder / "run/grain_profiles/history.csv", delimiter=",", names=True)
+        rows = np.array([profiles[name] for name in profiles.dtype.names if re.fullmatch(r"p\d+_IR_?", name)]).T
+        self.assert_near(np.sort(rows[0]), np.sort(redundancy[0]), 1e-9, "ten digits of a table for people")
+
+
+if __name__ == "__main__":
+    main()
