@@ -29,8 +29,8 @@ constexpr Key in_mesh[] = {
    .field = [](ColumnMesh &m) -> Field { return &m.sides; }},
   {.path = "ground_x", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
-   .text = "x of points of a surface that is not level, rising; straight between them. Only between walls; water, if there "
-           "is any, covers all of it.",
+   .text = "x of points of a surface that is not level, rising, on boundaries between elements; straight between them. Only "
+           "between walls; water, if there is any, covers all of it.",
    .field = [](ColumnMesh &m) -> Field { return &m.ground_x; }},
   {.path = "ground_z", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
@@ -42,7 +42,7 @@ constexpr Key in_mesh[] = {
 constexpr Key in_load[] = {
   {.path = "surcharge_from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
-   .text = "x where the surcharge begins, between walls; left out: at the left wall. In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia.",
+   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia.",
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
   {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "12 m", .range = positive,
@@ -50,6 +50,13 @@ constexpr Key in_load[] = {
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_to; }},
 };
 // clang-format on
+
+/// Whether x is on a boundary between elements.
+bool is_boundary(const ColumnMesh &mesh, double x)
+{
+  const double cells = x / mesh.width * mesh.cells_across;
+  return std::abs(cells - std::round(cells)) < 1e-6;
+}
 
 /// The surface of a box.
 void check_ground(const SceneDocument &document, const ColumnScene &scene)
@@ -70,6 +77,12 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
     {
       document.refuse("mesh.ground_x", error.what());
     }
+  for (const auto &[x, z] : ground.points)
+    if (x > mesh.width * (1 + 1e-9) || !is_boundary(mesh, x))
+      document.refuse("mesh.ground_x", fmt::format("must be on boundaries between elements of {} m in a box of {} m, "
+                                                   "because elements have straight sides, but has a point at {} m.",
+                                                   number_text(mesh.width / mesh.cells_across), number_text(mesh.width),
+                                                   number_text(x)));
   if (std::abs(ground.highest() - scene.height()) > 1e-6 * scene.height())
     document.refuse("mesh.ground_z", fmt::format("must reach {} m, the height of all layers, at its highest point, but "
                                                  "reaches {} m. Correct it, or the layers' thickness.",
@@ -94,6 +107,8 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
                                               scene.mesh.dimension));
   if (scene.base.compliant())
     document.refuse("base.kind", "must be \"rigid\" in a box, whose walls move with its base.");
+  if (scene.analysis.kind == AnalysisKind::consolidation)
+    document.refuse("analysis.kind", "must not be \"consolidation\" in a box; shake it, or move a plate.");
   if (scene.slope.tangent > 0)
     document.refuse("slope.angle",
                     "turns the axes of an infinite slope; a box stands upright. Give the inclined surface "
@@ -105,14 +120,27 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
 
 void check_places(const SceneDocument &document, const ColumnScene &scene)
 {
-  const double width = scene.mesh.width;
+  const ColumnLoad &load = scene.load;
+  const double width = scene.mesh.width, from = load.surcharge_from.value_or(0), to = load.surcharge_to.value_or(width);
   if (scene.output.x.value_or(0) >= width)
     document.refuse("output.x", fmt::format("must lie in the box, in [0 m, {} m).", number_text(width)));
-  const double from = scene.load.surcharge_from.value_or(0), to = scene.load.surcharge_to.value_or(width);
+  if (load.bears_on_all())
+    return;
+  const char *key = load.surcharge_to ? "load.surcharge_to" : "load.surcharge_from";
   if (!(from < to && to <= width))
-    document.refuse(scene.load.surcharge_to ? "load.surcharge_to" : "load.surcharge_from",
-                    fmt::format("must leave a part of the surface with the surcharge: from {} m to {} m of {} m.",
-                                number_text(from), number_text(to), number_text(width)));
+    document.refuse(key, fmt::format("must leave a part of the surface with the surcharge: from {} m to {} m of {} m.",
+                                     number_text(from), number_text(to), number_text(width)));
+  if (from == 0 && load.surcharge_from)
+    document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the wall.");
+  if (to == width && load.surcharge_to)
+    document.refuse("load.surcharge_to", "must be below the width, or be left out: then it ends at the wall.");
+  for (const double x : {from, to})
+    if (!is_boundary(scene.mesh, x))
+      document.refuse(key, fmt::format("must be on a boundary between elements, but {} m is inside of one of {} m. "
+                                       "Give a multiple of that.",
+                                       number_text(x), number_text(width / scene.mesh.cells_across)));
+  if (scene.analysis.kind == AnalysisKind::plate)
+    document.refuse(key, "has no meaning beside a plate; a surcharge bears on all of the surface then. Remove it.");
 }
 } // namespace
 
@@ -122,6 +150,10 @@ SceneFragment<ColumnLoad> strip_load_keys() { return {in_load}; }
 
 void check_box(const SceneDocument &document, const ColumnScene &scene)
 {
+  if (scene.mesh.points > 0 && scene.mesh.points < scene.mesh.degree)
+    document.refuse("mesh.points", fmt::format("must be 0 or at least the degree, {}, or elements have modes without "
+                                               "stiffness.",
+                                               scene.mesh.degree));
   if (scene.mesh.sides == Sides::tied)
     return refuse_box_keys(document);
   refuse_around_box(document, scene);

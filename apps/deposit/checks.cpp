@@ -159,10 +159,12 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 void check_depths(const SceneDocument &document, const ColumnScene &scene, const std::string &key,
                   const std::vector<double> &depths)
 {
+  const MeshSpec mesh = mesh_spec(scene);
+  const double height = mesh.ground_at(mesh.line[0]);
   for (std::size_t i = 0; i < depths.size(); ++i)
-    if (depths[i] > scene.height() * (1 + 1e-12)) // the sum of layers is rounded
+    if (depths[i] > height * (1 + 1e-12)) // the sum of layers is rounded
       document.refuse(key, fmt::format("must lie in the soil, in [0 m, {} m], but entry {} is {} m.",
-                                       number_text(scene.height()), i + 1, number_text(depths[i])));
+                                       number_text(height), i + 1, number_text(depths[i])));
 }
 
 void check_drawn_packings(const SceneDocument &document, const ColumnScene &scene, std::size_t i)

@@ -36,8 +36,7 @@ ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths,
     root.write(constant.name, std::span(constant.values), constant.unit);
   root.create_series("time", "s");
   for (const Series &series : series_)
-    root.create_series(series.name, series.unit, series.width,
-                       std::max<std::size_t>(1, 4096 / series.width));
+    root.create_series(series.name, series.unit, series.width, std::max<std::size_t>(1, 4096 / series.width));
   append_waiting(root); // with what is kept in the same go: a kill here loses nothing
   file.commit();
   forget_waiting();

@@ -91,6 +91,10 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
     }
   catch (const RunFailure &failure)
     {
+      if (!scene.mesh.ground_x.empty())
+        throw InputError(fmt::format("{}\n  The ground may be too steep for the packings. Give it a gentler one "
+                                     "(mesh.ground_z), denser packings (relative_density), or a k0 nearer to 1.",
+                                     failure.what()));
       if (scene.slope.tangent == 0)
         throw;
       throw InputError(
@@ -106,8 +110,7 @@ std::vector<Stress> between_walls(const ColumnScene &scene, const CellTables &me
 {
   const MeshSpec spec = mesh_spec(scene);
   const double height = spec.soil.height(), step = 1e-6 * scene.mesh.width;
-  const bool on_all = !scene.load.surcharge_from && !scene.load.surcharge_to;
-  const double everywhere = on_all ? scene.load.surcharge : 0; // what bears on a part comes on in settle()
+  const double everywhere = scene.load.bears_on_all() ? scene.load.surcharge : 0; // a part's comes on in settle()
   std::vector<Stress> stresses;
   for (std::size_t q = 0; q < mesh.n_points(); ++q)
     {

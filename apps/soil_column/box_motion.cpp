@@ -9,7 +9,8 @@ namespace isostat
 {
 namespace
 {
-/// u and its x where `size` of u is largest, the smallest x if there are several; over all ranks.
+/// u and its x where `size` of u is largest, the smallest x of several on a rank; over all ranks that of
+/// the first.
 template <typename Size>
 std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &area, const Vector &displacement,
                               const std::vector<Place> &places, unsigned component, const Size &size)
@@ -60,14 +61,17 @@ BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement
 
 std::string to_text(const BoxMotion &m, const MeshSpec &mesh)
 {
-  return fmt::format("  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
+  return fmt::format("  settled                  {:.3g} mm at most, before it moved\n"
+                     "  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
                      "  surface sank             {:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m\n",
-                     m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x, m.highest, m.highest_x);
+                     1e3 * m.settled, m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x,
+                     m.highest, m.highest_x);
 }
 
 Json to_json(const BoxMotion &m, const MeshSpec &mesh)
 {
-  return {{"x", mesh.line[0]},       {"along_x", m.on_line},        {"largest", m.largest}, {"largest_x", m.largest_x},
-          {"settlement", m.deepest}, {"settlement_x", m.deepest_x}, {"heave", m.highest},   {"heave_x", m.highest_x}};
+  return {{"settled", m.settled},        {"x", mesh.line[0]},        {"along_x", m.on_line},
+          {"largest", m.largest},        {"largest_x", m.largest_x}, {"settlement", m.deepest},
+          {"settlement_x", m.deepest_x}, {"heave", m.highest},       {"heave_x", m.highest_x}};
 }
 } // namespace isostat

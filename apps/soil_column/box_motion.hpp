@@ -8,6 +8,7 @@ namespace isostat
 /// How the surface of a box has moved against the box.
 struct BoxMotion
 {
+  double settled = 0;                ///< before it: the largest displacement on the way to equilibrium, m
   double on_line = 0;                ///< along x, on the vertical of the histories, m
   double largest = 0, largest_x = 0; ///< along x, by size; where it was at the start, m
   double deepest = 0, deepest_x = 0; ///< settlement, m; where

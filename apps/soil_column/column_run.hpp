@@ -63,7 +63,10 @@ public:
         if (scene_.slope.tangent > 0)
           spreading_ = spreading(scene_, space_, run_.displacement(), files_.line());
         if (scene_.mesh.sides == Sides::walls)
-          box_motion_ = box_motion(space_, run_.displacement());
+          {
+            box_motion_ = box_motion(space_, run_.displacement());
+            box_motion_->settled = settled_;
+          }
         write([&] {
           files_.finish(follower_.peaks, spreading_);
           finish_files();
@@ -133,7 +136,15 @@ protected:
 
 private:
   /// A resumed run settles, too: the time step is that of the stiffness then.
-  double settled() { return scene_.mesh.sides == Sides::walls ? settle(scene_, space_, *soil_.material) : 0; }
+  double settled()
+  {
+    if (scene_.mesh.sides != Sides::walls)
+      return 0;
+    return settle(scene_, *soil_.material, [] {
+      if (on_any_rank(stop_requested()))
+        throw Interrupted("interrupted while the soil settles, before the first step; start it again");
+    });
+  }
 
   /// Those of a shaken block; a plate holds what it moves, and the soil along it if it is rough.
   static Supports supports_of(const ColumnScene &scene)

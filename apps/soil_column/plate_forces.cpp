@@ -37,7 +37,7 @@ Json to_json(const PlateResult &p)
           {"force_at_the_end", p.last}, {"largest_residual", p.residual}};
 }
 
-double soil_weight(const ColumnScene &scene)
+double largest_weight(const ColumnScene &scene)
 {
   double weight = 0;
   for (const ColumnLayer &layer : scene.layers)
@@ -54,16 +54,17 @@ PlateForces::PlateForces(const ColumnScene &scene, const FiniteElementSpace &spa
   find_start(scene, stresses);
 }
 
-/// Internal forces less the weight, a part of which acts on nodes of the plate.
+/// Internal forces less weight and surcharge of the soil beside it that act on nodes of the plate.
 void PlateForces::find_start(const ColumnScene &scene, std::span<const Stress> stresses)
 {
   Vector force = space_.displacement_vector();
   space_.add_internal_force(stresses, force);
   const std::vector<Vector> volumes = space_.layer_volumes();
+  const Vector beside = space_.face_area(Face::surface);
   for (std::size_t i = 0; i < area_.locally_owned_size(); ++i)
     if (area_.local_element(i) > 0)
       {
-        start_[i % 3] += force.local_element(i);
+        start_[i % 3] += force.local_element(i) + (i % 3 == 2 ? scene.load.surcharge * beside.local_element(i) : 0);
         for (std::size_t k = 0; i % 3 == 2 && k < volumes.size(); ++k)
           start_[2] += scene.water.gravity * scene.layers[k].density * volumes[k].local_element(i);
       }

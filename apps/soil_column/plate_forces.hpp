@@ -22,8 +22,8 @@ struct PlateResult
 std::string to_text(const PlateResult &result, const Plate &plate);
 Json to_json(const PlateResult &result);
 
-/// Weight of the soil of a box, N/m.
-double soil_weight(const ColumnScene &scene);
+/// Weight of a box of soil that is as high everywhere as where it is highest, N/m.
+double largest_weight(const ColumnScene &scene);
 
 /// Forces between a plate and the soil.
 /// tested: tests/apps/plate_test.py

@@ -14,7 +14,7 @@ StaticsSettings settings_of(const ColumnScene &scene)
   StaticsSettings settings;
   settings.displacements = {{{patch_face(0), plate.axis()}, [way](double t, const Place &) { return way * t; }}};
   settings.newton = plate.newton;
-  settings.min_force = 1e-3 * soil_weight(scene); // before the plate has a force of its own
+  settings.min_force = 1e-3 * largest_weight(scene); // before the plate has a force of its own
   return settings;
 }
 
@@ -61,7 +61,17 @@ private:
   void step() override
   {
     const Stopwatch watch;
-    run_.step((static_cast<double>(run_.n_steps()) + 1) / scene_.plate.steps - run_.time());
+    try
+      {
+        run_.step((static_cast<double>(run_.n_steps()) + 1) / scene_.plate.steps - run_.time());
+      }
+    catch (const RunFailure &failure)
+      {
+        if (rows_)
+          rows_->flush();
+        throw RunFailure(fmt::format("{}\n  the plate met at most {:.6g} kN/m, at {:+.4g} m, and {:.6g} kN/m last",
+                                     failure.what(), result_.largest / 1e3, result_.largest_at, result_.last / 1e3));
+      }
     times_.solver += watch.seconds();
     ++times_.steps;
     record_plate();

@@ -2,6 +2,7 @@
 #include "apps/soil_column/settling.hpp"
 
 #include "base/error.hpp"
+#include "fem/solve/dynamics.hpp"
 #include "fem/solve/statics.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,31 @@ namespace
 {
 constexpr unsigned steps = 10;
 
+bool has_plate(const ColumnScene &scene, PlateSide side)
+{
+  return scene.analysis.kind == AnalysisKind::plate && scene.plate.on == side;
+}
+
+/// Faces of the surface; a plate has one of its own.
+std::vector<Face> surfaces(const ColumnScene &scene)
+{
+  if (has_plate(scene, PlateSide::surface))
+    return {Face::surface, patch_face(0)};
+  return {Face::surface};
+}
+
+/// Smooth walls and a rough base, which a plate in them is a part of.
+Supports box_supports(const ColumnScene &scene)
+{
+  Supports supports = shaken_supports(false, Sides::walls);
+  if (has_plate(scene, PlateSide::base))
+    for (unsigned c = 0; c < 3; ++c)
+      supports.fixed.push_back({patch_face(0), c});
+  if (has_plate(scene, PlateSide::left) || has_plate(scene, PlateSide::right))
+    supports.fixed.push_back({patch_face(0), 0});
+  return supports;
+}
+
 StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
 {
   StaticsSettings settings;
@@ -20,9 +46,10 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
     return std::array<double, 3>{0, 0, -t * soil.water.gravity * (soil.layers[layer].density - soil.water.density)};
   };
   if (scene.load.surcharge > 0)
-    settings.tractions = {{Face::surface, [&load = scene.load](double t, const Place &place) {
-                             return std::array<double, 3>{0, 0, -t * load.surcharge_at(place[0])};
-                           }}};
+    for (Face face : surfaces(scene))
+      settings.tractions.push_back({face, [&load = scene.load](double t, const Place &place) {
+                                      return std::array<double, 3>{0, 0, -t * load.surcharge_at(place[0])};
+                                    }});
   settings.newton = scene.has_grains()
                         ? NewtonSettings{.tolerance = 5e-3, .max_iterations = 0, .relaxation_iterations = 300}
                         : NewtonSettings{.tolerance = 1e-6, .max_iterations = 15, .relaxation_iterations = 300};
@@ -30,14 +57,20 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
 }
 } // namespace
 
-double settle(const ColumnScene &scene, const FiniteElementSpace &space, Material &material)
+double settle(const ColumnScene &scene, Material &material, const std::function<void()> &after_step)
 {
   const SoilProfile soil = soil_profile(scene);
+  const Discretisation<2> space(mesh_spec(scene), box_supports(scene),
+                                scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
   Statics statics(space, material, settings_of(scene, soil));
   try
     {
       for (unsigned k = 1; k <= steps; ++k)
-        statics.step(static_cast<double>(k) / steps - statics.time());
+        {
+          statics.step(static_cast<double>(k) / steps - statics.time());
+          if (after_step)
+            after_step();
+        }
     }
   catch (const RunFailure &failure)
     {

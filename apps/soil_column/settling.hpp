@@ -2,16 +2,19 @@
 #pragma once
 #include "apps/deposit/scene.hpp"
 #include "fem/material/material.hpp"
-#include "fem/space/discretisation.hpp"
+
+#include <functional>
 
 namespace isostat
 {
 /// Brings the soil of a box from its K0 stress into equilibrium with its weight (buoyant under water) and the
 /// surcharge, drained, in ten steps: docs/theory_column.md, section 9. Packings by relaxation to a residual of 0.5 % of
 /// the force scale, formulas by Newton's method to 1e-6 where it converges, else by relaxation. Displacements are
-/// forgotten, what the material has undergone is not.   Collective.
+/// forgotten, what the material has undergone is not. A plate on the surface is not there yet, one in the base or a
+/// wall is a part of these: the soil does not hang on it.   Collective.
+/// @param after_step  called after each step; what it throws goes through
 /// @return the largest displacement, m
 /// @throws RunFailure  the soil does not bear its weight and the surcharge
 /// tested: tests/apps/box_test.py
-double settle(const ColumnScene &scene, const FiniteElementSpace &space, Material &material);
+double settle(const ColumnScene &scene, Material &material, const std::function<void()> &after_step = {});
 } // namespace isostat

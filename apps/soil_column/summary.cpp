@@ -113,7 +113,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                     "{:.4f} m/s2{}{}\n  peak surface             {:.4f} m/s2{}\n",
                     scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
                     scene.base.compliant() ? " (outcrop)" : "", of_both_axes(scene), p.surface, of_both_axes(scene));
-  else
+  else if (!s.plate)
     text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
   if (p.input > 0)
     text += fmt::format("  amplification            {:.3f}\n", amplification(p));

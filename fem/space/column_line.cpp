@@ -17,7 +17,8 @@ double minimum(double x, MPI_Comm communicator)
   return x;
 }
 
-/// From the surface down: of every row of points those nearest to the line on its right, or nearest of all.
+/// From the surface down: of every row of points those nearest to the line on its right, or the last ones if there are
+/// none.
 std::vector<std::size_t> points_on_line(const FiniteElementSpace &space)
 {
   const MeshSpec &mesh = space.mesh();
@@ -26,6 +27,10 @@ std::vector<std::size_t> points_on_line(const FiniteElementSpace &space)
     for (int axis : {0, 1})
       if (place[axis] > mesh.line[axis] - near)
         edge[axis] = std::min(edge[axis], place[axis]);
+  for (int axis : {0, 1})
+    if (edge[axis] == std::numeric_limits<double>::max())
+      for (const Place &place : space.position)
+        edge[axis] = std::max(edge[axis] == std::numeric_limits<double>::max() ? place[axis] : edge[axis], place[axis]);
   std::vector<std::size_t> points;
   for (std::size_t q = space.n_points(); q-- > 0;)
     if (std::abs(space.position[q][0] - edge[0]) < near && std::abs(space.position[q][1] - edge[1]) < near)

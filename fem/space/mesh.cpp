@@ -55,12 +55,14 @@ std::vector<double> cell_heights(const SoilProfile &soil)
   return heights;
 }
 
-/// Marks each cell with the number of its layer.   @pre layers are level
+/// Marks each cell with its number and its layer: CellMark.   @pre layers are level, the mesh is whole
 template <int dim>
-void mark_layers(const SoilProfile &soil, dealii::Triangulation<dim> &mesh)
+void mark_cells(const SoilProfile &soil, dealii::Triangulation<dim> &mesh)
 {
   for (const auto &cell : mesh.active_cell_iterators())
-    cell->set_material_id(static_cast<dealii::types::material_id>(soil.layer_at(cell->center()[dim - 1])));
+    cell->set_material_id(
+        CellMark{cell->active_cell_index(), static_cast<unsigned>(soil.layer_at(cell->center()[dim - 1]))}.packed(
+            soil.layers.size()));
 }
 
 /// Raises the level surface to the ground, and all below it in proportion.
@@ -87,19 +89,24 @@ void cut_patch(const MeshSpec &spec, std::size_t k, dealii::Triangulation<dim> &
     throw InputError(fmt::format("patch {}: must be of a face of a mesh in 2 dimensions", k));
   const int along = patch.of == Face::base || patch.of == Face::surface ? 0 : dim - 1;
   const auto id = static_cast<dealii::types::boundary_id>(boundary_id<dim>(patch.of));
-  double length = 0;
+  double from = patch.to, to = patch.from;
   for (const auto &cell : mesh.active_cell_iterators())
     for (const auto &face : cell->face_iterators())
       if (face->at_boundary() && face->boundary_id() == id && face->center()[along] > patch.from &&
           face->center()[along] < patch.to)
         {
           face->set_boundary_id(static_cast<dealii::types::boundary_id>(boundary_id<dim>(patch_face(k))));
-          length += std::abs(face->vertex(dim - 1)[along] - face->vertex(0)[along]);
+          for (unsigned v = 0; v < face->n_vertices(); ++v)
+            {
+              from = std::min(from, face->vertex(v)[along]);
+              to = std::max(to, face->vertex(v)[along]);
+            }
         }
-  if (!(std::abs(length - (patch.to - patch.from)) <= 1e-6 * length))
-    throw InputError(fmt::format("patch {} from {} m to {} m: covers {:.6g} m of elements; must begin and end on "
-                                 "boundaries between elements, inside its face",
-                                 k, patch.from, patch.to, length));
+  const double near = 1e-6 * (patch.to - patch.from);
+  if (!(std::abs(from - patch.from) <= near && std::abs(to - patch.to) <= near))
+    throw InputError(fmt::format("patch {} from {} m to {} m: its elements reach from {:.6g} m to {:.6g} m; must begin "
+                                 "and end on boundaries between elements, inside its face",
+                                 k, patch.from, patch.to, from, to));
 }
 
 /// The mesh, each rank with a part of it.
@@ -147,7 +154,7 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
   for (double h : steps.back())
     high[dim - 1] += h;
   dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, steps, low, high, true);
-  mark_layers(spec.soil, *mesh);
+  mark_cells(spec.soil, *mesh);
   if (!spec.ground.is_level())
     shape_ground(spec, *mesh);
   for (std::size_t k = 0; k < spec.patches.size(); ++k)

@@ -79,6 +79,7 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       const auto same_cell = pressure_cell++;
       if (!cell->is_locally_owned())
         continue;
+      const CellMark mark = CellMark::of(cell->material_id(), spec.soil.layers.size());
       u.reinit(cell);
       p.reinit(same_cell);
       lumped.reinit(cell);
@@ -90,11 +91,11 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
         {
           t.weight.push_back(u.JxW(q));
           t.position.push_back(place_of<dim>(u.quadrature_point(q)));
-          t.point_id.push_back(cell->id().get_coarse_cell_id() * t.n_gauss + q);
+          t.point_id.push_back(mark.number * t.n_gauss + q);
         }
       for (const unsigned v : cell->vertex_indices())
         t.corner.push_back(place_of<dim>(cell->vertex(v)));
-      t.cell_layer.push_back(cell->material_id());
+      t.cell_layer.push_back(mark.layer);
       t.cell_is_wet.push_back(!spec.ground.is_level() || spec.soil.is_wet(cell->center()[dim - 1]));
       if (t.shape.empty())
         {

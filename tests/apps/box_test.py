@@ -118,6 +118,37 @@ class Box(ColumnTest):
                 self.assert_near(found[n]["surface_motion"][key], one, 1e-7 * abs(one),
                                  f"round-off of sums over the ranks ({key})")
 
+    def test_a_shared_mesh_goes_on_on_other_ranks(self):
+        scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
+        options = settings(mesh__distributed="true", output__checkpoint="1e-9 min")
+        self.assert_done(self.run_column(scene, "-o", "whole", *options))
+        for n, then in ((1, 2), (2, 1), (2, 4)):
+            with subprocess.Popen(["mpirun", "--oversubscribe", "-n", str(n), *self.command(
+                    "soil_column", scene, "-o", "parts", "--no-figures", "--overwrite", *options)], cwd=self.folder,
+                                  stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
+                end = time.time() + 60 * PATIENCE
+                time.sleep(1)
+                while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
+                    time.sleep(0.005)
+                process.send_signal(signal.SIGTERM)
+                process.communicate(timeout=60 * PATIENCE)
+            self.assert_done(self.run_on_ranks(then, scene, "-o", "parts", "--resume", *options))
+            one, other = (json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
+                          for name in ("whole", "parts"))
+            for key in ("along_x", "largest", "settlement", "heave"):
+                self.assert_near(other["surface_motion"][key], one["surface_motion"][key],
+                                 1e-7 * abs(one["surface_motion"][key]), f"round-off of sums over the ranks ({key})")
+
+    def test_the_stress_in_situ_is_that_of_the_theory(self):
+        self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
+        maps = self.maps("run")
+        inner = (maps["x"] > 4) & (maps["x"] < 8)
+        vertical = 9.81 * 950 * maps["depth"]
+        self.assert_near(maps["sigma_v0"], vertical, 1e-6 * vertical.max(), "round-off")
+        shear = 0.5 * 0.1 * vertical  # K0 of the inclination 1.2 m in 12 m
+        self.assert_near(maps["tau_xz"][0][inner], shear[inner], 0.25 * shear.max(),
+                         "second order of the inclination, and what the walls leave one depth away")
+
     def test_a_surcharge_beyond_what_the_soil_bears_is_told(self):
         weak = BOX.replace('"iwan"', '"mohr_coulomb"\nfriction_angle = "25 deg"\ndilatancy_angle = "0 deg"')
         strip = '[load]\nsurcharge = "{} kPa"\nsurcharge_from = "4 m"\nsurcharge_to = "6 m"\n'
@@ -132,7 +163,7 @@ class Box(ColumnTest):
         self.assertFalse((self.folder / "fails/history.csv").exists())
 
     def test_a_sliver_of_an_element_is_told_by_its_time_step(self):
-        sliver = BOX.replace('["3.6 m", "2.4 m"]', '["3.6 m", "0.001 m"]')
+        sliver = BOX.replace('["3.6 m", "2.4 m"]', '["3.6 m", "0.001 m"]').replace('"2 m"]', '"1 m"]')
         result = self.run_column(self.write("sliver.toml", sliver), "-o", "sliver", "--quiet",
                                  *settings(analysis__time_step="0.1 ms"))
         self.assertEqual(result.returncode, 2)

@@ -82,6 +82,21 @@ class PlateTest(ColumnTest):
         _, right, _, _ = self.forces("right", analysis__on="right", analysis__rough="false")
         self.assert_near(right, force, 1e-6 * at_rest, "mirrored")
 
+    def test_a_surcharge_is_taken_over_by_the_plate(self):
+        for place in ({}, {"analysis__from": "1 m", "analysis__to": "2 m"}):
+            _, force, _, summary = self.forces("on" + str(len(place)), load__surcharge="20 kPa", **place)
+            expected = 20e3 * summary["length"]
+            self.assert_near(force[0], expected, 1e-6 * expected, "the stress in situ is exact on level ground")
+
+    def test_a_smooth_plate_bears_no_shear_and_a_rough_one_what_holds_it(self):
+        for rough in ("false", "true"):
+            table, _ = self.plate(rough, analysis__on="left", analysis__rough=rough, mesh__width="2 m",
+                                  mesh__cells_across=4)
+            shear = next(table[name] for name in table.dtype.names if name.startswith("shear_force"))
+            foot = 9.81 * 1800 * 2 * 0.5 / 6 if rough == "true" else 0  # what the base bears at the node they share
+            self.assert_near(shear[0], foot, 1e-6 * WEIGHT, "it was a smooth wall when the soil settled")
+            self.assertEqual(shear[-1] < foot - 1000, rough == "true", "soil that is pressed rises, the wall holds it")
+
     def test_a_part_of_a_side(self):
         way, force, _, summary = self.forces(analysis__from="1 m", analysis__to="2 m")
         self.assertEqual(summary["length"], 1)
@@ -105,7 +120,8 @@ class PlateTest(ColumnTest):
         for more, words in ((settings(analysis__to="5 m"), ("analysis.to", "from 0 m to 5 m of 4 m")),
                             (settings(analysis__displacement="0 m"), ("analysis.displacement", "nothing moves")),
                             (settings(mesh__sides="tied"), ("mesh.sides", "\"walls\"")),
-                            (settings(analysis__from="0.3 m"), ("patch 0", "boundaries between elements")),
+                            (settings(analysis__from="0.3 m", analysis__to="1.3 m"),
+                             ("patch 0", "boundaries between elements")),
                             (settings(analysis__max_iterations="0"),
                              ("analysis.max_iterations", "relaxation_iterations")),
                             (settings(water__drainage="coupled", layer__0__permeability="1e-5 m/s"),

@@ -13,8 +13,9 @@ namespace
 {
 std::string box(const std::string &more = "", const std::string &of_mesh = "")
 {
-  return sand + "permeability = \"1e-5 m/s\"\n[mesh]\ndimension = 2\nwidth = \"10 m\"\nsides = \"walls\"\n" + of_mesh +
-         more + dynamic;
+  const std::string cells = of_mesh.find("cells_across") == std::string::npos ? "cells_across = 5\n" : "";
+  return sand + "permeability = \"1e-5 m/s\"\n[mesh]\ndimension = 2\nwidth = \"10 m\"\nsides = \"walls\"\n" + cells +
+         of_mesh + more + dynamic;
 }
 
 const std::string ground = "ground_x = [\"0 m\", \"4 m\", \"10 m\"]\nground_z = [\"5 m\", \"5 m\", \"2 m\"]\n";
@@ -34,6 +35,7 @@ TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
   EXPECT_EQ(mesh.line[0], 5); // the middle
   EXPECT_EQ(mesh.ground_at(5), 4.5);
   EXPECT_EQ(scene.load.surcharge_at(3.9), 0);
+  EXPECT_FALSE(scene.load.bears_on_all());
   EXPECT_EQ(scene.load.surcharge_at(4), 1e4);
   EXPECT_EQ(scene.load.surcharge_at(5), 2e4);
   EXPECT_EQ(scene.load.surcharge_at(6.1), 0);
@@ -54,7 +56,8 @@ const std::string plate = "[water]\ndrainage = \"dry\"\n[analysis]\nkind = \"pla
 
 std::string with_plate(const std::string &of_mesh = "", const std::string &more = "")
 {
-  return sand + "[mesh]\ndimension = 2\nwidth = \"10 m\"\nsides = \"walls\"\n" + of_mesh + plate + more;
+  return sand + "[mesh]\ndimension = 2\nwidth = \"10 m\"\ncells_across = 5\nsides = \"walls\"\n" + of_mesh + plate +
+         more;
 }
 
 TEST(BoxScene, PlatesComeThroughTextAndGoToTheMesh)
@@ -97,6 +100,7 @@ TEST(BoxScene, RefusesWhatCannotBeInABox)
   expect_refusal(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
   expect_refusal(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
                  {"base.kind", "must be \"rigid\""});
+  expect_refusal(box(), {"mesh.points", "at least the degree, 2"}, {"mesh.points=1"});
   expect_refusal(box("[slope]\nangle = \"5 deg\"\n"), {"slope.angle", "ground_x"});
   expect_refusal(box("[water]\ntable = \"1 m\"\n"), {"water.table", "must be 0 m"});
 }
@@ -112,6 +116,13 @@ TEST(BoxScene, RefusesGroundThatIsNone)
 
 TEST(BoxScene, RefusesPlacesOutside)
 {
+  expect_refusal(box("[output]\ndepths = [\"4.6 m\"]\n", ground), {"output.depths", "[0 m, 4.5 m]"});
+  expect_refusal(box("[load]\nsurcharge_to = \"4.5 m\"\n", "cells_across = 10\n"),
+                 {"load.surcharge_to", "4.5 m is inside", "one of 1 m"});
+  expect_refusal(box("[load]\nsurcharge_to = \"10 m\"\n", "cells_across = 10\n"), {"load.surcharge_to", "left out"});
+  expect_refusal(box("", "cells_across = 10\nground_x = [\"0 m\", \"4.5 m\", \"10 m\"]\n"
+                         "ground_z = [\"5 m\", \"5 m\", \"2 m\"]\n"),
+                 {"mesh.ground_x", "boundaries between elements", "4.5 m"});
   expect_refusal(box("[output]\nx = \"10 m\"\n"), {"output.x", "[0 m, 10 m)"});
   expect_refusal(box("[load]\nsurcharge_to = \"11 m\"\n"), {"load.surcharge_to", "from 0 m to 11 m of 10 m"});
   expect_refusal(box("[load]\nsurcharge_from = \"5 m\"\nsurcharge_to = \"4 m\"\n"), {"from 5 m to 4 m"});

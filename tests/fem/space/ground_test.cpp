@@ -73,6 +73,16 @@ TEST(GroundMesh, TellsDepthsBelowTheGroundOfItsLine)
     EXPECT_NEAR_BECAUSE(space.position[q][0], 4.1127, 1e-4, "the first of three Gauss points of an element of 1 m");
 }
 
+TEST(GroundMesh, HasALineJustBeforeTheLastWall)
+{
+  MeshSpec mesh = hill();
+  mesh.line = {9.99, 0};
+  const Discretisation<2> space(mesh, {});
+  for (std::size_t q : column_line(space).points)
+    EXPECT_NEAR_BECAUSE(space.position[q][0], 9.8873, 1e-4, "the last of three Gauss points of an element of 1 m");
+  EXPECT_EQ(column_line(space).points.size(), 15u);
+}
+
 TEST(GroundMesh, RefusesGroundThatLayersDoNotReach)
 {
   MeshSpec mesh = hill();
@@ -108,8 +118,11 @@ TEST(Patch, RefusesEndsInsideOfElements)
   MeshSpec mesh = hill();
   mesh.patches = {{Face::base, 2, 5.5}};
   test::expect_parts(test::refusal([&] { Discretisation<2>(mesh, {}); }), {"patch 0", "2 m to 5.5 m", "boundaries"});
+  mesh.patches = {{Face::base, 2.3, 5.3}}; // as long as three elements
+  test::expect_parts(test::refusal([&] { Discretisation<2>(mesh, {}); }), {"reach from 2 m to 5 m", "boundaries"});
   mesh.patches = {{Face::base, 8, 11}};
-  test::expect_parts(test::refusal([&] { Discretisation<2>(mesh, {}); }), {"covers 2 m", "inside its face"});
+  test::expect_parts(test::refusal([&] { Discretisation<2>(mesh, {}); }),
+                     {"reach from 8 m to 10 m", "inside its face"});
 }
 } // namespace
 } // namespace isostat
