@@ -38,12 +38,13 @@ ProfileFile::Further of_a_box(const FiniteElementSpace &space, bool packings)
 {
   std::vector<Place> corners;
   for_each_corner(space, [&](std::size_t corner, unsigned) { corners.push_back(space.corner[corner]); });
-  ProfileFile::Further further{
-      .series = {{"displacement_x", "m", corners.size()}, {"displacement_z", "m", corners.size()}},
-      .constants = {{"x", "m", along(0, space.position)},
-                    {"z", "m", along(2, space.position)},
-                    {"corner_x", "m", along(0, corners)},
-                    {"corner_z", "m", along(2, corners)}}};
+  ProfileFile::Further further{.series = {{"displacement_x", "m", corners.size()},
+                                          {"displacement_z", "m", corners.size()},
+                                          {"sigma_x", "Pa", space.n_points()}},
+                               .constants = {{"x", "m", along(0, space.position)},
+                                             {"z", "m", along(2, space.position)},
+                                             {"corner_x", "m", along(0, corners)},
+                                             {"corner_z", "m", along(2, corners)}}};
   if (packings)
     further.series.push_back({"redundancy", "-", space.n_points()});
   return further;
@@ -64,6 +65,8 @@ void BoxMaps::append(const ColumnInstant &instant, std::span<const double> redun
   std::vector<double> values = columns_at(instant, points_, vertical_stress_);
   for (unsigned axis : {0, 2})
     for_each_corner(space_, [&](std::size_t, unsigned dof) { values.push_back(instant.displacement[dof + axis]); });
+  for (const Stress &stress : instant.stresses)
+    values.push_back(-stress[0]);
   values.insert(values.end(), redundancy.begin(), redundancy.end());
   file_.append(instant.time, values);
 }

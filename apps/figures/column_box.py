@@ -38,10 +38,12 @@ class Mesh:
                                   linewidth=0.15)
         elements.set_clim(low, high)
         axes.add_collection(elements)
-        outline = self.corners.reshape(-1, 2)
-        axes.plot([0, outline[:, 0].max()], [0, 0], color=GREY, linewidth=0.6)
-        axes.set_xlim(outline[:, 0].min() - 0.2, outline[:, 0].max() + 0.2)
-        axes.set_ylim(-0.2, 1.06 * outline[:, 1].max())
+        outline = np.concatenate([self.corners.reshape(-1, 2), self.moved(row).reshape(-1, 2)])
+        bottom, top = outline.min(axis=0), outline.max(axis=0)
+        axes.plot([0, self.corners[..., 0].max()], [0, 0], color=GREY, linewidth=0.6)
+        margin = 0.02 * (top - bottom)
+        axes.set_xlim(bottom[0] - margin[0], top[0] + margin[0])
+        axes.set_ylim(bottom[1] - margin[1], top[1] + margin[1])
         axes.set_aspect("equal")
         axes.grid(False)
         axes.set_ylabel("z (m)")
@@ -61,7 +63,7 @@ class Mesh:
 def box_maps(column):
     """r_u where its mean is largest and at the end, shear strain at the end, I_R where its mean is smallest, over the
     mesh as it has moved."""
-    if not is_box(column):
+    if not is_box(column) or column.plate:
         return None
     maps, mesh = column.maps, Mesh(column.maps)
     gamma = 100 * np.hypot(maps["gamma_xz"], maps["gamma_yz"])
@@ -80,7 +82,8 @@ def box_maps(column):
     for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abcd"):
         elements = mesh.show(axes, row, values, low, high, colours)
         figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01)
-        axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)
+        axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5,
+                       loc="right")
         panel_letter(axes, letter)
     panels[-1, 0].set_xlabel("x (m)")
     return figure
@@ -88,7 +91,7 @@ def box_maps(column):
 
 def box_surface(column):
     """Displacement of the surface along x and upwards: in time at three places, and over the box at several times."""
-    if not is_box(column):
+    if not is_box(column) or column.plate:
         return None
     maps, mesh = column.maps, Mesh(column.maps)
     indices, x = mesh.surface()

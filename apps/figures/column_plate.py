@@ -16,7 +16,8 @@ def plate(column):
                                         height_ratios=(1, 1.25), layout="constrained")
     way = 1e3 * column.plate["displacement"]
     panels["force"].plot(way, column.plate["force"] / 1e3, color=BLACK)
-    panels["force"].axhline(column.plate["force"][0] / 1e3, color=GREY, linewidth=0.7)
+    panels["force"].axhline(column.plate["force"][0] / 1e3, color=GREY, linewidth=0.7, label="in situ")
+    panels["force"].legend()
     panels["force"].set_ylabel("Force against the plate (kN/m)")
     panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
     panels["pressure"].set_ylabel("Normal stress beside it (kPa)")
@@ -28,7 +29,7 @@ def plate(column):
     high = max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6)
     elements = mesh.show(panels["map"], len(maps["time"]) - 1, gamma, 0, high, "magma_r")
     figure.colorbar(elements, ax=panels["map"], label=r"$|\gamma_{xz}|$ (%)", fraction=0.03, pad=0.01)
-    panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5)
+    panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5, loc="right")
     panels["map"].set_xlabel("x (m)")
     for axes, letter in zip(panels.values(), "abc"):
         panel_letter(axes, letter)

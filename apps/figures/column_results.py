@@ -133,9 +133,21 @@ class Column:
         complete = {"depth", "time"} <= profiles.keys() and profiles["time"].size and profiles["depth"].size
         return profiles if complete else {}
 
+    def _ground_scale(self):
+        """Height of the ground of a box at the vertical of the histories over that of the layers."""
+        mesh, height = self.scene.get("mesh", {}), sum(layer["height"] for layer in self.layers)
+        xs, zs = ([quantity(value) for value in mesh.get(key, [])] for key in ("ground_x", "ground_z"))
+        if not xs or not height:
+            return 1.0
+        middle = quantity(mesh.get("width"), 1.0) / 2
+        return float(np.interp(quantity(self.scene.get("output", {}).get("x"), middle), xs, zs)) / height
+
     def _read_scene(self):
         scene = self.scene
         self.layers = [of_layer(table) for table in scene.get("layer", [])]
+        scale = self._ground_scale()
+        for layer in self.layers:
+            layer["height"] *= scale
         self.consolidation = scene.get("analysis", {}).get("kind") == "consolidation"
         analysis = scene.get("analysis", {})
         self.damping = {"mass_damping": quantity(analysis.get("mass_damping"), 0.0),

@@ -9,10 +9,16 @@ namespace isostat
 {
 namespace
 {
+/// Also below a plate.
+bool is_at_surface(const MeshSpec &mesh, const Place &place)
+{
+  return std::abs(mesh.depth(place)) < 1e-9 * mesh.soil.height();
+}
+
 /// u and its x where `size` of u is largest, the smallest x of several on a rank; over all ranks that of
 /// the first.
 template <typename Size>
-std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &area, const Vector &displacement,
+std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &displacement,
                               const std::vector<Place> &places, unsigned component, const Size &size)
 {
   struct
@@ -23,7 +29,7 @@ std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &are
   MPI_Comm_rank(space.communicator(), &best.rank);
   double found[2] = {0, 0};
   for (std::size_t i = component; i < places.size(); i += 3)
-    if (const double u = displacement.local_element(i); area.local_element(i) > 0)
+    if (const double u = displacement.local_element(i); is_at_surface(space.mesh(), places[i]))
       if (size(u) > best.size || (size(u) == best.size && size(u) > 0 && places[i][0] < found[1]))
         {
           best.size = size(u);
@@ -41,10 +47,9 @@ std::array<double, 2> extreme(const FiniteElementSpace &space, const Vector &are
 
 BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement)
 {
-  const Vector area = space.face_area(Face::surface);
   const std::vector<Place> places = space.node_places();
   const auto along = [&](unsigned component, auto size) {
-    return extreme(space, area, displacement, places, component, size);
+    return extreme(space, displacement, places, component, size);
   };
   BoxMotion motion;
   const long node = space.find_dof(space.mesh().on_line(0), 0);

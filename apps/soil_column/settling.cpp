@@ -74,8 +74,10 @@ double settle(const ColumnScene &scene, Material &material, const std::function<
     }
   catch (const RunFailure &failure)
     {
-      throw RunFailure(fmt::format("the soil of the box does not settle under its weight{}: {}",
-                                   scene.load.surcharge > 0 ? " and the surcharge" : "", failure.what()));
+      throw RunFailure(fmt::format("the soil of the box does not settle under its weight{}, of which it bears {:.3g} % "
+                                   "(t below is that part): {}",
+                                   scene.load.surcharge > 0 ? " and the surcharge" : "", 100 * statics.time(),
+                                   failure.what()));
     }
   double largest = 0;
   for (std::size_t i = 0; i < statics.displacement().locally_owned_size(); ++i)

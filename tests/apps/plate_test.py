@@ -121,7 +121,7 @@ class PlateTest(ColumnTest):
                             (settings(analysis__displacement="0 m"), ("analysis.displacement", "nothing moves")),
                             (settings(mesh__sides="tied"), ("mesh.sides", "\"walls\"")),
                             (settings(analysis__from="0.3 m", analysis__to="1.3 m"),
-                             ("patch 0", "boundaries between elements")),
+                             ("analysis.to", "boundaries between elements", "0.5 m wide")),
                             (settings(analysis__max_iterations="0"),
                              ("analysis.max_iterations", "relaxation_iterations")),
                             (settings(water__drainage="coupled", layer__0__permeability="1e-5 m/s"),
