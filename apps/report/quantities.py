@@ -24,13 +24,20 @@ SHOWN = {
         "input_share_above": "%", "peak_gamma": "%", "peak_gamma_depth": "m", "max_ru": "-", "max_ru_depth": "m",
         "max_ru_time": "s", "settlement": "mm", "immediate_settlement": "mm", "final_settlement": "mm",
         "degree_of_consolidation": "%", "energy_residual": "J/m2", "relative_energy_residual": "-", "packings": "-",
-        "min_redundancy": "-", "min_redundancy_depth": "m", "min_redundancy_time": "s"},
+        "min_redundancy": "-", "min_redundancy_depth": "m", "min_redundancy_time": "s",
+        "surface_motion.settled": "mm", "surface_motion.x": "m", "surface_motion.along_x": "m",
+        "surface_motion.largest": "m", "surface_motion.largest_x": "m", "surface_motion.settlement": "mm",
+        "surface_motion.settlement_x": "m", "surface_motion.heave": "mm", "surface_motion.heave_x": "m",
+        "plate.length": "m", "plate.force_in_situ": "N/m", "plate.largest_force": "N/m", "plate.largest_at": "mm",
+        "plate.smallest_force": "N/m", "plate.smallest_at": "mm", "plate.force_at_the_end": "N/m",
+        "plate.largest_residual": "-"},
     "biaxial": {
         "steps": "-", "points": "-", "width_m": "m", "height_m": "m", "cells_across": "-", "cells_up": "-",
         "confinement_Pa": "kPa", "axial_strain": "%", "peak_stress_Pa": "kPa", "peak_strain": "%",
         "last_stress_Pa": "kPa", "volumetric_strain": "%", "localisation": "-", "max_strain": "%",
         "max_rotation_deg": "deg", "large_strain_from": "%", "iterations": "-", "trials": "-", "substeps": "-",
-        "rejected": "-", "tangents": "-", "rve_steps": "-"},
+        "rejected": "-", "tangents": "-", "rve_steps": "-", "nonlocal_length_m": "m",
+        "nonlocal_stiffness": "-"},
 }
 IN_SI = ("_deg", "_m", "_Pa")  # ends of names that tell the unit in the file
 

@@ -67,7 +67,7 @@ Period nearest(const Mat3 &edges, const Period &a, const Period &b, const Period
 
 Eigen::Matrix3i compact_periods(const Mat3 &edges)
 {
-  const Eigen::Matrix3i as_given = Eigen::Matrix3i::Identity();
+  Eigen::Matrix3i as_given = Eigen::Matrix3i::Identity();
   if (!edges.allFinite() || edges.determinant() == 0)
     return as_given;
   Periods p;

@@ -71,7 +71,9 @@ class Compare(ReportTest):
             self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=1 s")
             self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=2", "--set",
                       "test.axial_strain=0.001", "--set", "output.map_every=1")
-            programs += [("soil_column", "column"), ("soil_column", "shaken"), ("biaxial", "block")]
+            self.make("soil_column", "plate", SCENES / "column/plate_wall.toml", "--set", "mesh.cells_across=12",
+                      "--set", "layer.0.cells=3", "--set", "analysis.load_steps=1")
+            programs += [("soil_column", name) for name in ("column", "shaken", "plate")] + [("biaxial", "block")]
         for program, name in programs:
             self.assert_listed(program, name)
 
