@@ -51,13 +51,6 @@ constexpr Key in_load[] = {
 };
 // clang-format on
 
-/// Whether x is on a boundary between elements.
-bool is_boundary(const ColumnMesh &mesh, double x)
-{
-  const double cells = x / mesh.width * mesh.cells_across;
-  return std::abs(cells - std::round(cells)) < 1e-6;
-}
-
 /// The surface of a box.
 void check_ground(const SceneDocument &document, const ColumnScene &scene)
 {
@@ -78,7 +71,7 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
       document.refuse("mesh.ground_x", error.what());
     }
   for (const auto &[x, z] : ground.points)
-    if (x > mesh.width * (1 + 1e-9) || !is_boundary(mesh, x))
+    if (x > mesh.width * (1 + 1e-9) || !mesh.is_boundary(x))
       document.refuse("mesh.ground_x", fmt::format("must be on boundaries between elements of {} m in a box of {} m, "
                                                    "because elements have straight sides, but has a point at {} m.",
                                                    number_text(mesh.width / mesh.cells_across), number_text(mesh.width),
@@ -135,7 +128,7 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
   if (to == width && load.surcharge_to)
     document.refuse("load.surcharge_to", "must be below the width, or be left out: then it ends at the wall.");
   for (const double x : {from, to})
-    if (!is_boundary(scene.mesh, x))
+    if (!scene.mesh.is_boundary(x))
       document.refuse(key, fmt::format("must be on a boundary between elements, but {} m is inside of one of {} m. "
                                        "Give a multiple of that.",
                                        number_text(x), number_text(width / scene.mesh.cells_across)));

@@ -7,7 +7,6 @@
 #include "base/scene/reader.hpp"
 #include "fem/solve/newton_scene.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -84,15 +83,15 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
     document.refuse(scene.plate.to ? "analysis.to" : "analysis.from",
                     fmt::format("must leave a plate on its side: from {} m to {} m of {} m.", number_text(patch.from),
                                 number_text(patch.to), number_text(length)));
-  const double cell = scene.mesh.width / scene.mesh.cells_across;
   if (scene.plate.axis() == 2)
     for (const double x : {patch.from, patch.to})
-      if (std::abs(x / cell - std::round(x / cell)) > 1e-6)
+      if (!scene.mesh.is_boundary(x))
         document.refuse(scene.plate.to ? "analysis.to" : "analysis.from",
                         fmt::format("lets the plate reach from {} m to {} m; must begin and end on boundaries between "
                                     "elements, which are {} m wide.",
-                                    number_text(patch.from), number_text(patch.to), number_text(cell)));
-  if (scene.plate.axis() == 2 && scene.plate.on == PlateSide::surface && !scene.mesh.ground_x.empty())
+                                    number_text(patch.from), number_text(patch.to),
+                                    number_text(scene.mesh.width / scene.mesh.cells_across)));
+  if (scene.plate.on == PlateSide::surface && !scene.mesh.ground_x.empty())
     document.refuse("mesh.ground_x", "must be left out beside a plate on the surface, which has to be level there.");
   if (scene.plate.displacement == 0)
     document.refuse("analysis.displacement", "must not be 0 m, or nothing moves.");

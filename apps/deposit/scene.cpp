@@ -79,6 +79,12 @@ MohrCoulombParameters ColumnLayer::frictional_soil() const
   return soil;
 }
 
+bool ColumnMesh::is_boundary(double x) const
+{
+  const double cells = x / width * cells_across;
+  return std::abs(cells - std::round(cells)) < 1e-6;
+}
+
 double ColumnLoad::surcharge_at(double x) const
 {
   constexpr double near = 1e-9; // m

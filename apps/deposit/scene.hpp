@@ -33,6 +33,8 @@ struct ColumnMesh
   std::vector<double> ground_x, ground_z; ///< points of a surface that is not level, m; empty: level
   bool distributed = false;               ///< one mesh over all ranks instead of a copy on each
 
+  bool is_boundary(double x) const; ///< whether elements meet there
+
   bool operator==(const ColumnMesh &) const = default;
 };
 

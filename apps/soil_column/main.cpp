@@ -63,8 +63,7 @@ void run_scene(const SceneOptions &options)
 constexpr SceneProgram soil_column{
     .name = "soil_column",
     .description = "A column of saturated soil in layers, or a box of it: shaken, loaded, consolidating, or with a "
-                   "plate that moves "
-                   "into it",
+                   "plate that moves into it",
     .first_scene = "apps/scenes/column/uniform_layer.toml",
     .scene_text = "scene file (TOML); see docs/column_scene_reference.md",
     .set_example = "analysis.safety=0.5",

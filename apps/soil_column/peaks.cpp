@@ -9,8 +9,8 @@ namespace isostat
 namespace
 {
 double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
+} // namespace
 
-/// The largest of all ranks, and what belongs to it.
 void take_max(double &value, std::initializer_list<double *> with, MPI_Comm communicator)
 {
   const double here = value;
@@ -21,7 +21,6 @@ void take_max(double &value, std::initializer_list<double *> with, MPI_Comm comm
       MPI_Allreduce(&x, other, 1, MPI_DOUBLE, MPI_MIN, communicator);
     }
 }
-} // namespace
 
 void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 {

@@ -17,6 +17,14 @@ struct PlateResult
   double residual = 0;                  ///< the largest of any step, of the force scale
 
   void follow(double displacement, double force, double step_residual);
+
+  template <class Result, class Visit>
+  static void for_each(Result &r, const Visit &visit)
+  {
+    visit("plate_start", r.start), visit("plate_last", r.last), visit("plate_residual", r.residual);
+    visit("plate_largest", r.largest), visit("plate_largest_at", r.largest_at);
+    visit("plate_smallest", r.smallest), visit("plate_smallest_at", r.smallest_at);
+  }
 };
 
 std::string to_text(const PlateResult &result, const Plate &plate);

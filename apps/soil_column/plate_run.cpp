@@ -23,14 +23,6 @@ const std::vector<RecordColumn> columns = {
     {"pressure", "Pa"}, {"iterations"},        {"trials"},       {"substeps"},
     {"rejected"},       {"residual"}};
 
-template <class Result, class Visit>
-void for_each_number(Result &r, const Visit &visit)
-{
-  visit("plate_start", r.start), visit("plate_last", r.last), visit("plate_residual", r.residual);
-  visit("plate_largest", r.largest), visit("plate_largest_at", r.largest_at);
-  visit("plate_smallest", r.smallest), visit("plate_smallest_at", r.smallest_at);
-}
-
 class PlateRun : public StaticsRun<2>
 {
 public:
@@ -40,7 +32,7 @@ public:
   {
     if (!resumed_)
       return;
-    for_each_number(result_, [&](const char *name, double &value) { value = resumed_->number(name); });
+    resumed_->get(result_);
     const std::vector<double> &start = resumed_->vector("plate_in_situ");
     forces_.set_start({start.at(0), start.at(1), start.at(2)});
   }
@@ -101,7 +93,7 @@ private:
   {
     if (rows_)
       rows_->flush();
-    for_each_number(result_, [&](const char *name, double value) { checkpoint.numbers[name] = value; });
+    checkpoint.put(result_);
     checkpoint.vectors["plate_in_situ"] = {forces_.start().begin(), forces_.start().end()};
   }
   void add_results(ColumnSummary &summary) override

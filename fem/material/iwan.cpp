@@ -184,26 +184,11 @@ void Iwan::wave_moduli(std::span<WaveModuli> moduli) const
     }
 }
 
-MaterialState Iwan::pack() const
-{
-  ByteWriter out;
-  out.text(name());
-  out.numbers(as_numbers(parameters_));
-  return {out.take(), packed_rows(committed_, n_points_)};
-}
+MaterialState Iwan::pack() const { return packed_state(name(), as_numbers(parameters_), committed_, n_points_); }
 
 void Iwan::unpack(const MaterialState &state)
 {
-  ByteReader in(state.common, name());
-  in.expect(in.text(), name());
-  std::vector<double> stored = as_numbers(parameters_);
-  in.numbers(stored, "parameters");
-  if (stored != as_numbers(parameters_))
-    in.fail("its parameters are others");
-  in.expect_end();
-  std::vector<double> states(committed_.size());
-  unpack_rows(state, name(), states, n_points_);
-  committed_ = std::move(states);
+  committed_ = unpacked_state(state, name(), as_numbers(parameters_), committed_.size(), n_points_);
   has_trial_ = false;
 }
 } // namespace isostat

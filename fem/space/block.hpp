@@ -34,7 +34,7 @@ struct MeshSpec
   unsigned points_per_direction = 0; ///< Gauss points of a cell along each axis; 0: degree in a column, else degree + 1
   /// In place of the level surface at the height of the layers, which keep their parts of it at every x. In 2D only.
   GroundLine ground = {};
-  std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the later one has what both claim
+  std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the first has what both claim
   std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are told by depth, m
 
   unsigned gauss_points(int dim) const ///< along each axis

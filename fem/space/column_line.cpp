@@ -22,15 +22,18 @@ double minimum(double x, MPI_Comm communicator)
 std::vector<std::size_t> points_on_line(const FiniteElementSpace &space)
 {
   const MeshSpec &mesh = space.mesh();
-  std::array<double, 2> edge = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  for (const Place &place : space.position)
-    for (int axis : {0, 1})
-      if (place[axis] > mesh.line[axis] - near)
-        edge[axis] = std::min(edge[axis], place[axis]);
+  std::array<double, 2> edge;
   for (int axis : {0, 1})
-    if (edge[axis] == std::numeric_limits<double>::max())
+    {
+      double right = std::numeric_limits<double>::max(), last = std::numeric_limits<double>::lowest();
       for (const Place &place : space.position)
-        edge[axis] = std::max(edge[axis] == std::numeric_limits<double>::max() ? place[axis] : edge[axis], place[axis]);
+        {
+          last = std::max(last, place[axis]);
+          if (place[axis] > mesh.line[axis] - near)
+            right = std::min(right, place[axis]);
+        }
+      edge[axis] = std::min(right, last);
+    }
   std::vector<std::size_t> points;
   for (std::size_t q = space.n_points(); q-- > 0;)
     if (std::abs(space.position[q][0] - edge[0]) < near && std::abs(space.position[q][1] - edge[1]) < near)

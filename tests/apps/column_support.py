@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import subprocess
+import time
 
 import h5py
 import numpy as np
@@ -79,6 +80,16 @@ class ColumnTest(AppTest):
         command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
         return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
                               check=False)
+
+    def stop_when_saved(self, scene, how, *options):
+        """Starts `parts`, sends it a signal once it has a checkpoint, and returns what it said on stderr."""
+        with subprocess.Popen(self.command("soil_column", scene, "-o", "parts", "--no-figures", *options),
+                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+            end = time.time() + 60 * PATIENCE
+            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
+                time.sleep(0.005)
+            process.send_signal(how)
+            return process.communicate(timeout=30 * PATIENCE)[1]
 
     def assert_same_files(self, one, other):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""

@@ -4,13 +4,11 @@
 and restarts."""
 import json
 import signal
-import subprocess
-import time
 
 import numpy as np
 
 from column_support import ColumnTest, settings
-from support import PATIENCE, main
+from support import main
 
 BOX = """title = "plate"
 [mesh]
@@ -106,13 +104,7 @@ class PlateTest(ColumnTest):
     def test_goes_on_where_it_was_stopped(self):
         options = settings(analysis__load_steps=400, output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        with subprocess.Popen(self.command("soil_column", self.scene, "-o", "parts", "--no-figures", *options),
-                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGKILL)
-            process.communicate(timeout=30 * PATIENCE)
+        self.stop_when_saved(self.scene, signal.SIGKILL, *options)
         self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
 

@@ -5,14 +5,12 @@ import json
 import math
 import re
 import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
 
 from column_support import ColumnTest, SOIL, settings
-from support import PATIENCE, main
+from support import main
 
 SLOPE = SOIL.replace('drainage = "coupled"', 'drainage = "coupled"\ntable = "1 m"\n[slope]\nangle = "5 deg"').replace(
     'amplitude = "0.1 g"', 'amplitude = "0.2 g"')
@@ -84,13 +82,7 @@ class Slope(ColumnTest):
     def test_goes_on_where_it_was_stopped(self):
         options = settings(output__checkpoint="1e-9 min", output__profile_interval="0.1 s", analysis__duration="4 s")
         self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        with subprocess.Popen(self.command("soil_column", self.scene, "-o", "parts", "--no-figures", *options),
-                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGTERM)
-            self.assertIn(b"go on with --resume", process.communicate(timeout=30 * PATIENCE)[1])
+        self.assertIn(b"go on with --resume", self.stop_when_saved(self.scene, signal.SIGTERM, *options))
         self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
 
