@@ -26,7 +26,7 @@ void unpack_rows(const MaterialState &state, const std::string &material, std::s
                  std::size_t n_points);
 
 /// A state whose points are such rows and have a name and parameters in common; and back.
-/// @param n_values  of all points   @throws InputError  as above, another name, other parameters
+/// `n_values`: those of all points.   @throws InputError  as above, another name, other parameters
 MaterialState packed_state(const std::string &material, std::span<const double> parameters,
                            std::span<const double> values, std::size_t n_points);
 std::vector<double> unpacked_state(const MaterialState &state, const std::string &material,

@@ -134,12 +134,12 @@ void Statics::accept(double duration)
 
 void Statics::fail(double size) const
 {
-  throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.5g} of the force scale "
-                               "{:.3g} N, tolerance {:.5g}) in a sub-step of {:.3g} of the step, the smallest that is "
-                               "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps; "
-                               "the load may be more than the soil bears",
-                               step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size,
-                               time_, step_));
+  throw RunFailure(
+      fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.5g} of the force scale "
+                  "{:.3g} N, tolerance {:.5g}) in a sub-step of {:.3g} of the step, the smallest that is "
+                  "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps{}",
+                  step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size, time_, step_,
+                  reason_.starts_with("the material") ? "" : "; the load may be more than the soil bears"));
 }
 
 std::vector<double> Statics::point_pressure() const { return space_.point_pressures(p_); }
