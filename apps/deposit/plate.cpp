@@ -7,6 +7,7 @@
 #include "base/scene/reader.hpp"
 #include "fem/solve/newton_scene.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -95,6 +96,11 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("mesh.ground_x", "must be left out beside a plate on the surface, which has to be level there.");
   if (scene.plate.displacement == 0)
     document.refuse("analysis.displacement", "must not be 0 m, or nothing moves.");
+  if (const double room = scene.plate.axis() == 2 ? scene.height() : scene.mesh.width;
+      !(std::abs(scene.plate.displacement) < room))
+    document.refuse("analysis.displacement", fmt::format("must be within +-{} m, the extent of the soil along it; "
+                                                         "strains are taken as small.",
+                                                         number_text(room)));
   check_newton(document, "analysis", scene.plate.newton);
 }
 } // namespace isostat

@@ -108,7 +108,7 @@ def box_surface(column):
         panels[1, column_of_panels].set_ylabel(label)
         panels[0, column_of_panels].set_xlabel("Time (s)")
         panels[1, column_of_panels].set_xlabel("x (m)")
-    panels[0, 0].legend()
+    panels[0, 0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, fontsize=7, handlelength=1.2)
     panels[1, 1].legend(fontsize=7)
     for axes, letter in zip(panels.flat, "abcd"):
         panel_letter(axes, letter)

@@ -140,7 +140,10 @@ private:
   {
     if (scene_.mesh.sides != Sides::walls)
       return 0;
-    return settle(scene_, *soil_.material, [] {
+    const Progress progress(request_.quiet);
+    return settle(scene_, *soil_.material, [&](const std::string &line) {
+      if (scene_.has_grains()) // formulas settle at once
+        progress.say(line);
       if (on_any_rank(stop_requested()))
         throw Interrupted("interrupted while the soil settles, before the first step; start it again");
     });

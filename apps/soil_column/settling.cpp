@@ -57,7 +57,7 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
 }
 } // namespace
 
-double settle(const ColumnScene &scene, Material &material, const std::function<void()> &after_step)
+double settle(const ColumnScene &scene, Material &material, const std::function<void(const std::string &)> &after_step)
 {
   const SoilProfile soil = soil_profile(scene);
   const Discretisation<2> space(mesh_spec(scene), box_supports(scene),
@@ -69,7 +69,8 @@ double settle(const ColumnScene &scene, Material &material, const std::function<
         {
           statics.step(static_cast<double>(k) / steps - statics.time());
           if (after_step)
-            after_step();
+            after_step(fmt::format("settles: step {:>2} of {}  {} trials, residual {:.1e}", k, steps,
+                                   statics.effort().trials, statics.residual()));
         }
     }
   catch (const RunFailure &failure)

@@ -135,6 +135,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += slope_text(*s.spreading, scene);
   if (s.box_motion)
     text += to_text(*s.box_motion, mesh_spec(scene));
+  if (s.box_motion && p.gamma > 0.1)
+    text += "  large strains            beyond 10 %, but taken as small: displacements have an error of their order\n";
   if (s.grains)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);

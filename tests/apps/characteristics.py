@@ -68,27 +68,32 @@ class Strip:
         """N_gamma: load of a strip of width B over gamma B^2 / 2, without surcharge.
 
         Far from the edge, where q no longer counts, lengths have no scale but the distance from the edge."""
-        return self._with_wedge() if self.rough else self._up_to_the_middle()
-
-    def _up_to_the_middle(self):
-        """The pressure grows from either edge to the middle, k = dp/dx: load k B^2/4 = N_gamma gamma B^2/2."""
-        first, last = (line[-1] for line in self.lines[-2:])
+        if self.rough:
+            half, load = self.halves()[-1]
+            return load / half**2
+        first, last = (line[-1] for line in self.lines[-2:])  # k = dp/dx: load k B^2/4 = N_gamma gamma B^2/2
         return (self.pressure(last)[0] - self.pressure(first)[0]) / (first[0] - last[0]) / 2
 
-    def _with_wedge(self):
-        """Below the middle part is a rigid wedge on the alpha line that comes to the middle with a = 0. The longest
-        such line counts; its end makes B. Load: the pressure outside the wedge, and what bears it less its weight."""
-        for first in reversed(range(len(self.lines))):
-            start = len(self.lines[first]) - 1
+    def halves(self):
+        """Half of the width of strips that these lines bear, and half of the load, rising.
+
+        Below the middle part of a rough one is a rigid wedge on the alpha line that comes to the middle with a = 0.
+        Load: the pressure outside the wedge, and what bears it less its weight."""
+        feet = [line[-1] for line in self.lines]
+        found = []
+        for first, line in enumerate(self.lines):
+            outside = self._borne(feet[:first + 1])
+            if not self.rough:
+                found.append((-feet[first][0], outside))
+                continue
+            start = len(line) - 1
             way = [line[start + k] for k, line in enumerate(self.lines[first:])]
-            if way[-1][3] >= 0:
-                break
-        turn = next(k for k, point in enumerate(way) if point[3] >= 0)
-        part = -way[turn - 1][3] / (way[turn][3] - way[turn - 1][3])
-        middle = tuple(a + part * (b - a) for a, b in zip(way[turn - 1], way[turn]))
-        outside = [line[-1] for line in self.lines[:first + 1]]
-        load = self._borne(outside) + self._borne([*way[:turn], middle])
-        return load / middle[0]**2
+            turn = next((k for k, point in enumerate(way) if point[3] >= 0), None)
+            if turn:
+                part = -way[turn - 1][3] / (way[turn][3] - way[turn - 1][3])
+                middle = tuple(a + part * (b - a) for a, b in zip(way[turn - 1], way[turn]))
+                found.append((-middle[0], outside + self._borne([*way[:turn], middle])))
+        return found
 
     def _borne(self, points):
         """Vertical force that soil below a line bears from above, less the weight between line and surface."""
@@ -97,3 +102,16 @@ class Strip:
             (normal_a, shear_a), (normal_b, shear_b) = self.pressure(a), self.pressure(b)
             force += (normal_a + normal_b - a[1] - b[1]) / 2 * (a[0] - b[0]) + (shear_a + shear_b) / 2 * (b[1] - a[1])
         return force
+
+
+def bearing_capacity(friction, cohesion, weight, width, rough, **lines):
+    """Mean pressure at which a strip on soil of unit weight `weight` collapses, without the error of adding up
+    c N_c and gamma B N_gamma/2, which is on the safe side. Cohesion is a surcharge c cot phi on soil without it, and
+    as much less of the load (Caquot 1934). `lines` are those of Strip."""
+    half = 0.02  # of the length of surface that is solved: wedges of rough strips are far from its end
+    surcharge = cohesion / math.tan(friction)
+    halves, loads = zip(*Strip(friction, rough, half * surcharge / (weight * width / 2), **lines).halves())
+    k = next(k for k, x in enumerate(halves) if x > half)
+    part = (half - halves[k - 1]) / (halves[k] - halves[k - 1])
+    mean = [loads[i] / halves[i] for i in (k - 1, k)]
+    return (mean[0] + part * (mean[1] - mean[0])) / half * weight * width / 2 - surcharge

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import limit_loads as limit
-from characteristics import Strip
+from characteristics import Strip, bearing_capacity
 from support import ToleranceTest, main
 
 PRINTED = "the digits that are printed"
@@ -32,6 +32,17 @@ class Footing(ToleranceTest):
         self.assert_close(coarse.pressure(coarse.lines[0][-1])[0],
                           limit.surcharge_factor(math.radians(30)) * coarse.surcharge, 1e-12,
                           "at the edge there is surcharge alone: round-off")
+
+    def test_cohesion_and_weight_together_bear_more_than_their_sum(self):
+        phi, weight = math.radians(30), 16.677
+        for rough in (False, True):
+            found, fine = (bearing_capacity(phi, 1.0, weight, 2.0, rough, **lines)
+                           for lines in ({}, {"fan": 90, "ratio": 1.047}))
+            self.assert_close(found, fine, 1e-3, "three times as many lines")
+            added = limit.cohesion_factor(phi) + weight * limit.weight_factor(phi, rough)
+            self.assertTrue(1.1 < found / added < 1.2, (found, added))
+            alone = bearing_capacity(phi, 1e-2, weight, 2.0, rough)
+            self.assert_close(alone, weight * limit.weight_factor(phi, rough), 0.04, "cohesion of 1e-2 is not quite 0")
 
     def test_rough_strips_bear_more_but_not_twice(self):
         for smooth, rough in limit.WEIGHT_FACTORS.values():

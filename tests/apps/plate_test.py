@@ -111,6 +111,8 @@ class PlateTest(ColumnTest):
     def test_mistakes(self):
         for more, words in ((settings(analysis__to="5 m"), ("analysis.to", "from 0 m to 5 m of 4 m")),
                             (settings(analysis__displacement="0 m"), ("analysis.displacement", "nothing moves")),
+                            (settings(analysis__displacement="9 m"),
+                             ("analysis.displacement", "within +-2 m", "taken as small")),
                             (settings(mesh__sides="tied"), ("mesh.sides", "\"walls\"")),
                             (settings(analysis__from="0.3 m", analysis__to="1.3 m"),
                              ("analysis.to", "boundaries between elements", "0.5 m wide")),
