@@ -2,6 +2,7 @@
 #include "apps/biaxial/files.hpp"
 
 #include "apps/deposit/instant.hpp"
+#include "base/error.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/files/vtk_xml.hpp"
 #include "base/record/file_format.hpp"
@@ -82,11 +83,33 @@ PointState point_state(const Gradient &gradient, const Stress &stress)
   return state;
 }
 
-BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material)
+BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material,
+                       std::size_t n_maps)
     : folder_(std::move(folder)), space_(space), material_(material),
-      pictures_((fs::create_directories(folder_ / "paraview"), folder_ / "paraview/block.pvd")),
+      pictures_((fs::create_directories(folder_ / "paraview"), folder_ / "paraview/block.pvd"), n_maps),
       rows_(std::size(quantities) - (material.nonlocal ? 0 : 1))
-{}
+{
+  if (n_maps > 0)
+    read_h5(n_maps);
+}
+
+void BlockFiles::read_h5(std::size_t n_maps)
+{
+  const hdf5::File file = hdf5::File::open(folder_ / "maps.h5");
+  const hdf5::Group root = file.root();
+  const auto read = [&](const char *name, std::size_t length) {
+    std::vector<double> values = root.read<double>(name);
+    if (values.size() < length)
+      throw InputError(fmt::format("{}: `{}` has {} numbers, but {} are of before the checkpoint. Start anew with "
+                                   "--overwrite.",
+                                   (folder_ / "maps.h5").string(), name, values.size(), length));
+    values.resize(length);
+    return values;
+  };
+  strains_ = read("axial_strain", n_maps);
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    rows_[k] = read(quantities[k].name, n_maps * space_.n_points());
+}
 
 void BlockFiles::map(double axial_strain, const Statics &statics)
 {

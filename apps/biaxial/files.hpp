@@ -28,10 +28,15 @@ PointState point_state(const Gradient &gradient, const Stress &stress);
 class BlockFiles
 {
 public:
-  BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material);
+  /// @param n_maps  that an earlier call has left, and this one goes on from
+  /// @throws InputError  there are fewer
+  BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material,
+             std::size_t n_maps = 0);
   void map(double axial_strain, const Statics &statics);
+  std::size_t n_maps() const { return strains_.size(); }
 
 private:
+  void read_h5(std::size_t n_maps);
   void write_h5() const;
   void write_vtu(const std::filesystem::path &path, const Vector &displacement,
                  const std::vector<PointState> &points) const;

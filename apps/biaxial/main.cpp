@@ -10,6 +10,7 @@
 //
 //   biaxial apps/scenes/biaxial/iwan.toml
 //   biaxial apps/scenes/biaxial/grains.toml --set test.steps=100 --threads 2
+//   biaxial apps/scenes/biaxial/grains.toml --resume
 #include "apps/biaxial/run.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "base/error.hpp"
@@ -27,6 +28,8 @@ void run_scene(const SceneOptions &options)
   if (ranks().size > 1)
     throw InputError("a biaxial block runs on one rank only. Give it --threads.");
   const BiaxialRequest request(read_biaxial_scene(options.scene, options.set), options);
+  if (has_finished(request.folder, request.use, to_toml(request.scene)))
+    return tell_finished(request.folder, "biaxial", !options.no_figures);
   check_result_folder(request.folder, request.use);
   const BiaxialSummary summary = run_biaxial(request);
   const std::string times =
@@ -42,10 +45,12 @@ constexpr SceneProgram biaxial{
     .name = "biaxial",
     .description = "A block of soil in plane strain, confined and compressed: does a shear band form?",
     .first_scene = "apps/scenes/biaxial/iwan.toml",
-    .scene_text = "scene file (TOML); see --print-defaults",
+    .scene_text = "scene file (TOML); see docs/biaxial_scene_reference.md",
     .set_example = "test.steps=100",
     .threads_text = "threads that share the packings, 0: all the process may use; results do not depend on it",
+    .manual_page = "docs/biaxial_scene_reference.md",
     .defaults = default_biaxial_scene,
+    .manual = biaxial_scene_manual,
     .resolved = [](const std::string &scene,
                    const std::vector<std::string> &overrides) { return to_toml(read_biaxial_scene(scene, overrides)); },
     .run = run_scene,

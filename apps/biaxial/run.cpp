@@ -4,6 +4,7 @@
 #include "apps/biaxial/files.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/deposit/checkpoint.hpp"
 #include "apps/deposit/instant.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
@@ -59,21 +60,35 @@ public:
         statics_(space_, *material_.material, settings_of(scene_))
   {
     summary_.points = space_.n_points();
+    if (request.use != FolderUse::resume)
+      return;
+    resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
+    check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
+    statics_.restore(resumed_->state);
+    resumed_->get(summary_);
+    if (resumed_->numbers.contains("large_from"))
+      summary_.large_from = resumed_->number("large_from");
   }
 
   BiaxialSummary go()
   {
     open();
-    progress_.say(fmt::format("{} points, {} steps", space_.n_points(), scene_.test.steps));
-    record();
-    files_->map(0, statics_);
+    progress_.say(fmt::format("{} points, {} steps{}", space_.n_points(), scene_.test.steps,
+                              resumed_ ? fmt::format(", from step {} on", summary_.steps) : ""));
+    if (!resumed_)
+      {
+        record();
+        files_->map(0, statics_);
+      }
     try
       {
         while (summary_.steps < scene_.test.steps)
           {
             if (stop_requested())
-              throw Interrupted(fmt::format("interrupted after step {}", summary_.steps));
+              stop();
             step();
+            if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
+              save();
           }
         summary_.complete = true;
       }
@@ -83,26 +98,52 @@ public:
         back_to_committed();
         files_->map(summary_.axial_strain, statics_);
       }
-    summary_.wall_seconds = since_start_.seconds();
-    if (material_.grains)
-      {
-        const RveMaterialCost &cost = material_.grains->cost();
-        summary_.material_seconds = cost.batch_seconds;
-        summary_.tangent_seconds = cost.wave_seconds;
-        summary_.tangents = cost.stiffnesses;
-        summary_.rve_steps = static_cast<double>(cost.steps);
-      }
-    return summary_;
+    return with_costs();
   }
 
 private:
   void open()
   {
-    open_result_folder(request_.folder, request_.use);
-    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                     {{"threads", std::to_string(request_.threads)}});
-    history_ = std::make_unique<Recorder>(request_.folder, columns, 0, to_toml(scene_));
-    files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_);
+    if (!resumed_)
+      {
+        open_result_folder(request_.folder, request_.use);
+        write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                         {{"threads", std::to_string(request_.threads)}});
+      }
+    history_ = std::make_unique<Recorder>(request_.folder, columns, counter(resumed_.get(), "rows"), to_toml(scene_));
+    files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_, counter(resumed_.get(), "maps"));
+  }
+
+  /// The summary, which has the costs of earlier calls, with those of this one.
+  BiaxialSummary with_costs() const
+  {
+    BiaxialSummary summary = summary_;
+    summary.wall_seconds += since_start_.seconds();
+    if (!material_.grains)
+      return summary;
+    const RveMaterialCost &cost = material_.grains->cost();
+    summary.material_seconds += cost.batch_seconds;
+    summary.tangent_seconds += cost.wave_seconds;
+    summary.rve_steps += static_cast<double>(cost.steps);
+    return summary;
+  }
+
+  void save()
+  {
+    ColumnCheckpoint checkpoint{statics_.save(), {}, {}, to_toml(scene_)};
+    checkpoint.put(with_costs());
+    if (summary_.large_from)
+      checkpoint.numbers["large_from"] = *summary_.large_from;
+    checkpoint.numbers["rows"] = static_cast<double>(history_->n_rows());
+    checkpoint.numbers["maps"] = static_cast<double>(files_->n_maps());
+    write_column_checkpoint(request_.folder / "checkpoint", checkpoint);
+    since_checkpoint_.restart();
+  }
+
+  [[noreturn]] void stop()
+  {
+    save();
+    throw Interrupted(fmt::format("interrupted after step {}; go on with --resume", summary_.steps));
   }
 
   void record()
@@ -183,7 +224,9 @@ private:
   BlockMesh space_;
   BlockMaterial material_;
   Statics statics_;
+  std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
   BiaxialSummary summary_;
+  Stopwatch since_checkpoint_;
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;
 };
@@ -244,7 +287,6 @@ Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
           {"trials", s.trials},
           {"substeps", s.substeps},
           {"rejected", s.rejected},
-          {"tangents", s.tangents},
           {"rve_steps", std::llround(s.rve_steps)}};
 }
 } // namespace isostat

@@ -112,9 +112,25 @@ constexpr Key output_keys[] = {
   {.path = "output.map_every", .kind = Kind::integer, .value = "5", .range = counts,
    .text = "Load steps between two ParaView files and rows of maps.h5.",
    .field = [](BiaxialScene &s) -> Field { return &s.output.map_every; }},
+  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
+   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints, which are written between load steps.",
+   .field = [](BiaxialScene &s) -> Field { return &s.output.checkpoint_minutes; }},
 };
 
-constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate};
+constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate, Dimension::interval};
+
+constexpr const char *manual_head =
+R"(# Scene reference of the biaxial block
+
+A scene is one TOML file that says all about a run of `biaxial`. This page is generated from the table in
+`apps/biaxial/scene.cpp` (`biaxial_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/biaxial`.
+
+- Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, is an
+  error. What has no dimension is a plain number.
+- An unknown key is an error, and so is a key twice. Compression is positive; x points across, z up.
+- `--set key=value` on the command line overrides the file: `--set test.steps=100`.
+
+)";
 // clang-format on
 
 const SceneSchema &schema()
@@ -135,7 +151,8 @@ const SceneSchema &schema()
                                   .dimensions = dimensions,
                                   .set_example = "test.steps=100",
                                   .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = "
-                                                   "value\" is a key without default, with an example."};
+                                                   "value\" is a key without default, with an example.",
+                                  .manual_head = manual_head};
   return schema;
 }
 
@@ -178,4 +195,6 @@ BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::
 std::string to_toml(const BiaxialScene &scene) { return write_scene(schema(), &scene); }
 
 std::string default_biaxial_scene() { return write_defaults(schema()); }
+
+std::string biaxial_scene_manual() { return write_manual(schema()); }
 } // namespace isostat

@@ -43,6 +43,7 @@ struct BiaxialOutput
 {
   std::string folder;     ///< default: results/<scene file name>
   unsigned map_every = 5; ///< steps between two maps
+  double checkpoint_minutes = 5;
 
   bool operator==(const BiaxialOutput &) const = default;
 };
@@ -73,4 +74,5 @@ BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::
 
 std::string to_toml(const BiaxialScene &scene); ///< complete; reads back to the same scene
 std::string default_biaxial_scene();            ///< commented, with all defaults, units and ranges
+std::string biaxial_scene_manual();             ///< docs/biaxial_scene_reference.md
 } // namespace isostat

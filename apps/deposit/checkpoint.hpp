@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// All that a killed run of a column needs to go on to the same bits.
+/// All that a killed run of a column or a block needs to go on to the same bits.
 struct ColumnCheckpoint
 {
   SolverState state;
@@ -19,12 +19,13 @@ struct ColumnCheckpoint
   template <class State>
   void put(const State &state)
   {
-    State::for_each(state, [&](const char *name, double value) { numbers[name] = value; });
+    State::for_each(state, [&](const char *name, auto value) { numbers[name] = static_cast<double>(value); });
   }
   template <class State>
   void get(State &state) const
   {
-    State::for_each(state, [&](const char *name, double &value) { value = number(name); });
+    State::for_each(state,
+                    [&]<class Number>(const char *name, Number &value) { value = static_cast<Number>(number(name)); });
   }
 
   /// @throws InputError  the file lacks it

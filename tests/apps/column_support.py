@@ -81,9 +81,9 @@ class ColumnTest(AppTest):
         return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
                               check=False)
 
-    def stop_when_saved(self, scene, how, *options):
+    def stop_when_saved(self, scene, how, *options, program="soil_column"):
         """Starts `parts`, sends it a signal once it has a checkpoint, and returns what it said on stderr."""
-        with subprocess.Popen(self.command("soil_column", scene, "-o", "parts", "--no-figures", *options),
+        with subprocess.Popen(self.command(program, scene, "-o", "parts", "--no-figures", *options),
                               cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
             end = time.time() + 60 * PATIENCE
             while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
