@@ -17,19 +17,6 @@ namespace
 {
 namespace fs = std::filesystem;
 
-struct MapQuantity
-{
-  const char *name, *unit;
-  double PointState::*value;
-};
-constexpr MapQuantity quantities[] = {{"shear_strain", "-", &PointState::shear},
-                                      {"volumetric_strain", "-", &PointState::volumetric},
-                                      {"p", "Pa", &PointState::p},
-                                      {"q", "Pa", &PointState::q},
-                                      {"void_ratio", "-", &PointState::void_ratio},
-                                      {"redundancy", "-", &PointState::redundancy},
-                                      {"mean_shear_strain", "-", &PointState::mean_shear}}; // the last: where it is
-
 double shear_strain(const Gradient &h) { return std::hypot(h[0] - h[8], h[2] + h[6]); }
 
 void add_array(pugi::xml_node parent, const char *type, const std::string &name, int components,
@@ -83,12 +70,22 @@ PointState point_state(const Gradient &gradient, const Stress &stress)
   return state;
 }
 
-BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material,
+BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material, bool undrained,
                        std::size_t n_maps)
     : folder_(std::move(folder)), space_(space), material_(material),
       pictures_((fs::create_directories(folder_ / "paraview"), folder_ / "paraview/block.pvd"), n_maps),
-      rows_(std::size(quantities) - (material.nonlocal ? 0 : 1))
+      quantities_{{"shear_strain", "-", &PointState::shear},
+                  {"volumetric_strain", "-", &PointState::volumetric},
+                  {"p", "Pa", &PointState::p},
+                  {"q", "Pa", &PointState::q},
+                  {"void_ratio", "-", &PointState::void_ratio},
+                  {"redundancy", "-", &PointState::redundancy}}
 {
+  if (material.nonlocal)
+    quantities_.push_back({"mean_shear_strain", "-", &PointState::mean_shear});
+  if (undrained)
+    quantities_.push_back({"pore_pressure", "Pa", &PointState::pore_pressure});
+  rows_.resize(quantities_.size());
   if (n_maps > 0)
     read_h5(n_maps);
 }
@@ -108,7 +105,7 @@ void BlockFiles::read_h5(std::size_t n_maps)
   };
   strains_ = read("axial_strain", n_maps);
   for (std::size_t k = 0; k < rows_.size(); ++k)
-    rows_[k] = read(quantities[k].name, n_maps * space_.n_points());
+    rows_[k] = read(quantities_[k].name, n_maps * space_.n_points());
 }
 
 void BlockFiles::map(double axial_strain, const Statics &statics)
@@ -118,10 +115,12 @@ void BlockFiles::map(double axial_strain, const Statics &statics)
   std::vector<Gradient> means(material_.nonlocal ? gradients.size() : 0);
   if (material_.nonlocal)
     material_.nonlocal->average(gradients, means);
+  const std::vector<double> pressure = statics.point_pressure();
   std::vector<PointState> points;
   for (std::size_t q = 0; q < space_.n_points(); ++q)
     {
       PointState &point = points.emplace_back(point_state(gradients[q], statics.stresses()[q]));
+      point.pore_pressure = pressure[q];
       if (material_.nonlocal)
         point.mean_shear = shear_strain(means[q]);
       if (!material_.grains)
@@ -132,7 +131,7 @@ void BlockFiles::map(double axial_strain, const Statics &statics)
     }
   for (std::size_t k = 0; k < rows_.size(); ++k)
     for (const PointState &point : points)
-      rows_[k].push_back(point.*quantities[k].value);
+      rows_[k].push_back(point.*quantities_[k].value);
   strains_.push_back(axial_strain);
   write_h5();
   const std::string name = fmt::format("block_{:05d}.vtu", strains_.size() - 1);
@@ -155,7 +154,7 @@ void BlockFiles::write_h5() const
   root.write("z", z, "m");
   root.write("axial_strain", strains_, "-");
   for (std::size_t k = 0; k < rows_.size(); ++k)
-    root.write(quantities[k].name, rows_[k], quantities[k].unit, space_.n_points());
+    root.write(quantities_[k].name, rows_[k], quantities_[k].unit, space_.n_points());
   file.commit();
 }
 
@@ -173,7 +172,7 @@ void BlockFiles::write_vtu(const fs::path &path, const Vector &displacement,
   add_array(piece.append_child("PointData"), "Float64", "displacement", 3, displacements);
   pugi::xml_node data = piece.append_child("CellData");
   const std::size_t n = space_.points_per_cell();
-  for (const MapQuantity &quantity : std::span(quantities).first(rows_.size()))
+  for (const Quantity &quantity : quantities_)
     {
       std::string text;
       for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)

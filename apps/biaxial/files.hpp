@@ -17,12 +17,14 @@ struct PointState
   double p = 0, q = 0;                   ///< (s1 + s3)/2 and (s1 - s3)/2 in the plane, compression positive, Pa
   double void_ratio = 0, redundancy = 0; ///< of its packing; 0 without [-]
   double mean_shear = 0;                 ///< of the strain that a nonlocal material gets; 0 without [-]
+  double pore_pressure = 0;              ///< excess, Pa; 0 in a drained block
 };
 
 PointState point_state(const Gradient &gradient, const Stress &stress);
 
 /// Maps of a block at some instants: maps.h5 with the points' `x`, `z` (m) and, a row for each instant, `axial_strain`
-/// and all of PointState (`mean_shear_strain` only where the material is nonlocal); paraview/block.pvd with the
+/// and all of PointState (`mean_shear_strain` only where the material is nonlocal, `pore_pressure` where the block is
+/// undrained); paraview/block.pvd with the
 /// displacement at the corners of the elements and the elements' means.
 /// tested: tests/apps/biaxial_test.py
 class BlockFiles
@@ -31,11 +33,17 @@ public:
   /// @param n_maps  that an earlier call has left, and this one goes on from
   /// @throws InputError  there are fewer
   BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material,
-             std::size_t n_maps = 0);
+             bool undrained, std::size_t n_maps = 0);
   void map(double axial_strain, const Statics &statics);
   std::size_t n_maps() const { return strains_.size(); }
 
 private:
+  /// What is shown of the points.
+  struct Quantity
+  {
+    const char *name, *unit;
+    double PointState::*value;
+  };
   void read_h5(std::size_t n_maps);
   void write_h5() const;
   void write_vtu(const std::filesystem::path &path, const Vector &displacement,
@@ -46,6 +54,7 @@ private:
   const BlockMaterial &material_;
   PvdCollection pictures_;
   std::vector<double> strains_;
+  std::vector<Quantity> quantities_;
   std::vector<std::vector<double>> rows_; ///< of each quantity
 };
 } // namespace isostat

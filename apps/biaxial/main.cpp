@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // biaxial SCENE: a block of soil in plane strain, confined on its sides and compressed by its top, to see a shear band
-// form; quasi-static, drained, by Newton with the tangent of the material.
+// form; quasi-static, drained or undrained, by Newton with the tangent of the material or by relaxation.
 //
 //      ____v____  smooth plate, moves down
 //   -> |       | <-

@@ -52,6 +52,8 @@ MeshSpec mesh_of(const BiaxialScene &scene)
   layer.thickness = scene.mesh.height;
   layer.k0 = 1;
   layer.cells = scene.mesh.cells_up;
+  layer.porosity = scene.water.porosity;
+  layer.permeability = scene.water.permeability;
   MeshSpec mesh;
   mesh.soil.layers = {layer};
   mesh.width = {scene.mesh.width, 1};

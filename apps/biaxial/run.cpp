@@ -14,16 +14,22 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 
 namespace isostat
 {
 namespace
 {
+/// Time is the share of the way where no water moves, else s.
+double end_of(const BiaxialScene &scene) { return scene.water.undrained() ? scene.test.duration : 1; }
+
 StaticsSettings settings_of(const BiaxialScene &scene)
 {
   StaticsSettings settings;
   const double way = scene.test.axial_strain * scene.mesh.height;
-  settings.displacements = {{{Face::surface, 2}, [way](double t, const Place &) { return -way * t; }}};
+  const double end = end_of(scene);
+  settings.pore_water = scene.water.undrained();
+  settings.displacements = {{{Face::surface, 2}, [=](double t, const Place &) { return -way * t / end; }}};
   settings.newton = scene.newton;
   settings.min_force = scene.test.confinement * scene.mesh.width;
   return settings;
@@ -38,10 +44,16 @@ const char *method_of(const NewtonSettings &newton)
 
 constexpr double small = 0.1; ///< strain and rotation [-] up to which geometry of second order is a matter of per cent
 
-const std::vector<RecordColumn> columns = {
-    {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
-    {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
-    {"shear_mean"}, {"shear_quantile"}, {"shear_max"}};
+std::vector<RecordColumn> columns(const BiaxialScene &scene)
+{
+  std::vector<RecordColumn> columns = {
+      {"step"},       {"axial_strain"},   {"axial_stress", "Pa"}, {"lateral_strain"}, {"volumetric_strain"},
+      {"iterations"}, {"trials"},         {"substeps"},           {"rejected"},       {"residual"},
+      {"shear_mean"}, {"shear_quantile"}, {"shear_max"}};
+  if (scene.water.undrained())
+    columns.push_back({"pore_pressure", "Pa"});
+  return columns;
+}
 
 std::string beyond_small(const BiaxialSummary &s)
 {
@@ -110,8 +122,10 @@ private:
         write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                          {{"threads", std::to_string(request_.threads)}});
       }
-    history_ = std::make_unique<Recorder>(request_.folder, columns, counter(resumed_.get(), "rows"), to_toml(scene_));
-    files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_, counter(resumed_.get(), "maps"));
+    history_ =
+        std::make_unique<Recorder>(request_.folder, columns(scene_), counter(resumed_.get(), "rows"), to_toml(scene_));
+    files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_, scene_.water.undrained(),
+                                          counter(resumed_.get(), "maps"));
   }
 
   /// The summary, which has the costs of earlier calls, with those of this one.
@@ -168,9 +182,22 @@ private:
     const double quantile = shear[shear.size() * 9 / 10], median = shear[shear.size() / 2];
     const StaticsEffort &effort = statics_.effort();
     const double stress = scene_.test.confinement - statics_.reaction({Face::surface, 2}) / scene_.mesh.width;
-    history_->append(std::vector<double>{static_cast<double>(summary_.steps), vertical, stress, lateral, volume,
-                                         1.0 * effort.iterations, 1.0 * effort.trials, 1.0 * effort.substeps,
-                                         1.0 * effort.rejected, statics_.residual(), mean, quantile, shear.back()});
+    std::vector<double> row{static_cast<double>(summary_.steps),
+                            vertical,
+                            stress,
+                            lateral,
+                            volume,
+                            1.0 * effort.iterations,
+                            1.0 * effort.trials,
+                            1.0 * effort.substeps,
+                            1.0 * effort.rejected,
+                            statics_.residual(),
+                            mean,
+                            quantile,
+                            shear.back()};
+    if (scene_.water.undrained())
+      row.push_back(summary_.pore_pressure = mean_pore_pressure());
+    history_->append(row);
     history_->flush();
     summary_.axial_strain = vertical;
     summary_.volumetric_strain = volume;
@@ -188,9 +215,17 @@ private:
       }
   }
 
+  /// Over the volume, excess, compression positive, Pa.
+  double mean_pore_pressure() const
+  {
+    const std::vector<double> pressure = statics_.point_pressure();
+    return std::inner_product(pressure.begin(), pressure.end(), space_.weight.begin(), 0.0) /
+           (scene_.mesh.width * scene_.mesh.height);
+  }
+
   void step()
   {
-    statics_.step((summary_.steps + 1.0) / scene_.test.steps - statics_.time());
+    statics_.step((summary_.steps + 1.0) / scene_.test.steps * end_of(scene_) - statics_.time());
     ++summary_.steps;
     const StaticsEffort &effort = statics_.effort();
     summary_.iterations += effort.iterations;
@@ -248,6 +283,9 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
   text += fmt::format("  axial stress        {:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %\n",
                       s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
   text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
+  if (scene.water.undrained())
+    text += fmt::format("  pore pressure       {:.4g} kPa above that at the start, mean of the block at the end\n",
+                        s.pore_pressure / 1e3);
   text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
   text += fmt::format("  at a point          strain up to {:.3g} %, rotation up to {:.3g} deg\n", 100 * s.max_strain,
                       s.max_rotation * 180 / std::numbers::pi);
@@ -279,6 +317,7 @@ Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
           {"peak_strain", s.peak_strain},
           {"last_stress_Pa", s.last_stress},
           {"volumetric_strain", s.volumetric_strain},
+          {"pore_pressure_Pa", scene.water.undrained() ? Json(s.pore_pressure) : Json()},
           {"localisation", s.localisation},
           {"max_strain", s.max_strain},
           {"max_rotation_deg", s.max_rotation * 180 / std::numbers::pi},

@@ -20,6 +20,7 @@ struct BiaxialSummary
   double peak_stress = 0, peak_strain = 0; ///< largest axial stress, compression positive, Pa; where
   double last_stress = 0;                  ///< Pa
   double volumetric_strain = 0;            ///< at the end, compression positive
+  double pore_pressure = 0;                ///< excess, at the end, mean of the block, Pa
   double localisation = 0;                 ///< 90 % quantile of the points' shear strain over its median; uniform: 1
   double max_strain = 0;   ///< largest amount of a principal strain of a point so far: the mesh takes it as small
   double max_rotation = 0; ///< largest rotation of a point in the plane so far, (u_x,z - u_z,x)/2, alike, rad
@@ -33,6 +34,7 @@ struct BiaxialSummary
   {
     visit("axial_strain", s.axial_strain), visit("peak_stress", s.peak_stress), visit("peak_strain", s.peak_strain);
     visit("last_stress", s.last_stress), visit("volumetric_strain", s.volumetric_strain);
+    visit("pore_pressure", s.pore_pressure);
     visit("localisation", s.localisation), visit("max_strain", s.max_strain), visit("max_rotation", s.max_rotation);
     visit("wall_seconds", s.wall_seconds), visit("material_seconds", s.material_seconds);
     visit("tangent_seconds", s.tangent_seconds), visit("rve_steps", s.rve_steps);
@@ -43,8 +45,9 @@ struct BiaxialSummary
 
 /// Runs a scene and leaves all files but the summary, or goes on from its newest checkpoint to the same bits. A step
 /// without equilibrium ends the run early: what it found so far stays.
-/// @throws InputError  before anything that is there is changed   @throws Interrupted  after a signal, with a checkpoint
-/// tested: tests/apps/biaxial_test.py
+/// @throws InputError  before anything that is there is changed
+/// @throws Interrupted  after a signal, with a checkpoint
+/// tested: tests/apps/biaxial_test.py, tests/apps/biaxial_resume_test.py
 BiaxialSummary run_biaxial(const BiaxialRequest &request);
 
 std::string to_text(const BiaxialSummary &summary, const BiaxialScene &scene);

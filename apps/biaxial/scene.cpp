@@ -29,6 +29,7 @@ constexpr Section sections[] = {
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
   {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
+  {.name = "water", .text = "What the water in the pores does. Stresses are total ones without the pressure at the start."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
@@ -103,6 +104,24 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.test.axial_strain; }},
   {.path = "test.steps", .kind = Kind::integer, .value = "50", .range = counts, .text = "Equal load steps.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.steps; }},
+  {.path = "test.duration", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "s", .value = "100 s",
+   .range = positive, .text = "Of the test; counts only where water moves.",
+   .field = [](BiaxialScene &s) -> Field { return &s.test.duration; }},
+};
+
+constexpr const char *drainages[] = {"drained", "undrained"};
+
+constexpr Key water_keys[] = {
+  {.path = "water.drainage", .kind = Kind::choice, .value = "drained", .choices = drainages,
+   .text = "No excess pore pressure; or no water leaves the block (u-p, degree 2).",
+   .field = [](BiaxialScene &s) -> Field { return &s.water.drainage; }},
+  {.path = "water.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s", .value = "0 m/s",
+   .range = not_negative,
+   .text = "Hydraulic conductivity k, by which water moves inside of an undrained block; 0 m/s: it does not.",
+   .field = [](BiaxialScene &s) -> Field { return &s.water.permeability; }},
+  {.path = "water.porosity", .value = "0.4", .range = {0, 1, true, true},
+   .text = "Share of the pores, whose water is compressible (2.2 GPa); undrained.",
+   .field = [](BiaxialScene &s) -> Field { return &s.water.porosity; }},
 };
 
 constexpr Key output_keys[] = {
@@ -117,7 +136,8 @@ constexpr Key output_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.output.checkpoint_minutes; }},
 };
 
-constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate, Dimension::interval};
+constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate, Dimension::interval,
+                                    Dimension::velocity, Dimension::time};
 
 constexpr const char *manual_head =
 R"(# Scene reference of the biaxial block
@@ -143,6 +163,7 @@ const SceneSchema &schema()
       splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
       splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
       test_keys,
+      water_keys,
       splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),
       output_keys};
   static const SceneSchema schema{.keys = keys.keys(),
@@ -169,6 +190,8 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     document.refuse("nonlocal.length",
                     "needs relaxation, because the tangent of a nonlocal material is not one of its points. Set "
                     "newton.max_iterations = 0 and newton.relaxation_iterations = 1000.");
+  if (scene.water.undrained() && scene.mesh.degree != 2)
+    document.refuse("mesh.degree", "must be 2 in an undrained block, beside a pore pressure of degree 1.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

@@ -32,11 +32,29 @@ struct WeakZone
 /// Confined on its sides, compressed by its top.
 struct BiaxialTest
 {
-  double confinement = 100e3; ///< isotropic stress at the start, on the sides throughout, Pa
+  double confinement = 100e3; ///< isotropic effective stress at the start, total stress on the sides throughout, Pa
   double axial_strain = 0.05; ///< at the end, compression positive
   unsigned steps = 50;
+  double duration = 100; ///< s; counts only if water moves
 
   bool operator==(const BiaxialTest &) const = default;
+};
+
+enum class BlockDrainage
+{
+  drained,  ///< no excess pressure
+  undrained ///< no water leaves the block
+};
+
+/// Water in the pores.
+struct BlockWater
+{
+  BlockDrainage drainage = BlockDrainage::drained;
+  double permeability = 0; ///< k inside of the block, m/s; 0: water stays where it is
+  double porosity = 0.4;
+
+  bool undrained() const { return drainage == BlockDrainage::undrained; }
+  bool operator==(const BlockWater &) const = default;
 };
 
 struct BiaxialOutput
@@ -58,6 +76,7 @@ struct BiaxialScene
   std::uint64_t mixed_realisations = 1; ///< seeds of which each point has one by lot
   NonlocalParameters nonlocal;          ///< of all of the soil; length 0: it is local
   WeakZone weak;
+  BlockWater water;
   BiaxialTest test;
   NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8}; ///< the smallest force scale is confinement times width
   BiaxialOutput output;

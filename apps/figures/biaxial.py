@@ -3,7 +3,8 @@
 
     python3 -m figures biaxial RESULTS [--beside OTHER ...]
 
-fig_stress_strain.png   axial stress and volumetric strain against axial strain, and the scatter of the shear strain
+fig_stress_strain.png   axial stress and volumetric strain (undrained: pore pressure) against axial strain, and the
+                        scatter of the shear strain
 fig_shear_maps.png      shear strain since the start over the block at several axial strains
 fig_rate_maps.png       shear strain between two of them: where the block deforms at the time
 fig_band.png            axial stress beside that of other runs, shear strain at the end, where it came last, void ratio
@@ -70,8 +71,12 @@ def stress_strain(block):
     axes[0].plot(strain, block.history["axial_stress"] / 1e3, color=BLACK)
     axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
     axes[0].set_ylim(bottom=0)
-    axes[1].plot(strain, 100 * block.history["volumetric_strain"], color=BLUE)
-    axes[1].set_ylabel("Volumetric strain (%)")
+    if "pore_pressure" in block.history:
+        axes[1].plot(strain, block.history["pore_pressure"] / 1e3, color=BLUE)
+        axes[1].set_ylabel(r"Excess pore pressure $\Delta u$ (kPa)")
+    else:
+        axes[1].plot(strain, 100 * block.history["volumetric_strain"], color=BLUE)
+        axes[1].set_ylabel("Volumetric strain (%)")
     for name, label, color in (("shear_mean", "mean", BLACK), ("shear_quantile", "90 % quantile", BLUE),
                                ("shear_max", "largest", ORANGE)):
         axes[2].plot(strain, 100 * block.history[name], color=color, label=label)

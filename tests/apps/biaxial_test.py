@@ -11,6 +11,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
 from figures.biaxial import Block, band, band_shape, rate_maps, shear_maps  # noqa: E402  (the path comes first)
+from column_support import settings
 from support import AppTest, main, tiny_scene
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
@@ -127,6 +128,25 @@ class Biaxial(AppTest):
             self.assert_close(maps["shear_strain"][-1], strain / (1 - nu), 1e-9, solved)
             self.assert_close(maps["q"][-1], modulus * strain / 2, 1e-9, solved)
             self.assertTrue((self.folder / "run/paraview/block_00001.vtu").exists())
+
+    def test_undrained_elastic_block_is_the_closed_form(self):
+        nu, strain, storage = 0.3, 0.01, 2.2e9 / 0.4  # K_f over the porosity
+        lame = 2 * 50e6 * nu / (1 - 2 * nu)
+        confined = lame + 2 * 50e6
+        lateral = (lame + storage) / (confined + storage) * strain  # no change of total stress on the sides
+        pressure = storage * (strain - lateral)
+        undrained = settings(water__drainage="undrained")
+        for more in ((), settings(newton__max_iterations=0, newton__relaxation_iterations=2000),
+                     settings(water__permeability="1e-6 m/s")):
+            self.assert_done(self.run_block(ELASTIC.format(degree=2), *undrained, *more))
+            rows, maps = self.history(), self.maps()
+            solved = "a residual of 1e-6 of the force, and some 100 times that in the small strains of the water"
+            stress = confined * strain - lame * lateral + pressure
+            self.assert_close(rows["axial_stress"][-1], 100e3 + stress, 1e-4, solved)
+            self.assert_close(rows["pore_pressure"][-1], pressure, 1e-4, solved)
+            self.assert_close(-rows["lateral_strain"][-1], lateral, 1e-5, solved)
+            self.assert_close(maps["pore_pressure"][-1], pressure, 1e-3, solved)
+        self.assert_refused(self.run_block(ELASTIC.format(degree=1), *undrained), "mesh.degree", "undrained")
 
     def test_maps_have_labels(self):
         self.assert_done(self.run_block(ELASTIC.format(degree=1)))
