@@ -7,7 +7,9 @@ fig_ensemble_profiles.png    over the depth: largest r_u, shear strain and accel
                              84 % of the members, grey: each member
 fig_ensemble_redundancy.png  packings of grains: smallest and last redundancy index I_R over the depth, likewise
 fig_ensemble_spectra.png     response spectra of the surface, likewise (of two axes the larger)
-fig_ensemble_histories.png   acceleration and settlement of the surface, and largest r_u anywhere, likewise
+fig_ensemble_histories.png   acceleration and settlement of the surface, and largest r_u anywhere, likewise; of slopes
+                             and boxes also its displacement along x
+fig_ensemble_ru.png          r_u at each of the scene's depths, likewise
 fig_ensemble_numbers.png     numbers of each member (points), their mean with its standard error (bar), and the band
 
 A band holds 16 to 84 % of the members at each depth, period or time for itself; no single member need follow it. Of
@@ -24,11 +26,12 @@ from .files import read_parsed
 LABELS = {"max_ru": "largest $r_u$", "max_gamma": "largest shear strain (%)",
           "max_acceleration": "largest acceleration (m/s$^2$)", "min_I_R": "smallest $I_R$",
           "final_I_R": "$I_R$ at the end", "settlement": "settlement (mm)", "surface_ax": "$a_x$ (m/s$^2$)",
-          "surface_ay": "$a_y$ (m/s$^2$)"}
+          "surface_ay": "$a_y$ (m/s$^2$)", "surface_ux": "$u_x$ (m)"}
 FACTORS = {"max_gamma": 100, "settlement": 1000}
 NUMBERS = (("peak_surface", "peak surface\n(m/s$^2$)", 1), ("surface_Sa_0.3s", "$S_a$(0.3 s)\n(m/s$^2$)", 1),
            ("arias_intensity", "Arias intensity\n(m/s)", 1), ("liquefied_thickness", "liquefied\nthickness (m)", 1),
-           ("settlement", "settlement\n(mm)", 1000), ("final_redundancy", "$I_R$\nat the end", 1))
+           ("settlement", "settlement\n(mm)", 1000), ("downslope", "moved\ndownslope (m)", 1),
+           ("surface_along_x", "moved\nalong x (m)", 1), ("final_redundancy", "$I_R$\nat the end", 1))
 MEMBER_FILES = {"points": ("max_ru", "max_gamma"), "nodes": ("max_acceleration",)}
 
 
@@ -153,17 +156,27 @@ def spectra(ensemble):
 
 
 def histories(ensemble):
-    names = [name for name in ("surface_ax", "surface_ay", "max_ru", "settlement")
-             if ensemble.curve("history", name) is not None]
+    return rows_in_time(ensemble, ("surface_ax", "surface_ay", "surface_ux", "max_ru", "settlement"))
+
+
+def pore_pressure(ensemble):
+    depths = ensemble.numbers.get("depths") or []
+    return rows_in_time(ensemble, [f"d{k}_ru" for k in range(len(depths))],
+                        {f"d{k}_ru": f"$r_u$, {depth:.3g} m" for k, depth in enumerate(depths)})
+
+
+def rows_in_time(ensemble, names, labels=None):
+    labels = {**LABELS, **(labels or {})}
+    names = [name for name in names if ensemble.curve("history", name) is not None]
     names = [name for name in names if np.abs(ensemble.curve("history", name)[1]["mean"]).max() > 1e-9]
     if not names:
         return None
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
                                 layout="constrained")
-    for axes, name, letter in zip(rows[:, 0], names, "abcd"):
+    for axes, name, letter in zip(rows[:, 0], names, "abcdefghijkl"):
         # of different motions at one moment there is no median
         draw(axes, ensemble, "history", name, alone=ensemble.has_records and name.startswith("surface_a"))
-        axes.set_ylabel(LABELS[name])
+        axes.set_ylabel(labels[name])
         panel_letter(axes, letter)
     with_bands = [axes for axes in rows[:, 0] if axes.get_legend_handles_labels()[0]]
     if with_bands:
@@ -194,4 +207,4 @@ def numbers(ensemble):
 
 DRAWING = Drawing(Ensemble, {"fig_ensemble_profiles": profiles, "fig_ensemble_redundancy": redundancy,
                              "fig_ensemble_spectra": spectra, "fig_ensemble_histories": histories,
-                             "fig_ensemble_numbers": numbers})
+                             "fig_ensemble_ru": pore_pressure, "fig_ensemble_numbers": numbers})

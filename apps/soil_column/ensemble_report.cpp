@@ -104,6 +104,10 @@ Shown shown_as(const Measured &number, const ColumnScene &scene)
       {"liquefied_thickness", {"liquefied thickness (m)"}},
       {"settlement", {"settlement (mm)", 1000}},
       {"downslope", {"moved downslope (m)"}},
+      {"surface_along_x", {"surface along x, at output.x (m)"}},
+      {"surface_largest", {"... where it is most (m)"}},
+      {"surface_settlement", {"surface sank (m)"}},
+      {"surface_heave", {"surface rose (m)"}},
       {"min_redundancy", {"smallest I_R (-)"}},
       {"final_redundancy", {"I_R at the end, mean (-)"}}};
   if (const auto found = as.find(number.name); found != as.end())
@@ -197,6 +201,7 @@ std::string write_ensemble(const std::filesystem::path &folder, const ColumnScen
                                         {"differing", differing.size()},
                                         {"asked", n_asked},
                                         {"liquefied_ru", liquefied_ru},
+                                        {"depths", scene.output.depths},
                                         {"numbers", numbers}});
   return text;
 }

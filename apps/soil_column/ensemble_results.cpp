@@ -167,6 +167,21 @@ void read_motion(const fs::path &folder, const ColumnScene &scene, MemberResults
   for (const char axis : axes)
     add(fmt::format("surface_a{}", axis), "m/s2");
   add("settlement", "m"), add("max_ru", "-");
+  if (scene.slope.tangent > 0 || scene.mesh.sides == Sides::walls)
+    add("surface_ux", "m");
+  if (scene.water.drainage != Drainage::dry)
+    for (std::size_t k = 0; k < scene.output.depths.size(); ++k)
+      add(fmt::format("d{}_ru", k), "-");
+}
+
+/// How the surface of a box has moved.
+void add_surface_motion(const Json &summary, MemberResults &member)
+{
+  const auto found = summary.find("surface_motion");
+  if (found == summary.end())
+    return;
+  for (const char *key : {"along_x", "largest", "settlement", "heave"})
+    member.numbers.push_back({fmt::format("surface_{}", key), "m", {found->at(key).get<double>()}});
 }
 } // namespace
 
@@ -211,6 +226,7 @@ MemberResults read_member(const EnsembleMember &of, const fs::path &folder)
   number("settlement", "m");
   if (scene.slope.tangent > 0)
     number("downslope", "m");
+  add_surface_motion(summary, member);
   if (const fs::path grains = folder / "grain_profiles/history.csv"; fs::exists(grains))
     {
       const Curves &curves = member.curves["grains"] = grain_curves(grains);

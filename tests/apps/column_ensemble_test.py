@@ -290,6 +290,32 @@ class Ensemble(ColumnTest):
             self.assert_refused(self.run_column(self.scene, "-o", "out", "-q", *settings(
                 slope__angle=angle, layer__0__k0=1)), *parts)
 
+    def test_boxes(self):
+        """How their surface moves, and r_u at the scene's depths, are among what members are compared by."""
+        self.write_records()
+        box = SAND.replace("[water]", """[mesh]
+dimension = 2
+width = "6 m"
+cells_across = 3
+sides = "walls"
+ground_x = ["0 m", "6 m"]
+ground_z = ["4 m", "3 m"]
+[water]""").replace('"undrained"', '"coupled"').replace("density =", 'permeability = "1e-4 m/s"\ndensity =')
+        box = box.replace("[output]", '[output]\ndepths = ["1 m", "2 m"]')
+        self.assert_done(self.run_app("soil_column", self.write("box.toml", box), "--records", "first.txt,second.txt",
+                                      "-o", "out", "-q"))
+        rows = table(self.folder / "out/members.csv")
+        for k, member in enumerate(("r00", "r01")):
+            summary = json.loads((self.folder / f"out/members/{member}/summary.json").read_text(encoding="utf-8"))
+            for key in ("along_x", "largest", "settlement", "heave"):
+                self.assert_close(float(rows[f"surface_{key}"][k]), summary["surface_motion"][key], 1e-9,
+                                  "ten digits of a table for people")
+        with open(self.folder / "out/bands_history.csv", encoding="utf-8") as file:
+            head = file.readline()
+        for name in ("surface_ux_mean", "d0_ru_mean", "d1_ru_p50"):
+            self.assertIn(name, head)
+        self.assertTrue((self.folder / "out/figures/fig_ensemble_ru.png").exists())
+
     def test_records(self):
         """Motions instead of packings; figures and report of what they give."""
         scene = self.write_records()
