@@ -85,8 +85,8 @@ protected:
   virtual double n_total() const = 0; ///< steps
   /// One step, and what is written of it.
   virtual void step() = 0;
-  /// When a step that failed began, s.
-  virtual double time_of(std::uint64_t step) const = 0;
+  /// Where a step that failed began, ahead of the reason; empty: the solver's message has it.
+  virtual std::string place_of(std::uint64_t step) const = 0;
   /// Whether a step is long enough to look at the clock, and to ask the other ranks, after each.
   virtual bool has_long_steps() const = 0;
   /// What a resumed run needs besides.   Collective.
@@ -225,8 +225,7 @@ private:
   /// for this one it ends them all.
   [[noreturn]] void fail(const RunFailure &failure, std::uint64_t step)
   {
-    std::string what = fmt::format("step {} (t = {:.6g} s): {}\n  {}", step, time_of(step), failure.what(),
-                                   last_checkpoint(request_.folder));
+    std::string what = fmt::format("{}{}\n  {}", place_of(step), failure.what(), last_checkpoint(request_.folder));
     if (space_.shared_out())
       abort_all(what.c_str());
     try

@@ -125,7 +125,10 @@ private:
 
   bool is_done() const override { return run_.n_steps() > last_step_; }
   double n_total() const override { return static_cast<double>(last_step_ + 1); }
-  double time_of(std::uint64_t step) const override { return static_cast<double>(step) * run_.time_step(); }
+  std::string place_of(std::uint64_t step) const override
+  {
+    return fmt::format("step {} (t = {:.6g} s): ", step, static_cast<double>(step) * run_.time_step());
+  }
 
   bool has_long_steps() const override { return soil_.grains != nullptr; }
 

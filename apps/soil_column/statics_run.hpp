@@ -38,7 +38,7 @@ protected:
     });
   }
 
-  double time_of(std::uint64_t) const override { return run_.time(); } ///< of the last good sub-step
+  std::string place_of(std::uint64_t) const override { return {}; }
   bool has_long_steps() const override { return true; }
 };
 } // namespace isostat
