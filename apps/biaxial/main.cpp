@@ -29,7 +29,12 @@ void run_scene(const SceneOptions &options)
     throw InputError("a biaxial block runs on one rank only. Give it --threads.");
   const BiaxialRequest request(read_biaxial_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
-    return tell_finished(request.folder, "biaxial", !options.no_figures);
+    {
+      if (const Json summary = read_json(request.folder / "summary.json"); !summary.at("complete"))
+        throw RunFailure(fmt::format("{}: this run has ended before its time, and would again: {}",
+                                     request.folder.string(), summary.at("failure").get<std::string>()));
+      return tell_finished(request.folder, "biaxial", !options.no_figures);
+    }
   check_result_folder(request.folder, request.use);
   const BiaxialSummary summary = run_biaxial(request);
   const std::string times =

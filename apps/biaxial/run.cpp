@@ -78,6 +78,11 @@ public:
     check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
     statics_.restore(resumed_->state);
     resumed_->get(summary_);
+    if (summary_.steps != statics_.n_steps() || summary_.steps > scene_.test.steps)
+      throw InputError(
+          fmt::format("{}: has {} steps in its summary and {} in its state, of {}: it is damaged. Start anew "
+                      "with --overwrite.",
+                      resumed_->file, summary_.steps, statics_.n_steps(), scene_.test.steps));
     if (resumed_->numbers.contains("large_from"))
       summary_.large_from = resumed_->number("large_from");
   }
@@ -108,7 +113,7 @@ public:
       {
         summary_.failure = failure.what();
         back_to_committed();
-        files_->map(summary_.axial_strain, statics_);
+        files_->map(statics_.time() / end_of(scene_) * scene_.test.axial_strain, statics_); // of the last good sub-step
       }
     return with_costs();
   }
@@ -286,6 +291,10 @@ std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
   if (scene.water.undrained())
     text += fmt::format("  pore pressure       {:.4g} kPa above that at the start, mean of the block at the end\n",
                         s.pore_pressure / 1e3);
+  if (scene.water.undrained() && s.pore_pressure < -100e3)
+    text += "  warning             a suction of more than the atmosphere's pressure, unless the pore pressure at the "
+            "start was "
+            "higher: water cavitates then, here it does not\n";
   text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
   text += fmt::format("  at a point          strain up to {:.3g} %, rotation up to {:.3g} deg\n", 100 * s.max_strain,
                       s.max_rotation * 180 / std::numbers::pi);

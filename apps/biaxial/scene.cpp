@@ -29,7 +29,7 @@ constexpr Section sections[] = {
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
   {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
-  {.name = "water", .text = "What the water in the pores does. Stresses are total ones without the pressure at the start."},
+  {.name = "water", .text = "What the water in the pores does. It bears any suction: no limit of cavitation is set."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
@@ -97,7 +97,7 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
 
   {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = positive, .text = "Isotropic effective stress at the start, on the sides throughout.",
+   .value = "100 kPa", .range = positive, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
   {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
    .text = "At the end: way of the top over the height, compression positive.",
@@ -113,7 +113,7 @@ constexpr const char *drainages[] = {"drained", "undrained"};
 
 constexpr Key water_keys[] = {
   {.path = "water.drainage", .kind = Kind::choice, .value = "drained", .choices = drainages,
-   .text = "No excess pore pressure; or no water leaves the block (u-p, degree 2).",
+   .text = "No excess pore pressure; or no water leaves the block (u-p, degree 2 with 3 points). Then axial_stress is total without the pressure at the start, the sides keep their total stress, and p and q of maps are effective.",
    .field = [](BiaxialScene &s) -> Field { return &s.water.drainage; }},
   {.path = "water.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s", .value = "0 m/s",
    .range = not_negative,
@@ -177,6 +177,20 @@ const SceneSchema &schema()
   return schema;
 }
 
+void check_undrained(const SceneDocument &document, const BiaxialMesh &mesh)
+{
+  if (mesh.degree != 2)
+    document.refuse("mesh.degree",
+                    fmt::format("must be 2 in an undrained block, beside a pore pressure of degree 1, and "
+                                "is {}. Give degree = 2 and points = 3.",
+                                mesh.degree));
+  if (mesh.points < 3)
+    document.refuse("mesh.points", fmt::format("must be 3 or 4 in an undrained block, and is {}: with fewer, elements "
+                                               "have modes that soil of constant volume does not resist. Give points = "
+                                               "3.",
+                                               mesh.points));
+}
+
 void check(const SceneDocument &document, const BiaxialScene &scene)
 {
   if (scene.has_grains())
@@ -190,8 +204,12 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
     document.refuse("nonlocal.length",
                     "needs relaxation, because the tangent of a nonlocal material is not one of its points. Set "
                     "newton.max_iterations = 0 and newton.relaxation_iterations = 1000.");
-  if (scene.water.undrained() && scene.mesh.degree != 2)
-    document.refuse("mesh.degree", "must be 2 in an undrained block, beside a pore pressure of degree 1.");
+  if (scene.water.undrained())
+    check_undrained(document, scene.mesh);
+  else if (scene.water.permeability > 0)
+    document.refuse("water.permeability",
+                    "belongs to an undrained block. Give water.drainage = \"undrained\", or remove "
+                    "it.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column", fmt::format("lets the weak zone reach out of the block of {} elements across. "
                                                "Correct it.",

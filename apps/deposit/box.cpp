@@ -127,11 +127,11 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the wall.");
   if (to == width && load.surcharge_to)
     document.refuse("load.surcharge_to", "must be below the width, or be left out: then it ends at the wall.");
-  for (const double x : {from, to})
+  for (const auto &[name, x] : {std::pair{"load.surcharge_from", from}, std::pair{"load.surcharge_to", to}})
     if (!scene.mesh.is_boundary(x))
-      document.refuse(key, fmt::format("must be on a boundary between elements, but {} m is inside of one of {} m. "
-                                       "Give a multiple of that.",
-                                       number_text(x), number_text(width / scene.mesh.cells_across)));
+      document.refuse(name, fmt::format("must be on a boundary between elements, which are {} m wide. Give a multiple "
+                                        "of that.",
+                                        number_text(width / scene.mesh.cells_across)));
   if (scene.analysis.kind == AnalysisKind::plate)
     document.refuse(key, "has no meaning beside a plate; a surcharge bears on all of the surface then. Remove it.");
 }

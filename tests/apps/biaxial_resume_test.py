@@ -39,6 +39,20 @@ class Resume(ColumnTest):
         other = self.run_app("biaxial", SOFTENING, "-o", "parts", "--resume", *options, *settings(weak__row=1))
         self.assert_refused(other, "another scene", "row")
 
+    def test_an_undrained_block(self):
+        options = (*SMALL, *SAVED, *settings(water__drainage="undrained", mesh__points=3,
+                                             water__permeability="1e-9 m/s"))
+        self.whole(SOFTENING, *options)
+        self.stop_when_saved(SOFTENING, signal.SIGKILL, "-q", *options, program="biaxial")
+        self.goes_on(SOFTENING, *options)
+
+    def test_a_failed_run_has_not_finished(self):
+        options = (*SMALL, *SAVED, *settings(newton__relaxation_iterations=1))
+        for more in ((), ("--resume",)):
+            result = self.run_app("biaxial", SOFTENING, "-o", "out", "--no-figures", "-q", *options, *more)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn("relaxation has not come to rest", result.stderr)
+
     def test_packings_on_other_threads(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
         self.assert_done(self.run_app("specimen_library", scene, *FEW, "-o", "library.h5"))

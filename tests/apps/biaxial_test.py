@@ -135,18 +135,53 @@ class Biaxial(AppTest):
         confined = lame + 2 * 50e6
         lateral = (lame + storage) / (confined + storage) * strain  # no change of total stress on the sides
         pressure = storage * (strain - lateral)
-        undrained = settings(water__drainage="undrained")
+        undrained = settings(water__drainage="undrained", mesh__points=3)
         for more in ((), settings(newton__max_iterations=0, newton__relaxation_iterations=2000),
                      settings(water__permeability="1e-6 m/s")):
             self.assert_done(self.run_block(ELASTIC.format(degree=2), *undrained, *more))
             rows, maps = self.history(), self.maps()
-            solved = "a residual of 1e-6 of the force, and some 100 times that in the small strains of the water"
+            solved = "a direct solution of a uniform block: round-off times the condition of the system"
             stress = confined * strain - lame * lateral + pressure
-            self.assert_close(rows["axial_stress"][-1], 100e3 + stress, 1e-4, solved)
-            self.assert_close(rows["pore_pressure"][-1], pressure, 1e-4, solved)
-            self.assert_close(-rows["lateral_strain"][-1], lateral, 1e-5, solved)
-            self.assert_close(maps["pore_pressure"][-1], pressure, 1e-3, solved)
+            self.assert_close(rows["axial_stress"][-1], 100e3 + stress, 1e-10, solved)
+            self.assert_close(rows["pore_pressure"][-1], pressure, 1e-10, solved)
+            self.assert_close(-rows["lateral_strain"][-1], lateral, 1e-10, solved)
+            self.assert_close(maps["pore_pressure"][-1], pressure, 1e-10, solved)
         self.assert_refused(self.run_block(ELASTIC.format(degree=1), *undrained), "mesh.degree", "undrained")
+        self.assert_refused(self.run_block(ELASTIC.format(degree=2), *undrained[:2]), "mesh.points", "Give points = 3")
+        self.assert_refused(self.run_block(ELASTIC.format(degree=2), *settings(water__permeability="1e-6 m/s")),
+                            "water.permeability", "belongs to an undrained block")
+
+    def test_water_moves_by_permeability_times_time(self):
+        """From a stiff block to a weak part of it: as far in 100 s as in 1,000 s with a tenth of the permeability."""
+        keys = settings(water__drainage="undrained", mesh__points=3, weak__cells=1, weak__column=1, weak__row=1,
+                        weak__factor=0.2)
+        spread = {}
+        for k, time in (("0 m/s", 100), ("0 m/s", 1), ("1e-8 m/s", 100), ("1e-9 m/s", 1000), ("1e-4 m/s", 100)):
+            self.assert_done(self.run_block(ELASTIC.format(degree=2), *keys, *settings(
+                water__permeability=k, test__duration=f"{time} s")))
+            pressure = self.maps()["pore_pressure"][-1]
+            spread[k, time] = np.ptp(pressure) / pressure.mean()
+            rows = self.history()
+            self.assert_close(rows["pore_pressure"][-1], 2.2e9 / 0.4 * rows["volumetric_strain"][-1], 1e-8,
+                              "no water leaves the block: round-off of strains of 1e-4")
+        self.assert_close(spread["0 m/s", 1], spread["0 m/s", 100], 1e-9, "no water moves at any time")
+        self.assert_close(spread["1e-9 m/s", 1000], spread["1e-8 m/s", 100], 1e-9, "k t counts alone: round-off")
+        self.assert_below(spread["1e-8 m/s", 100], 0.9 * spread["0 m/s", 100], "it flows over decimetres")
+        self.assert_below(spread["1e-4 m/s", 100], 1e-3 * spread["0 m/s", 100], "all differences have gone")
+
+    def test_undrained_mohr_coulomb_block_is_the_closed_form(self):
+        """Without dilatancy the mean s of the stresses in the plane changes by the volume of the water alone."""
+        self.assert_done(self.run_block(FRICTION, *settings(
+            water__drainage="undrained", mesh__points=3, mesh__degree=2, soil__dilatancy_angle="0 deg")))
+        rows, maps = self.history(), self.maps()
+        sine, soft = np.sin(np.radians(36)), 100e6 / (2.2e9 / 0.4)  # of soil over water: (lambda + G) n/K_f
+        start = 100e3 * sine + 3e3 * np.cos(np.radians(36))  # radius of Mohr's circle: s sin(phi) + c cos(phi)
+        pressure = start / (1 + soft * (1 - sine))  # s = 100 kPa + soft u, and total stress on the sides stays
+        solved = "Newton's method to 1e-6 of the force"
+        self.assert_close(rows["pore_pressure"][-1], pressure, 1e-5, solved)
+        self.assert_close(maps["q"][-1], start + soft * pressure * sine, 1e-5, solved)
+        self.assert_close(rows["axial_stress"][-1], 100e3 + 2 * maps["q"][-1].mean(), 1e-5, solved)
+        self.assert_close(maps["shear_strain"][-1].max(), maps["shear_strain"][-1].min(), 1e-6, "it stays uniform")
 
     def test_maps_have_labels(self):
         self.assert_done(self.run_block(ELASTIC.format(degree=1)))

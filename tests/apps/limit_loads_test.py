@@ -42,7 +42,7 @@ class Footing(ToleranceTest):
             added = limit.cohesion_factor(phi) + weight * limit.weight_factor(phi, rough)
             self.assertTrue(1.1 < found / added < 1.2, (found, added))
             alone = bearing_capacity(phi, 1e-2, weight, 2.0, rough)
-            self.assert_close(alone, weight * limit.weight_factor(phi, rough), 0.04, "cohesion of 1e-2 is not quite 0")
+            self.assert_close(alone, weight * limit.weight_factor(phi, rough), 0.015, "cohesion of 1e-2 is not quite 0")
 
     def test_rough_strips_bear_more_but_not_twice(self):
         for smooth, rough in limit.WEIGHT_FACTORS.values():

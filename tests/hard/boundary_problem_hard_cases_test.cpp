@@ -139,8 +139,8 @@ TEST(BoundaryProblemHardCases, ALoadBeyondTheLimitLoad)
   expect_same(statics.save(), other.save());
 }
 
-/// The surface ends 1 mm above the base: a sliver of an element, whose weight the base bears as any other's. Explicit
-/// dynamics has one step for all elements, and says which.
+/// The surface ends 1 mm above the base: a sliver of an element, with which statics still finds equilibrium. Explicit
+/// dynamics has one step for all elements; a longer one is refused with what would do.
 TEST(BoundaryProblemHardCases, ABadElement)
 {
   MeshSpec mesh = box(12, 3.6, 6, 3);
