@@ -118,7 +118,7 @@ TEST(BoxScene, RefusesPlacesOutside)
 {
   expect_refusal(box("[output]\ndepths = [\"4.6 m\"]\n", ground), {"output.depths", "[0 m, 4.5 m]"});
   expect_refusal(box("[load]\nsurcharge_to = \"4.5 m\"\n", "cells_across = 10\n"),
-                 {"load.surcharge_to", "4.5 m is inside", "one of 1 m"});
+                 {"load.surcharge_to = 4.5 m", "boundary between elements", "1 m wide"});
   expect_refusal(box("[load]\nsurcharge_to = \"10 m\"\n", "cells_across = 10\n"), {"load.surcharge_to", "left out"});
   expect_refusal(box("", "cells_across = 10\nground_x = [\"0 m\", \"4.5 m\", \"10 m\"]\n"
                          "ground_z = [\"5 m\", \"5 m\", \"2 m\"]\n"),
