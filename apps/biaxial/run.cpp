@@ -62,20 +62,28 @@ std::string beyond_small(const BiaxialSummary &s)
                      100 * *s.large_from, 100 * small);
 }
 
+/// Null where a run starts anew.   @throws InputError  none that can be read, or of another scene
+std::unique_ptr<ColumnCheckpoint> checkpoint_of(const BiaxialRequest &request)
+{
+  if (request.use != FolderUse::resume)
+    return nullptr;
+  auto checkpoint = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
+  check_same_scene(request.folder, checkpoint->scene, to_toml(request.scene));
+  return checkpoint;
+}
+
 /// One run from its start to its end.
 class BiaxialRun
 {
 public:
   explicit BiaxialRun(const BiaxialRequest &request)
-      : request_(request), scene_(request.scene), space_(scene_),
+      : request_(request), scene_(request.scene), resumed_(checkpoint_of(request)), space_(scene_),
         material_(block_material(scene_, space_, request.threads)),
         statics_(space_, *material_.material, settings_of(scene_))
   {
     summary_.points = space_.n_points();
-    if (request.use != FolderUse::resume)
+    if (!resumed_)
       return;
-    resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
-    check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
     statics_.restore(resumed_->state);
     resumed_->get(summary_);
     if (summary_.steps != statics_.n_steps() || summary_.steps > scene_.test.steps)
@@ -261,10 +269,10 @@ private:
   const BiaxialScene &scene_;
   const Stopwatch since_start_;
   const Progress progress_{request_.quiet};
+  const std::unique_ptr<ColumnCheckpoint> resumed_; ///< read before packings are prepared
   BlockMesh space_;
   BlockMaterial material_;
   Statics statics_;
-  std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
   BiaxialSummary summary_;
   Stopwatch since_checkpoint_;
   std::unique_ptr<Recorder> history_;

@@ -16,6 +16,7 @@ A band holds 16 to 84 % of the members at each depth, period or time for itself;
 less than three members there is none. Members with the packings of an earlier one are left out.
 """
 import csv
+from string import ascii_lowercase
 
 import numpy as np
 
@@ -173,7 +174,7 @@ def rows_in_time(ensemble, names, labels=None):
         return None
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
                                 layout="constrained")
-    for axes, name, letter in zip(rows[:, 0], names, "abcdefghijkl"):
+    for axes, name, letter in zip(rows[:, 0], names, ascii_lowercase):
         # of different motions at one moment there is no median
         draw(axes, ensemble, "history", name, alone=ensemble.has_records and name.startswith("surface_a"))
         axes.set_ylabel(labels[name])

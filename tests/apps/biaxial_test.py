@@ -302,6 +302,7 @@ class Biaxial(AppTest):
         self.assert_done(shown)
         again = self.run_app("biaxial", self.write("again.toml", shown.stdout), "--validate")
         self.assertEqual(again.stdout.replace("again", "block"), shown.stdout)
+        self.assert_done(self.run_app("biaxial", "--print-defaults"))
         manual = pathlib.Path(__file__).resolve().parents[2] / "docs/biaxial_scene_reference.md"
         self.assertEqual(self.run_app("biaxial", "--print-manual").stdout, manual.read_text(encoding="utf-8"))
         self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")

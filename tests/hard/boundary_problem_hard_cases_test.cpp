@@ -7,6 +7,7 @@
 #include "tests/coupling/rve_column.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cstdio>
 #include <gmock/gmock.h>
@@ -18,23 +19,6 @@ namespace isostat
 namespace
 {
 using testing::HasSubstr;
-
-/// What a call throws.
-template <class Error, class Call>
-std::string message_of(const Call &call)
-{
-  try
-    {
-      call();
-    }
-  catch (const Error &error)
-    {
-      std::printf("%s\n", error.what());
-      return error.what();
-    }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
 
 MeshSpec box(double width, double height, unsigned cells_across, unsigned cells)
 {
