@@ -47,8 +47,7 @@ BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement
   BoxMotion motion;
   const long node = space.find_dof(space.mesh().on_line(0), 0);
   motion.on_line = node < 0 ? 0 : displacement.local_element(static_cast<unsigned>(node));
-  if (space.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &motion.on_line, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
+  space.sum_over_ranks({&motion.on_line, 1});
   put(motion.largest, motion.largest_x, 0, [](double u) { return std::abs(u); });
   put(motion.deepest, motion.deepest_x, 2, [](double u) { return -u; });
   put(motion.highest, motion.highest_x, 2, [](double u) { return u; });

@@ -33,8 +33,7 @@ double final_settlement(const ColumnScene &scene, const Discretisation<dim> &spa
     }
   const long dof = space.find_dof(space.mesh().on_line(0), 2);
   settlement = dof < 0 ? 0 : 0 - drained.displacement().local_element(static_cast<unsigned>(dof));
-  if (space.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &settlement, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
+  space.sum_over_ranks({&settlement, 1});
   return settlement;
 }
 

@@ -121,7 +121,7 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
   append(instant.displacement, surface_, row);
   row.resize(settlement_at + 8, 0.0);
   append_points(instant, row);
-  sum_over_ranks(row);
+  space_.sum_over_ranks(row);
 
   row[0] = static_cast<double>(instant.step);
   row[1] = state.time = instant.time;
@@ -155,14 +155,6 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
 }
 
 template <int dim>
-void ColumnHistory<dim>::sum_over_ranks(std::span<double> values) const
-{
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                  space_.communicator());
-}
-
-template <int dim>
 void ColumnHistory<dim>::follow(const Dynamics &run)
 {
   if (!filter_.filters())
@@ -173,7 +165,7 @@ void ColumnHistory<dim>::follow(const Dynamics &run)
       sample[3 + axis] = base_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(base_[axis]));
       sample[6 + axis] = surface_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(surface_[axis]));
     }
-  sum_over_ranks(sample);
+  space_.sum_over_ranks(sample);
   for (std::size_t axis = 0; axis < 3; ++axis)
     {
       sample[axis] = motions_[axis].acceleration(run.time() - run.time_step());

@@ -70,7 +70,6 @@ private:
   {
     return !filter_.filters() || filter_.has(static_cast<std::uint64_t>(row[0]));
   }
-  void sum_over_ranks(std::span<double> values) const;
   Extremes extremes(const ColumnInstant &instant) const;
   void append_points(const ColumnInstant &instant, std::vector<double> &row) const;
 

@@ -14,8 +14,7 @@ double downslope_at(const FiniteElementSpace &space, const Vector &displacement,
 {
   const long dof = space.find_dof({0, 0, z}, 0);
   double u = dof < 0 ? 0 : displacement.local_element(static_cast<unsigned>(dof));
-  if (space.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &u, 1, MPI_DOUBLE, MPI_SUM, space.communicator());
+  space.sum_over_ranks({&u, 1});
   return u;
 }
 

@@ -55,13 +55,9 @@ void SurfaceMotion::follow(const Dynamics &run)
 
 std::vector<double> SurfaceMotion::sum_over_ranks(std::vector<double> values) const
 {
-  if (space_.shared_out())
-    {
-      if (surface_[0] < 0)
-        std::ranges::fill(values, 0.0);
-      MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                    space_.communicator());
-    }
+  if (space_.shared_out() && surface_[0] < 0)
+    std::ranges::fill(values, 0.0);
+  space_.sum_over_ranks(values);
   return values;
 }
 

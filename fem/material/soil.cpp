@@ -34,20 +34,6 @@ std::size_t SoilProfile::layer_at(double z) const
   return 0;
 }
 
-std::size_t SoilProfile::cell_at(double z) const
-{
-  const std::size_t layer = layer_at(z);
-  double top = 0;
-  std::size_t below = 0;
-  for (std::size_t k = layers.size(); k-- > layer;)
-    {
-      top += layers[k].thickness;
-      below += layers[k].n_cells();
-    }
-  const double height = layers[layer].thickness / static_cast<double>(layers[layer].n_cells());
-  return below - 1 - static_cast<std::size_t>((top - z) / height);
-}
-
 double SoilProfile::hydrostatic_pressure(double z) const
 {
   return water.density * water.gravity * slope.cosine() * std::max(0.0, height() - water_table - z);

@@ -91,7 +91,6 @@ struct SoilProfile
 
   double height() const;                ///< summed from the base up, m
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
-  std::size_t cell_at(double z) const;  ///< number of the cell at a height, from the base up   @pre not on a boundary
   bool is_wet(double z) const { return z < height() - water_table; }
   double hydrostatic_pressure(double z) const; ///< of water below its table, above the atmospheric pressure, Pa
   /// Statics of the infinite slope, docs/theory_column.md (32): stresses of the soil's own weight and of a uniform

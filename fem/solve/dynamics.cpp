@@ -148,8 +148,7 @@ Vector Dynamics::acceleration() const
 DynamicsEnergy Dynamics::energy() const
 {
   double sums[3] = {energy_.kinetic, energy_.internal, energy_.external};
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks(sums);
   return {sums[0], sums[1], sums[2]};
 }
 

@@ -121,8 +121,7 @@ double Dynamics::stable_step() const
 void Dynamics::check_motion()
 {
   double sums[2] = {half_way_.kinetic, exchanged_};
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks(sums);
   if (!(sums[0] <= 1e3 * (sums[1] + min_energy_)))
     throw RunFailure(fmt::format("unstable: kinetic energy {:.3g} J, but only {:.3g} J went in, at step {} (t = {:.6g} "
                                  "s); use a smaller time step",

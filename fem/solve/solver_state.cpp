@@ -82,8 +82,7 @@ void FieldWriter::operator()(const char *name, const std::vector<double> &of_poi
 
 void FieldWriter::sum(const char *name, double part)
 {
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &part, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks({&part, 1});
   state.numbers[name] = part;
 }
 

@@ -14,14 +14,14 @@ namespace isostat
 namespace
 {
 /// Mean modulus of the skeleton, Pa; 1 for a soil without any.
-double mean_modulus(const Material &material, MPI_Comm communicator)
+double mean_modulus(const Material &material, const FiniteElementSpace &space)
 {
   std::vector<WaveModuli> moduli(material.n_points());
   material.wave_moduli(moduli);
   double sums[2] = {0, static_cast<double>(moduli.size())};
   for (const WaveModuli &modulus : moduli)
     sums[0] += modulus.p;
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, communicator);
+  space.sum_over_ranks(sums);
   return sums[0] > 0 ? sums[0] / sums[1] : 1;
 }
 } // namespace
@@ -40,7 +40,7 @@ Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSet
   material_.rollback();
   space_.add_internal_force(stresses_, reference_force_);
   min_scale_ = std::max(settings_.min_force, 1e-4 * reference_force_.l2_norm());
-  pressure_scale_ = mean_modulus(material_, space_.communicator());
+  pressure_scale_ = mean_modulus(material_, space_);
   if (settings_.pore_water)
     {
       if (has_boyle_air(space_.mesh().soil))
@@ -134,12 +134,12 @@ void Statics::accept(double duration)
 
 void Statics::fail(double size) const
 {
-  throw RunFailure(
-      fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.5g} of the force scale "
-                  "{:.3g} N, tolerance {:.5g}) in a sub-step of {:.3g} of the step, the smallest that is "
-                  "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps{}",
-                  step_ + 1, time_, reason_, residual_, trial_scale_, settings_.newton.tolerance, size, time_, step_,
-                  reason_.starts_with("the material") ? "" : "; the load may be more than the soil bears"));
+  throw RunFailure(fmt::format("no equilibrium in step {} after t = {:.9g} s: {} (residual {:.5g} of the force scale "
+                               "{:.3g} N, tolerance {:.5g}) in a sub-step of {:.3g} of the step, the smallest that is "
+                               "allowed. The state is that of t = {:.9g} s, the last with equilibrium after {} steps{}",
+                               step_ + 1, time_, reason_.text, residual_, trial_scale_, settings_.newton.tolerance,
+                               size, time_, step_,
+                               reason_.of_material ? "" : "; the load may be more than the soil bears"));
 }
 
 std::vector<double> Statics::point_pressure() const { return space_.point_pressures(p_); }

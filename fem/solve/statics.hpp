@@ -190,7 +190,11 @@ private:
   std::vector<Gradient> increments_;
   std::vector<Stiffness> tangents_;
   double trial_scale_ = 0, residual_ = 0;
-  std::string reason_; ///< why Newton failed
+  struct
+  {
+    std::string text;
+    bool of_material = false; ///< not of the solver, or a load that nothing bears
+  } reason_;                  ///< why the last sub-step failed
   StaticsEffort effort_;
 };
 } // namespace isostat

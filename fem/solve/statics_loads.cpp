@@ -127,8 +127,7 @@ double Statics::reaction(FaceComponent of) const
   double sum = 0;
   for (unsigned i : unknowns_of(of))
     sum += force.local_element(i) - reference_force_.local_element(i) - pore.local_element(i) - load_.local_element(i);
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks({&sum, 1});
   return sum;
 }
 } // namespace isostat

@@ -40,7 +40,7 @@ bool Statics::newton_substep(double duration)
       if (iteration < settings_.newton.max_iterations && !iterate(iteration))
         return false;
     }
-  reason_ = fmt::format("Newton's method has not converged in {} iterations", settings_.newton.max_iterations);
+  reason_ = {fmt::format("Newton's method has not converged in {} iterations", settings_.newton.max_iterations)};
   return false;
 }
 
@@ -95,7 +95,7 @@ bool Statics::factorise()
   catch (const RunFailure &failure)
     {
       good = false;
-      reason_ = failure.what();
+      reason_ = {failure.what()};
     }
   return on_every_rank(good);
 }
@@ -133,7 +133,7 @@ bool Statics::search_line(double merit_before)
       const double best = std::isfinite(b) ? a * part * part / (b - a + 2 * a * part) : 0.5 * part;
       part = std::clamp(best, 0.1 * part, 0.5 * part);
       if (std::isfinite(after))
-        reason_ = "no part of Newton's step makes the residual smaller";
+        reason_ = {"no part of Newton's step makes the residual smaller"};
     }
   return false;
 }
@@ -164,14 +164,14 @@ bool Statics::evaluate()
   catch (const RunFailure &failure)
     {
       good = false;
-      reason_ = fmt::format("the material refuses: {}", failure.what());
+      reason_ = {fmt::format("the material refuses: {}", failure.what()), true};
     }
   if (!on_every_rank(good))
     return false;
   find_residual();
   if (std::isfinite(trial_scale_) && std::isfinite(merit(0)))
     return true;
-  reason_ = "the material's stress is no number";
+  reason_ = {"the material's stress is no number", true};
   return false;
 }
 
@@ -210,8 +210,7 @@ double Statics::merit(double moved_part) const
   if (water_)
     sum += per_volume * per_volume *
            squares(r_p_, moved_p_, moved_part, flow_ ? is_held_p_ : std::vector<char>(is_held_p_.size(), 0));
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks({&sum, 1});
   return std::sqrt(sum);
 }
 

@@ -79,8 +79,7 @@ double Statics::work_of_residual(const Vector &x) const
   for (std::size_t i = 0; i < is_held_u_.size(); ++i)
     if (!is_held_u_[i])
       sum += r_u_.local_element(i) * x.local_element(i);
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, space_.communicator());
+  space_.sum_over_ranks({&sum, 1});
   return sum;
 }
 
@@ -135,8 +134,8 @@ Statics::Relaxation Statics::relax(double duration, double factor, unsigned &lef
         return Relaxation::gives_up;
       residual_ = merit(0) / trial_scale_;
     }
-  reason_ = fmt::format("relaxation has not come to rest in {} iterations; more of them may do",
-                        settings_.newton.relaxation_iterations);
+  reason_ = {fmt::format("relaxation has not come to rest in {} iterations; more of them may do",
+                         settings_.newton.relaxation_iterations)};
   return Relaxation::gives_up;
 }
 } // namespace isostat

@@ -48,8 +48,7 @@ StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator
   double size[2] = {0, static_cast<double>(space.n_cells())};
   for (double w : space.weight)
     size[0] += w;
-  if (space.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, size, 2, MPI_DOUBLE, MPI_SUM, space.communicator());
+  space.sum_over_ranks(size);
   m.cell_size = std::pow(size[0] / size[1], 1.0 / space.dimension);
   number_unknowns();
   preallocate();

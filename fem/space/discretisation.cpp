@@ -116,6 +116,12 @@ FiniteElementSpace::FiniteElementSpace(const MeshSpec &mesh, const Supports &sup
       communicator_(dim == 1 ? MPI_COMM_SELF : communicator)
 {}
 
+void FiniteElementSpace::sum_over_ranks(std::span<double> values) const
+{
+  if (shared_out_)
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+}
+
 template <int dim>
 Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator)
     : FiniteElementSpace(mesh, supports, dim, communicator),

@@ -26,6 +26,9 @@ public:
   /// Local unknowns of Supports::drained and at and above a water table in the soil, owned or not, in rising order.
   std::vector<unsigned> drained_pressures;
 
+  /// Each number becomes its sum over the ranks that the mesh is shared out over; where each has all of it, it stays.
+  void sum_over_ranks(std::span<double> values) const;
+
   /// A zero vector of displacements / of pressures.
   Vector displacement_vector() const { return Vector(displacements_); }
   const VectorPartition &displacement_partition() const { return displacements_; }

@@ -28,15 +28,6 @@ TEST(SoilProfile, HeightAndLayers)
   EXPECT_EQ(soil.layer_at(4), 1u); // the upper one on an interface
   EXPECT_EQ(soil.layer_at(9), 0u);
   EXPECT_EQ(soil.layer_at(10), 0u);
-  std::size_t cell = 0; // from the base up
-  double bottom = 0;
-  for (std::size_t k = soil.layers.size(); k-- > 0;)
-    for (std::size_t c = 0; c < soil.layers[k].n_cells(); ++c)
-      {
-        const double height = soil.layers[k].thickness / static_cast<double>(soil.layers[k].n_cells());
-        EXPECT_EQ(soil.cell_at(bottom + height / 2), cell++);
-        bottom += height;
-      }
   EXPECT_EQ(soil.layer_at(-1), 2u); // outside: the nearest
   EXPECT_EQ(soil.layer_at(11), 0u);
 }
