@@ -129,12 +129,9 @@ public:
 private:
   void open()
   {
-    if (!resumed_)
-      {
-        open_result_folder(request_.folder, request_.use);
-        write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                         {{"threads", std::to_string(request_.threads)}});
-      }
+    open_result_folder(request_.folder, request_.use);
+    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                     {{"threads", std::to_string(request_.threads)}});
     history_ =
         std::make_unique<Recorder>(request_.folder, columns(scene_), counter(resumed_.get(), "rows"), to_toml(scene_));
     files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_, scene_.water.undrained(),

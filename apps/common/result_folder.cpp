@@ -134,13 +134,6 @@ std::string provenance_text(const std::string &command_line, const MoreProvenanc
 void write_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
                       const MoreProvenance &more)
 {
-  write_replacing(folder / "scene.toml", scene_text);
-  write_replacing(folder / "provenance.txt", provenance_text(command_line, more));
-}
-
-void add_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
-                    const MoreProvenance &more)
-{
   const fs::path file = folder / "provenance.txt";
   const std::string before = fs::exists(file) ? read_text(file) + "\n" : "";
   write_replacing(folder / "scene.toml", scene_text);

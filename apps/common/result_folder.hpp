@@ -39,14 +39,11 @@ bool folder_exists(const std::filesystem::path &folder);
 void make_writable_folder(const std::filesystem::path &folder);
 
 /// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, time, and what `more`
-/// tells: name and value).
+/// tells: name and value). What earlier calls left in provenance.txt, of a run that goes on or a campaign that grows,
+/// stays above an empty line.   tested: tests/apps/column_ensemble_test.py, tests/apps/biaxial_resume_test.py
 void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
                       const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
-/// The same for folders to which one command comes back: what earlier calls left in provenance.txt stays, above an
-/// empty line.   tested: tests/apps/column_ensemble_test.py
-void add_provenance(const std::filesystem::path &folder, const std::string &scene_text, const std::string &command_line,
-                    const std::vector<std::pair<std::string, std::string>> &more);
-/// The first of a scene of grains, with instruction set and seed.
+/// The same of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
 /// Draws the figures of a results folder and leaves report.html there, with the Python packages `figures` and `report`.

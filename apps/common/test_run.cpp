@@ -71,8 +71,7 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
 {
   const auto &[scene, folder, command_line, use, quiet, threads] = request;
   open_result_folder(folder, use); // only now that everything else went well may older results go
-  if (use != FolderUse::resume)
-    write_provenance(folder, scene, command_line);
+  write_provenance(folder, scene, command_line);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   Watched observer(output, watcher);
   const std::uint64_t first_step = run.assembly->step();

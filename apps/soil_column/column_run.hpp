@@ -174,12 +174,9 @@ private:
   {
     MPI_Barrier(MPI_COMM_WORLD); // all ranks have read their checkpoint, and are ready to start
     on_first_rank([&] {
-      if (!resumed_)
-        {
-          open_result_folder(request_.folder, request_.use);
-          write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                           {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
-        }
+      open_result_folder(request_.folder, request_.use);
+      write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                       {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
       files_.open(velocities_, resumed_.get());
     });
   }

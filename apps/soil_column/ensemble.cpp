@@ -39,7 +39,7 @@ public:
     open_campaign_folder(
         folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); },
         options_.overwrite);
-    add_provenance(folder_, to_toml(shared_), options_.command_line, {});
+    write_provenance(folder_, to_toml(shared_), options_.command_line, {});
     for (const char *part : {"scenes", "members", "logs"})
       fs::create_directories(folder_ / part);
     for (const EnsembleMember &member : members_)

@@ -45,6 +45,8 @@ class Resume(ColumnTest):
         self.whole(SOFTENING, *options)
         self.stop_when_saved(SOFTENING, signal.SIGKILL, "-q", *options, program="biaxial")
         self.goes_on(SOFTENING, *options)
+        calls = (self.folder / "parts/provenance.txt").read_text(encoding="utf-8").split("\n\n")
+        self.assertEqual(["--resume" in call for call in calls], [False, True], "each call is told of")
 
     def test_a_failed_run_has_not_finished(self):
         options = (*SMALL, *SAVED, *settings(newton__relaxation_iterations=1))
