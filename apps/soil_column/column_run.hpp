@@ -83,6 +83,13 @@ protected:
   virtual void start() = 0;
   virtual bool is_done() const = 0;
   virtual double n_total() const = 0; ///< steps
+  /// What a line of progress tells besides how far the run is.
+  virtual std::string key_state() const
+  {
+    const ColumnState &now = files_.history().state;
+    return fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}", now.time,
+                       now.surface_acceleration, now.max_ru, now.min_p_ratio);
+  }
   /// One step, and what is written of it.
   virtual void step() = 0;
   /// Where a step that failed began, ahead of the reason; empty: the solver's message has it.
@@ -186,11 +193,7 @@ private:
   void observe()
   {
     if (progress_.due(run_.n_steps(), static_cast<double>(run_.n_steps()) / n_total()))
-      {
-        const ColumnState &now = files_.history().state;
-        progress_.say(progress_.line(fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}",
-                                                 now.time, now.surface_acceleration, now.max_ru, now.min_p_ratio)));
-      }
+      progress_.say(progress_.line(key_state()));
     const bool now = has_long_steps() || run_.n_steps() % 256 == 0;
     const bool asking_is_cheap = alone_ || space_.shared_out(); // next to the sums over all ranks in each step
     if ((now || asking_is_cheap) && on_any_rank(stop_requested()))

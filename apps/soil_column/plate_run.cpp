@@ -87,6 +87,11 @@ private:
                     effort.substeps, run_.residual()));
   }
 
+  std::string key_state() const override
+  {
+    return fmt::format("displacement {:+.4g} m  force {:.4g} kN/m", run_.time() * scene_.plate.displacement,
+                       result_.last / 1e3);
+  }
   bool is_done() const override { return run_.n_steps() >= scene_.plate.steps; }
   double n_total() const override { return scene_.plate.steps; }
   void add_to(ColumnCheckpoint &checkpoint) override
