@@ -63,7 +63,7 @@ std::vector<double> Micromechanics::row() const
 {
   std::vector<double> values;
   for (const Column &column : table)
-    values.push_back(column.value(*this));
+    values.push_back(column.value(*this) + 0.0); // 0 for -0, whose sign a sum over ranks would lose
   return values;
 }
 
