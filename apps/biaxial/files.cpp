@@ -4,6 +4,7 @@
 #include "apps/deposit/instant.hpp"
 #include "base/error.hpp"
 #include "base/files/hdf5.hpp"
+#include "base/files/replace_file.hpp"
 #include "base/files/vtk_xml.hpp"
 #include "base/record/file_format.hpp"
 #include "dem/measure/summary.hpp"
@@ -73,7 +74,7 @@ PointState point_state(const Gradient &gradient, const Stress &stress)
 BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material, bool undrained,
                        std::size_t n_maps)
     : folder_(std::move(folder)), space_(space), material_(material),
-      pictures_((fs::create_directories(folder_ / "paraview"), folder_ / "paraview/block.pvd"), n_maps),
+      pictures_((make_folder(folder_ / "paraview"), folder_ / "paraview/block.pvd"), n_maps),
       quantities_{{"shear_strain", "-", &PointState::shear},
                   {"volumetric_strain", "-", &PointState::volumetric},
                   {"p", "Pa", &PointState::p},

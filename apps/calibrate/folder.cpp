@@ -39,8 +39,8 @@ void open_calibration_folder(const fs::path &folder, const CalibrationPlan &plan
   open_campaign_folder(
       folder, "plan.toml", [&] { check_calibration_folder(folder, plan, scene); }, overwrite);
   write_replacing(folder / "plan.toml", to_toml(plan));
-  fs::create_directories(folder / "laboratory");
-  fs::create_directories(folder / "runs");
+  make_folder(folder / "laboratory");
+  make_folder(folder / "runs");
   write_replacing(folder / "scene.toml", scene);
   for (const PlanCurve &curve : plan.curves)
     write_replacing(laboratory_file(folder, curve), read_text(curve.path));

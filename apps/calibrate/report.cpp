@@ -176,7 +176,7 @@ Json to_json(const CalibrationResult &r)
 std::string write_report(const CalibrationResult &result, const fs::path &folder)
 {
   const std::vector<double> &best = result.trials.all()[result.best].values;
-  fs::create_directories(folder / "best");
+  make_folder(folder / "best");
   write_replacing(folder / "best_scene.toml", to_toml(result.scenes.full_scene(best)));
   for (const PlanCurve &curve : result.plan.curves)
     write_replacing(folder / "best" / (curve.name + ".toml"), to_toml(result.scenes.full_test(best, curve)));

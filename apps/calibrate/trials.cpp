@@ -107,7 +107,7 @@ bool Trials::needs_run(const Run &run) const
   const fs::path at = place(run);
   if (fs::exists(with_ending(at, ".failed")))
     return false;
-  fs::create_directories(at.parent_path());
+  make_folder(at.parent_path());
   try
     {
       const Scene scene = scenes_.trial(trials_[run.trial].values, plan_.curves[run.curve], run.seed);

@@ -3,6 +3,7 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/files/replace_file.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <fmt/format.h>
@@ -43,9 +44,9 @@ RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::st
       chains_(folder_ / "force_chains.pvd", scene.output.paraview ? written_.snapshots : 0), progress_(quiet)
 {
   if (scene.output.snapshots != "none")
-    fs::create_directories(folder_ / "snapshots");
+    make_folder(folder_ / "snapshots");
   if (scene.output.paraview)
-    fs::create_directories(folder_ / "paraview");
+    make_folder(folder_ / "paraview");
 }
 
 void RunOutput::record(const Assembly &assembly, const DriveState &state, const Observation &seen, bool snapshot)

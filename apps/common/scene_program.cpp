@@ -114,7 +114,8 @@ void tell_finished(const std::filesystem::path &folder, const char *program, boo
 
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene)
 {
-  if (use != FolderUse::resume || !std::filesystem::exists(folder / "summary.json"))
+  if (use != FolderUse::resume || !std::filesystem::exists(folder / "summary.json") ||
+      !std::filesystem::exists(folder / "summary.txt")) // the last of its files
     return false;
   check_same_scene(folder, read_scene_text((folder / "scene.toml").string()), scene);
   return true;

@@ -80,7 +80,7 @@ void TaskQueue::remove_all(const char *ending) const
 
 void TaskQueue::lead()
 {
-  fs::create_directories(folder_);
+  make_folder(folder_);
   if (!within_patience([&] { return static_cast<bool>(leader_ = FileLock::attempt(folder_ / "leader")); }))
     throw InputError(fmt::format("{}: another process leads the runs in it. Wait for it, or give another --output.",
                                  folder_.string()));

@@ -2,6 +2,7 @@
 #include "apps/deposit/grain_files.hpp"
 
 #include "apps/deposit/ranks.hpp"
+#include "base/files/replace_file.hpp"
 #include "coupling/element/strain_record.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/vtp.hpp"
@@ -82,7 +83,7 @@ void GrainFiles::open(const ColumnCheckpoint *resumed)
     open(history_, "grain_history", counter(resumed, "grain_rows"));
     open(profiles_, "grain_profiles", counter(resumed, "grain_profiles"));
     if (!pictured_.empty())
-      fs::create_directories(folder_ / "grains");
+      make_folder(folder_ / "grains");
     for (std::size_t k = 0; k < pictured_.size(); ++k)
       pictures_.push_back(
           std::make_unique<PvdCollection>(folder_ / "grains" / fmt::format("d{}.pvd", k), n_snapshots_));

@@ -128,7 +128,7 @@ void Campaign::open(bool overwrite, const std::string &command_line)
       folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); }, overwrite);
   write_provenance(folder_, shared_, command_line);
   for (const char *part : {"scenes", "runs", "logs"})
-    fs::create_directories(folder_ / part);
+    make_folder(folder_ / part);
   for (Run &run : runs)
     {
       write_replacing(scene_file(run), to_toml(run.scene));

@@ -41,7 +41,7 @@ public:
         options_.overwrite);
     write_provenance(folder_, to_toml(shared_), options_.command_line, {});
     for (const char *part : {"scenes", "members", "logs"})
-      fs::create_directories(folder_ / part);
+      make_folder(folder_ / part);
     for (const EnsembleMember &member : members_)
       write_replacing(scene_file(member), to_toml(member.scene));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/files.hpp"
 
+#include "base/files/replace_file.hpp"
+
 #include <fmt/format.h>
 
 namespace isostat
@@ -43,7 +45,7 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
                                       counter(resumed, "profiles"), packings_);
   if (paraview_)
     {
-      fs::create_directories(folder_ / "paraview");
+      make_folder(folder_ / "paraview");
       pvd_ = std::make_unique<PvdCollection>(folder_ / "paraview" / "column.pvd", counter(resumed, "paraview"));
     }
 }

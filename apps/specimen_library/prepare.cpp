@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/files/file_lock.hpp"
 #include "base/files/hash.hpp"
+#include "base/files/replace_file.hpp"
 #include "base/record/progress.hpp"
 #include "dem/prepare/specimen.hpp"
 
@@ -163,7 +164,7 @@ void work(Queue &queue, const fs::path &cache)
 
 void prepare_side_by_side(std::vector<Task> &tasks, const fs::path &cache, const PreparationShare &share)
 {
-  fs::create_directories(cache);
+  make_folder(cache);
   Queue queue(tasks, cache, share);
   std::vector<std::jthread> threads;
   const std::size_t n_threads = std::min(tasks.size(), static_cast<std::size_t>(std::max(1, share.jobs)));

@@ -82,10 +82,10 @@ private:
   std::string path_;
 };
 
-/// An open HDF5 file; closed by its destructor.
+/// An open HDF5 file; closed when it and its groups are gone.
 ///
-/// What is written goes to `path`.tmp; commit() brings it to the disk and renames it to `path` in one step. A reader
-/// sees the old file or the new one, never half a file. Destroyed without commit(), the file is as before.
+/// What is written stays in memory; commit() brings it to the disk as `path`.tmp, which it renames to `path` in one step. A
+/// reader sees the old file or the new one, never half a file. Destroyed without commit(), the file is as before.
 class File
 {
 public:
@@ -93,15 +93,11 @@ public:
   static File open(const std::filesystem::path &path);
   /// For writing, empty. RunFailure if the folder is missing or not writable.
   static File create(const std::filesystem::path &path);
-  /// For writing, starting from a copy of what is there.   cost: one copy of the file
+  /// For writing, starting from a copy of what is there.   cost: twice the file in memory
   static File update(const std::filesystem::path &path);
 
-  File(File &&) = default;
-  File &operator=(File &&other) noexcept;
-  ~File();
-
   Group root() const { return {state_, "/"}; }
-  /// Ends writing: flush, close, fsync, rename. Groups of this file are invalid from here on.
+  /// Ends writing: close, write, fsync, rename. Groups of this file are invalid from here on.
   /// @pre the file was opened by create() or update() and not yet committed
   void commit();
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files as a whole: opened, written aside, committed or abandoned.
+// Files as a whole: opened, written in memory, committed.
 #include "base/files/hdf5_handles.hpp"
 
 #include "base/error.hpp"
+#include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
 
+#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 namespace isostat::hdf5
@@ -43,14 +43,43 @@ std::string library_reason()
   return reason.empty() ? reason : fmt::format(" (HDF5: {})", reason);
 }
 
-/// Opens the bytes at `where` in the name of `state.path`.
-void open_existing(FileState &state, const fs::path &where, unsigned mode)
+/// Opens the bytes in the name of `state.path`.
+void open_existing(FileState &state, const std::string &name, unsigned mode, hid_t access)
 {
-  state.id = H5Fopen(where.c_str(), mode, H5P_DEFAULT);
+  state.id = H5Fopen(name.c_str(), mode, access);
   if (state.id < 0)
     throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again, or delete it if it is "
                                  "a cache",
                                  state.path.string(), library_reason()));
+}
+
+/// A name that no other file in memory has, by which HDF5 tells them apart.
+std::string name_in_memory()
+{
+  static std::atomic<unsigned long> n{0};
+  return fmt::format("memory-{}", n++);
+}
+
+/// To write to memory, in pieces of a megabyte; nothing is set aside for later, which would stay in the file.
+Handle memory_access(const FileState &file)
+{
+  Handle access = checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file, "the file", "no memory");
+  if (H5Pset_fapl_core(access, 1 << 20, false) < 0 || H5Pset_meta_block_size(access, 0) < 0 ||
+      H5Pset_small_data_block_size(access, 0) < 0)
+    fail(file, "the file", "no access to memory");
+  return access;
+}
+
+/// All bytes of a file that is open in memory.
+std::string bytes_of(const FileState &file)
+{
+  if (H5Fflush(file.id, H5F_SCOPE_GLOBAL) < 0)
+    fail(file, "the file", "flushing failed");
+  const ssize_t size = H5Fget_file_image(file.id, nullptr, 0);
+  std::string bytes(size < 0 ? 0 : static_cast<std::size_t>(size), 0);
+  if (size < 0 || H5Fget_file_image(file.id, bytes.data(), bytes.size()) != size)
+    fail(file, "the file", "its bytes cannot be had");
+  return bytes;
 }
 
 void require_hdf5(const fs::path &path)
@@ -73,7 +102,7 @@ void require_hdf5(const fs::path &path)
 
 void fail(const FileState &file, const std::string &item, const std::string &what)
 {
-  if (file.writing())
+  if (file.writing)
     throw RunFailure(fmt::format("{}: cannot write {}: {}{}; check free space and permissions of the folder",
                                  file.path.string(), item, what, library_reason()));
   throw InputError(
@@ -81,103 +110,47 @@ void fail(const FileState &file, const std::string &item, const std::string &wha
                   file.path.string(), item, what, library_reason()));
 }
 
-void FileState::close()
-{
-  if (id >= 0)
-    H5Fclose(id);
-  id = -1;
-}
-
-int FileState::descriptor() const
-{
-  void *found = nullptr;
-  return H5Fget_vfd_handle(id, H5P_DEFAULT, &found) < 0 ? -1 : *static_cast<int *>(found);
-}
-
-int FileState::reserve() const
-{
-  hsize_t bytes = 0;
-  return H5Fget_filesize(id, &bytes) < 0 ? 0 : ::posix_fallocate(descriptor(), 0, static_cast<off_t>(bytes));
-}
-
-void FileState::abandon()
-{
-  if (writing() && id >= 0) // what HDF5 still writes goes to memory
-    {
-      const int memory = ::memfd_create("abandoned", 0);
-      ::dup2(memory, descriptor());
-      ::close(memory);
-    }
-  close();
-  std::error_code ignored;
-  if (writing())
-    fs::remove(aside, ignored);
-  aside.clear();
-}
-
 File File::open(const fs::path &path)
 {
   require_hdf5(path);
-  auto state = std::make_shared<FileState>();
-  state->path = path;
-  open_existing(*state, path, H5F_ACC_RDONLY);
+  auto state = std::make_shared<FileState>(path, false);
+  open_existing(*state, path, H5F_ACC_RDONLY, H5P_DEFAULT);
   return File(state);
 }
 
 File File::create(const fs::path &path)
 {
   silence();
-  auto state = std::make_shared<FileState>();
-  state->path = path;
-  const fs::path aside = path.string() + ".tmp";
-  state->aside = aside;
-  state->id = H5Fcreate(aside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw RunFailure(fmt::format("{}: cannot create the file: {}; the folder must exist, be writable and have free "
+                                 "space",
+                                 path.string(), std::strerror(errno)));
+  auto state = std::make_shared<FileState>(path, true);
+  state->id = H5Fcreate(name_in_memory().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory_access(*state));
   if (state->id < 0)
-    throw RunFailure(fmt::format("{}: cannot create the file{}; the folder must exist, be writable and have free space",
-                                 path.string(), library_reason()));
+    fail(*state, "the file", "it cannot be made in memory");
   return File(state);
 }
 
 File File::update(const fs::path &path)
 {
   require_hdf5(path);
-  auto state = std::make_shared<FileState>();
-  state->path = path;
-  state->aside = path.string() + ".tmp";
-  std::error_code error;
-  fs::copy_file(path, state->aside, fs::copy_options::overwrite_existing, error);
-  if (error)
-    fail(*state, "a copy of it", error.message());
-  open_existing(*state, state->aside, H5F_ACC_RDWR);
+  auto state = std::make_shared<FileState>(path, true);
+  std::string bytes = read_text(path);
+  const Handle access = memory_access(*state);
+  if (H5Pset_file_image(access, bytes.data(), bytes.size()) < 0)
+    fail(*state, "a copy of it", "no memory");
+  open_existing(*state, name_in_memory(), H5F_ACC_RDWR, access);
   return File(state);
-}
-
-File &File::operator=(File &&other) noexcept
-{
-  if (this != &other && state_)
-    state_->abandon();
-  state_ = std::move(other.state_);
-  return *this;
-}
-
-File::~File()
-{
-  if (state_)
-    state_->abandon();
 }
 
 void File::commit()
 {
   FileState &file = *state_;
-  assert(file.writing() && file.id >= 0);
-  if (const int code = file.reserve())
-    fail(file, "the file", std::strerror(code));
-  if (H5Fflush(file.id, H5F_SCOPE_GLOBAL) < 0)
-    fail(file, "the file", "flushing failed");
-  if (H5Fclose(file.id) < 0)
-    fail(file, "the file", "closing failed");
-  file.id = -1;
-  replace_file(file.aside, file.path);
-  file.aside.clear();
+  assert(file.writing && file.id >= 0);
+  const std::string bytes = bytes_of(file);
+  file.close();
+  write_replacing(file.path, bytes);
 }
 } // namespace isostat::hdf5

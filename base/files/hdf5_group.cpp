@@ -176,7 +176,7 @@ Group Group::group(const std::string &name) const
 
 Group Group::create_group(const std::string &name)
 {
-  assert(file_->id >= 0 && file_->writing());
+  assert(file_->id >= 0 && file_->writing);
   const Handle made = checked(H5Gcreate2(file_->id, child(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                               H5Gclose, *file_, child(name), "creating the group failed (does it exist already?)");
   return {file_, child(name)};
@@ -237,7 +237,7 @@ void Group::set_attribute(const std::string &name, const std::variant<double, st
 template <typename T>
 void Group::put(const std::string &name, std::span<const T> values, const std::string &unit, std::size_t n_columns)
 {
-  assert(file_->id >= 0 && file_->writing() && n_columns > 0 && values.size() % n_columns == 0);
+  assert(file_->id >= 0 && file_->writing && n_columns > 0 && values.size() % n_columns == 0);
   const hsize_t dims[2] = {values.size() / n_columns, n_columns};
   const Handle space(H5Screate_simple(n_columns == 1 ? 1 : 2, dims, nullptr), H5Sclose),
       layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -253,7 +253,7 @@ void Group::put(const std::string &name, std::span<const T> values, const std::s
 void Group::create_series(const std::string &name, const std::string &unit, std::size_t n_columns,
                           std::size_t rows_per_chunk)
 {
-  assert(file_->id >= 0 && file_->writing() && n_columns > 0 && rows_per_chunk > 0);
+  assert(file_->id >= 0 && file_->writing && n_columns > 0 && rows_per_chunk > 0);
   const hsize_t dims[2] = {0, n_columns}, limits[2] = {H5S_UNLIMITED, n_columns},
                 chunk[2] = {rows_per_chunk, n_columns};
   const int rank = n_columns == 1 ? 1 : 2;

@@ -12,44 +12,59 @@
 
 namespace isostat
 {
+namespace fs = std::filesystem;
+
 namespace
 {
-[[noreturn]] void fail(const std::filesystem::path &path, const std::string &reason)
+[[noreturn]] void fail(const fs::path &path, const char *what, const std::string &reason)
 {
   throw RunFailure(
-      fmt::format("{}: cannot be written: {}; check free space and permissions of the folder", path.string(), reason));
-}
-} // namespace
-
-void replace_file(const std::filesystem::path &aside, const std::filesystem::path &path)
-{
-  const int descriptor = ::open(aside.c_str(), O_RDONLY);
-  const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int code = errno;
-  if (descriptor >= 0)
-    ::close(descriptor);
-  if (!on_disk)
-    fail(path, std::strerror(code));
-  std::error_code error;
-  std::filesystem::rename(aside, path, error);
-  if (error)
-    fail(path, error.message());
+      fmt::format("{}: cannot be {}: {}; check free space and permissions of the folder", path.string(), what, reason));
 }
 
-void write_replacing(const std::filesystem::path &path, const std::string &text)
+/// @return errno; 0 if all of it is on the disk
+int bring_to_disk(const fs::path &path, std::string_view text)
 {
-  const std::filesystem::path aside = path.string() + ".tmp";
   errno = 0;
-  std::ofstream out(aside, std::ios::binary | std::ios::trunc);
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out)
-    {
-      const std::string reason = std::strerror(errno);
-      std::error_code ignored;
-      std::filesystem::remove(aside, ignored);
-      fail(path, reason);
-    }
-  replace_file(aside, path);
+    return errno ? errno : EIO;
+  const int descriptor = ::open(path.c_str(), O_RDONLY);
+  const int code = descriptor >= 0 && ::fsync(descriptor) == 0 ? 0 : errno;
+  if (descriptor >= 0)
+    ::close(descriptor);
+  return code;
+}
+} // namespace
+
+void write_replacing(const fs::path &path, std::string_view text)
+{
+  const fs::path aside = path.string() + ".tmp";
+  int code = bring_to_disk(aside, text);
+  if (code == 0 && ::rename(aside.c_str(), path.c_str()) != 0)
+    code = errno;
+  if (code == 0)
+    return;
+  std::error_code ignored;
+  fs::remove(aside, ignored);
+  fail(path, "written", std::strerror(code));
+}
+
+void rename_file(const fs::path &from, const fs::path &to)
+{
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error)
+    fail(from, "renamed", error.message());
+}
+
+void make_folder(const fs::path &folder)
+{
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    fail(folder, "made", error.message());
 }
 } // namespace isostat

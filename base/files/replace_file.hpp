@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/kill_resume_test.py
+// Files and folders, made or told why not.   tested: tests/apps/kill_resume_test.py, tests/apps/failures_test.py
 #pragma once
 #include <filesystem>
-#include <string>
+#include <string_view>
 
 namespace isostat
 {
-/// Brings `aside` to the disk (fsync) and gives it the name `path` in one step: whoever reads `path` sees the old
-/// content or the new, never a part. `aside` must lie in the same folder. Throws RunFailure.
-void replace_file(const std::filesystem::path &aside, const std::filesystem::path &path);
+/// Writes `text` to `path`.tmp, brings it to the disk (fsync) and gives it the name `path` in one step: whoever reads
+/// `path` sees the old content or the new, never a part. Throws RunFailure if that fails: `path` is as it was then, and
+/// `path`.tmp gone.
+void write_replacing(const std::filesystem::path &path, std::string_view text);
 
-/// Writes `text` to `path`.tmp, then replaces `path`. Throws RunFailure and leaves `path` as it was if that fails.
-void write_replacing(const std::filesystem::path &path, const std::string &text);
+/// Gives a file another name of the same folder, in one step.   @throws RunFailure  it cannot be done
+void rename_file(const std::filesystem::path &from, const std::filesystem::path &to);
+
+/// Makes a folder with those above it.   @throws RunFailure  it cannot be made
+void make_folder(const std::filesystem::path &folder);
 } // namespace isostat

@@ -2,6 +2,7 @@
 #include "base/record/checkpoint_folder.hpp"
 
 #include "base/error.hpp"
+#include "base/files/replace_file.hpp"
 
 #include <fmt/format.h>
 
@@ -11,15 +12,15 @@ namespace fs = std::filesystem;
 
 void write_newest(const fs::path &folder, const std::function<void(hdf5::Group root)> &fill)
 {
-  fs::create_directories(folder);
+  make_folder(folder);
   const fs::path last = folder / "last.h5", fresh = folder / "fresh.h5";
   hdf5::File file = hdf5::File::create(fresh);
   fill(file.root());
   file.commit();
   // each rename is one step; between them previous.h5 and fresh.h5 are whole
   if (fs::exists(last))
-    fs::rename(last, folder / "previous.h5");
-  fs::rename(fresh, last);
+    rename_file(last, folder / "previous.h5");
+  rename_file(fresh, last);
 }
 
 void read_newest(const fs::path &folder, const std::function<void(const fs::path &)> &read)

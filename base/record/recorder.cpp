@@ -32,11 +32,7 @@ Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, st
   for ([[maybe_unused]] const RecordColumn &column : columns_)
     assert(!column.name.empty() && (column.name + column.unit).find_first_of(",\n\r") == std::string::npos &&
            column.name.find('/') == std::string::npos);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw RunFailure(
-        fmt::format("{}: cannot make the folder: {}; choose another output folder", folder.string(), error.message()));
+  make_folder(folder);
   if (resume_rows == 0)
     start_anew(scene);
   else

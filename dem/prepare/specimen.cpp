@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/hash.hpp"
+#include "base/files/replace_file.hpp"
 #include "dem/io/packing_files.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
@@ -304,7 +305,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
   Specimen specimen = prepare(scene, observer, threads);
   {
     const std::lock_guard lock(hdf5_access);
-    std::filesystem::create_directories(cache);
+    make_folder(cache);
     write_specimen(path, specimen);
   }
   observer.event("specimen kept in " + path.string());
