@@ -84,7 +84,7 @@ protected:
   virtual bool is_done() const = 0;
   virtual double n_total() const = 0; ///< steps
   /// What a line of progress tells besides how far the run is.
-  virtual std::string key_state() const
+  virtual std::string key_state()
   {
     const ColumnState &now = files_.history().state;
     return fmt::format("t {:.4g} s  a_surface {:+.3g} m/s2  r_u {:.3f}  p'/p0' {:.3f}", now.time,

@@ -87,7 +87,7 @@ private:
                     effort.substeps, run_.residual()));
   }
 
-  std::string key_state() const override
+  std::string key_state() override
   {
     return fmt::format("displacement {:+.4g} m  force {:.4g} kN/m", run_.time() * scene_.plate.displacement,
                        result_.last / 1e3);

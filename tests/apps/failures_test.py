@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls that fail (tests/support/failing_calls.cpp): whatever open, write, fsync, rename or mkdir of a run is refused, once
+or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run goes on to the same
+files. Some calls of each kind here; all of them with ISOSTAT_EVERY_CALL=1."""
+import collections
+import errno
+import os
+import pathlib
+import subprocess
+
+from biaxial_test import FRICTION
+from support import BIN, PATIENCE, AppTest, main, tiny_scene
+
+KINDS = ("open", "write", "fsync", "rename", "mkdir")
+LIBRARY = BIN.parent / "tests/libfailing_calls.so"
+SAVED = ("--set", "output.checkpoint=1e-9 min")
+EVERY = bool(os.environ.get("ISOSTAT_EVERY_CALL"))
+COLUMN = """[[layer]]
+thickness = "4 m"
+cells = 4
+density = "1900 kg/m3"
+permeability = "1e-4 m/s"
+material = "iwan"
+shear_velocity = "140 m/s"
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.1 g"
+frequency = "2 Hz"
+duration = "1 s"
+[analysis]
+duration = "0.6 s"
+[output]
+depths = ["1 m"]
+profile_interval = "0.2 s"
+paraview_interval = "0.3 s"
+"""
+
+
+class Failures(AppTest):
+    def run_failing(self, command, kind="none", at=0, calls=0, code=errno.ENOSPC):
+        count = self.folder / "calls.txt"
+        plan = {"LD_PRELOAD": LIBRARY, "FAILING_KIND": kind, "FAILING_UNDER": self.folder / "out", "FAILING_AT": at,
+                "FAILING_CALLS": calls, "FAILING_CODE": code, "FAILING_COUNT": count}
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
+                                check=False, env=os.environ | {name: str(value) for name, value in plan.items()})
+        return result, int(count.read_text(encoding="utf-8"))
+
+    def files(self, folder):
+        """Results with their bytes, but what tells of times and calls, and the checkpoints, which a failure may move."""
+        root = self.folder / folder
+        return {path.relative_to(root): path.read_bytes() for path in root.rglob("*") if path.is_file()
+                and path.name not in ("provenance.txt", "times.json", "summary.json", "summary.txt")
+                and "checkpoint" not in path.parts}
+
+    def empty(self):
+        subprocess.run(["rm", "-rf", self.folder / "out"], check=True)
+
+    def goes_on(self, program, arguments):
+        """As the messages say: from the checkpoint, or anew."""
+        checkpoints = self.folder / "out/checkpoint"
+        resumable = checkpoints.is_dir() and any(checkpoints.glob("*.h5"))
+        result = self.run_app(program, *arguments, "-o", "out", "--no-figures", "-q",
+                              "--resume" if resumable else "--overwrite")
+        if not resumable and "holds no scene.toml" in result.stderr:
+            self.empty()
+            result = self.run_app(program, *arguments, "-o", "out", "--no-figures", "-q")
+        self.assert_done(result)
+        self.assertTrue((self.folder / "out/summary.txt").is_file())
+
+    def every_call(self, program, *arguments, most=6):
+        """@param most  calls of a kind and a way of failing that are tried, unless all are"""
+        self.assert_done(self.run_app(program, *arguments, "-o", "whole", "--no-figures", "-q"))
+        whole = self.files("whole")
+        self.assertGreater(len(whole), 2)
+        command = self.command(program, *arguments, "-o", "out", "--no-figures", "-q")
+        tried = collections.Counter()
+        for kind in KINDS:
+            self.empty()
+            result, n = self.run_failing(command, kind)
+            self.assert_done(result)
+            self.assertEqual(self.files("out"), whole, "a run that is watched is the same")
+            self.assertGreater(n, 0, kind)
+            for calls in (1, 0):  # one call; all from then on
+                for at in range(1, n + 1, 1 if EVERY else max(1, -(-n // most))):
+                    with self.subTest(program=program, kind=kind, at=at, calls=calls):
+                        self.empty()
+                        result, _ = self.run_failing(command, kind, at, calls)
+                        tried[kind] += 1
+                        self.assertIn(result.returncode, (1, 2), result.stderr)
+                        self.assertIn(os.strerror(errno.ENOSPC), result.stderr)
+                        self.assertRegex(result.stderr, "check free space|Give (a path|another one)")
+                        out = pathlib.Path(self.folder / "out")
+                        if calls == 1 and out.is_dir():
+                            self.assertEqual(list(out.rglob("*.tmp")), [], "what was written aside is gone")
+                        self.goes_on(program, arguments)
+                        self.assertEqual(self.files("out"), whole)
+        print(f"  {program}: {dict(tried)} failures", flush=True)
+
+    def test_element_test(self):
+        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
+                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 600\n'))
+        self.every_call("element_test", scene, *SAVED)
+
+    def test_biaxial(self):
+        self.every_call("biaxial", self.write("block.toml", FRICTION), *SAVED)
+
+    def test_soil_column(self):
+        self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED)
+
+
+if __name__ == "__main__":
+    main()
