@@ -32,6 +32,7 @@ StaticsSettings settings_of(const BiaxialScene &scene)
   settings.displacements = {{{Face::surface, 2}, [=](double t, const Place &) { return -way * t / end; }}};
   settings.newton = scene.newton;
   settings.min_force = scene.test.confinement * scene.mesh.width;
+  settings.gives_up = stop_requested;
   return settings;
 }
 
@@ -235,7 +236,14 @@ private:
 
   void step()
   {
-    statics_.step((summary_.steps + 1.0) / scene_.test.steps * end_of(scene_) - statics_.time());
+    try
+      {
+        statics_.step((summary_.steps + 1.0) / scene_.test.steps * end_of(scene_) - statics_.time());
+      }
+    catch (const StepGivenUp &) // a step of packings takes minutes
+      {
+        stop();
+      }
     ++summary_.steps;
     const StaticsEffort &effort = statics_.effort();
     summary_.iterations += effort.iterations;

@@ -92,7 +92,18 @@ void Statics::advance(double duration, bool flow)
     {
       size = std::min(size, 1 - done);
       load_at(done + size);
-      if (solve_substep(duration * size))
+      bool solved = false;
+      try
+        {
+          solved = solve_substep(duration * size);
+        }
+      catch (const StepGivenUp &)
+        {
+          material_.rollback();
+          load_at(done);
+          throw;
+        }
+      if (solved)
         {
           accept(duration * size);
           done += size;

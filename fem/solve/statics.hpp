@@ -40,7 +40,14 @@ struct StaticsSettings
   bool settles = false;
   NewtonSettings newton = {};
   double min_force = 0; ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
+  /// Asked before each trial of the material in a step of which nothing is kept yet; true: the step is given up.
+  /// Empty: never.
+  std::function<bool()> gives_up = {};
 };
+
+/// A step was given up (StaticsSettings::gives_up); the state is that before it.
+struct StepGivenUp
+{};
 
 /// What the last step took.
 struct StaticsEffort
@@ -84,6 +91,7 @@ public:
   ~Statics();
 
   /// On by `duration` seconds; 0 (a jump of the load) is possible without pore water only.
+  /// @throws StepGivenUp  settings.gives_up said so
   /// @throws RunFailure  the smallest sub-step has no solution: step, time, residual, reason. The state is that of the
   ///         last good sub-step, time() tells
   /// @throws InputError  negative duration

@@ -149,6 +149,8 @@ void Statics::set_part(double part)
 /// Stress and residual of du_, dp_. False if the material refuses, or answers with what is no number.
 bool Statics::evaluate()
 {
+  if (settings_.gives_up && effort_.substeps == 0 && settings_.gives_up())
+    throw StepGivenUp();
   if (space_.shared_out())
     du_.update_ghost_values();
   space_.gradients(du_, increments_);

@@ -44,6 +44,34 @@ TEST(StaticsFailure, RefusedIncrementsAreHalved)
   EXPECT_LT(statics.effort().substeps, before);
 }
 
+/// Given up after some trials, the state is the one before the step, to the bit.
+TEST(StaticsFailure, AStepThatIsGivenUpLeavesNoTrace)
+{
+  const Discretisation<1> space(sheared_column_mesh(), fixed_base());
+  const auto top = static_cast<unsigned>(space.find_dof({0, 0, 1}, 0));
+  double found[2];
+  for (const bool interrupted : {false, true})
+    {
+      SecantMaterial soil(1e8, hyperbola(5e7, 1e5), space.n_points());
+      StaticsSettings settings = sheared(0.8e5);
+      unsigned trials = 0;
+      settings.gives_up = [&] { return ++trials == (interrupted ? 6u : 0u); };
+      Statics statics(space, soil, settings);
+      statics.step(0.5);
+      if (interrupted)
+        {
+          ASSERT_LT(trials, 6u);
+          trials = 4; // two more trials of the next step
+          EXPECT_THROW(statics.step(0.5), StepGivenUp);
+          EXPECT_EQ(statics.n_steps(), 1u);
+          EXPECT_EQ(statics.time(), 0.5);
+        }
+      statics.step(0.5);
+      found[interrupted] = statics.displacement().local_element(top);
+    }
+  EXPECT_EQ(found[0], found[1]);
+}
+
 /// More than the strength: the state is the last one that stands, just below it, and a smaller load goes on from there.
 TEST(StaticsFailure, MoreThanTheStrength)
 {
