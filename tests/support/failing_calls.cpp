@@ -69,10 +69,10 @@ __attribute__((destructor)) void write_count()
   if (!planned || !plan.count)
     return;
   planned = false;
-  if (std::FILE *file = std::fopen(plan.count, "w"))
+  if (const int file = ::creat(plan.count, 0644); file >= 0)
     {
-      std::fprintf(file, "%ld\n", calls.load());
-      std::fclose(file);
+      ::dprintf(file, "%ld\n", calls.load());
+      ::close(file);
     }
 }
 
