@@ -106,24 +106,13 @@ public:
         record();
         files_->map(0, statics_);
       }
-    try
+    while (summary_.steps < scene_.test.steps && finds_equilibrium())
       {
-        while (summary_.steps < scene_.test.steps)
-          {
-            if (stop_requested())
-              stop();
-            step();
-            if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
-              save();
-          }
-        summary_.complete = true;
+        follow();
+        if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
+          save();
       }
-    catch (const RunFailure &failure)
-      {
-        summary_.failure = failure.what();
-        back_to_committed();
-        files_->map(statics_.time() / end_of(scene_) * scene_.test.axial_strain, statics_); // of the last good sub-step
-      }
+    summary_.complete = summary_.failure.empty();
     return with_costs();
   }
 
@@ -234,16 +223,32 @@ private:
            (scene_.mesh.width * scene_.mesh.height);
   }
 
-  void step()
+  /// The next load step. False, with what there is to say and a map of the last good sub-step, if it has none.
+  bool finds_equilibrium()
   {
+    if (stop_requested())
+      stop();
     try
       {
         statics_.step((summary_.steps + 1.0) / scene_.test.steps * end_of(scene_) - statics_.time());
+        return true;
       }
     catch (const StepGivenUp &) // a step of packings takes minutes
       {
         stop();
       }
+    catch (const RunFailure &failure)
+      {
+        summary_.failure = failure.what();
+      }
+    back_to_committed();
+    files_->map(statics_.time() / end_of(scene_) * scene_.test.axial_strain, statics_);
+    return false;
+  }
+
+  /// What is written and said of a step.
+  void follow()
+  {
     ++summary_.steps;
     const StaticsEffort &effort = statics_.effort();
     summary_.iterations += effort.iterations;

@@ -41,7 +41,8 @@ paraview_interval = "0.3 s"
 class Failures(AppTest):
     def run_failing(self, command, kind="none", at=0, calls=0, code=errno.ENOSPC):
         count = self.folder / "calls.txt"
-        plan = {"LD_PRELOAD": LIBRARY, "FAILING_KIND": kind, "FAILING_UNDER": self.folder / "out", "FAILING_AT": at,
+        plan = {"LD_PRELOAD": LIBRARY, "FAILING_KIND": kind, "FAILING_PROGRAM": pathlib.Path(command[0]).name,
+                "FAILING_UNDER": self.folder / "out", "FAILING_AT": at,
                 "FAILING_CALLS": calls, "FAILING_CODE": code, "FAILING_COUNT": count}
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
                                 check=False, env=os.environ | {name: str(value) for name, value in plan.items()})

@@ -6,6 +6,7 @@
 //   FAILING_AT      number of the first call that fails, counted from 1; 0: none
 //   FAILING_CALLS   how many fail from there on; left out: all
 //   FAILING_CODE    errno, ENOSPC if left out
+//   FAILING_PROGRAM name of the program that is meant, not those that it starts
 //   FAILING_COUNT   a file that gets the number of calls when the program ends
 //
 // Used by tests/apps/failures_test.py.
@@ -61,7 +62,8 @@ __attribute__((constructor)) void read_plan()
     plan.last = plan.at + n - 1;
   plan.code = static_cast<int>(number("FAILING_CODE", ENOSPC));
   plan.mallocs = std::strcmp(plan.kind, "malloc") == 0;
-  planned = *plan.kind != 0;
+  const char *program = std::getenv("FAILING_PROGRAM");
+  planned = *plan.kind != 0 && program && std::strcmp(program, program_invocation_short_name) == 0;
 }
 
 __attribute__((destructor)) void write_count()
