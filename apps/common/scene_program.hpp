@@ -59,7 +59,8 @@ std::string first_difference(const std::string &one, const std::string &other);
 /// A run is resumed with the scene of its checkpoint only.   @throws InputError  the scenes differ
 void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene);
 
-/// Whether a run that --resume asks for has finished: its summaries are there.   @throws InputError  it was another scene
+/// Whether a run that --resume asks for has finished: its summaries are there.
+/// @throws InputError  it was another scene
 /// tested: tests/apps/kill_resume_test.py, tests/apps/soil_column_resume_test.py
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene);
 

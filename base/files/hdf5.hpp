@@ -84,8 +84,8 @@ private:
 
 /// An open HDF5 file; closed when it and its groups are gone.
 ///
-/// What is written stays in memory; commit() brings it to the disk as `path`.tmp, which it renames to `path` in one step. A
-/// reader sees the old file or the new one, never half a file. Destroyed without commit(), the file is as before.
+/// What is written stays in memory; commit() brings it to the disk as `path`.tmp, which it renames to `path` in one
+/// step. A reader sees the old file or the new one, never half a file. Destroyed without commit(), it is as before.
 class File
 {
 public:

@@ -8,8 +8,8 @@
 
 namespace isostat::hdf5
 {
-/// An open file. HDF5 1.10 cannot close a file whose last bytes it could not write, and crashes on it later. So it writes
-/// to memory alone, and File::commit() brings the bytes to the disk: a disk that fails is no matter of HDF5's.
+/// An open file. HDF5 1.10 cannot close a file whose last bytes it could not write, and crashes on it later. So it
+/// writes to memory alone, and File::commit() brings the bytes to the disk: a disk that fails is no matter of HDF5's.
 /// tested: tests/base/files/hdf5_test.cpp, tests/apps/failures_test.py
 struct FileState
 {

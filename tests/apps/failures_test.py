@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Calls that fail (tests/support/failing_calls.cpp): whatever open, write, fsync, rename or mkdir of a run is refused, once
-or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run goes on to the same
-files. Some calls of each kind here; all of them with ISOSTAT_EVERY_CALL=1."""
+"""Calls that fail (tests/support/failing_calls.cpp): whatever open, write, fsync, rename or mkdir of a run is refused,
+once or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run goes on to the
+same files. Some calls of each kind here; all of them with ISOSTAT_EVERY_CALL=1."""
 import collections
 import errno
 import os
@@ -49,7 +49,7 @@ class Failures(AppTest):
         return result, int(count.read_text(encoding="utf-8"))
 
     def files(self, folder):
-        """Results with their bytes, but what tells of times and calls, and the checkpoints, which a failure may move."""
+        """Results with their bytes, without what tells of times and calls and the checkpoints, which may be others."""
         root = self.folder / folder
         return {path.relative_to(root): path.read_bytes() for path in root.rglob("*") if path.is_file()
                 and path.name not in ("provenance.txt", "times.json", "summary.json", "summary.txt")
