@@ -222,9 +222,9 @@ TEST_F(Hdf5, FullDiskKeepsTheOldFile)
   EXPECT_EQ(File::open(path).root().group("group").attribute<double>("number"), 2.5);
 }
 
-using Hdf5DeathTest = Hdf5; // runs first: the tests above leave HDF5 with a file that it cannot close
+using Hdf5DeathTest = Hdf5;
 
-/// As at the end of a program with MPI. HDF5 would crash then on a file that it could not close.
+/// As at the end of a program with MPI. HDF5 1.10 would crash then on a file that it could not close.
 TEST_F(Hdf5DeathTest, ShutsDownAfterAFullDisk)
 {
   const auto end = [&] {

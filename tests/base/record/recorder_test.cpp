@@ -126,7 +126,7 @@ TEST_F(RecorderFiles, WrongResumesAreInputErrorsAndChangeNothing)
 TEST_F(RecorderFiles, UnwritableFolderIsARunFailure)
 {
   const auto file = put("a_file", "x");
-  EXPECT_THAT(message_of<RunFailure>([&] { Recorder(file / "run", columns); }), HasSubstr("cannot make the folder"));
+  EXPECT_THAT(message_of<RunFailure>([&] { Recorder(file / "run", columns); }), HasSubstr("cannot be made"));
 }
 
 /// A full disk, imitated by a limit on the size of files: whole lines stay, and rows are not lost once there is room.
