@@ -2,7 +2,7 @@
 // Preloaded into a program (LD_PRELOAD), makes calls of one kind fail, as a full disk or a folder without permission
 // does:
 //
-//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir; of files below FAILING_UNDER. malloc: everywhere
+//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir; of files below FAILING_UNDER
 //   FAILING_AT      number of the first call that fails, counted from 1; 0: none
 //   FAILING_CALLS   how many fail from there on; left out: all
 //   FAILING_CODE    errno, ENOSPC if left out
@@ -23,13 +23,6 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-extern "C"
-{
-void *__libc_malloc(size_t);
-void *__libc_calloc(size_t, size_t);
-void *__libc_realloc(void *, size_t);
-}
-
 namespace
 {
 std::atomic<long> calls{0};
@@ -39,7 +32,6 @@ struct Plan
   const char *kind = "", *under = "", *count = nullptr;
   long at = 0, last = LONG_MAX;
   int code = ENOSPC;
-  bool mallocs = false;
 };
 Plan plan;
 bool planned = false;
@@ -61,7 +53,6 @@ __attribute__((constructor)) void read_plan()
   if (const long n = number("FAILING_CALLS", 0); n > 0)
     plan.last = plan.at + n - 1;
   plan.code = static_cast<int>(number("FAILING_CODE", ENOSPC));
-  plan.mallocs = std::strcmp(plan.kind, "malloc") == 0;
   const char *program = std::getenv("FAILING_PROGRAM");
   planned = *plan.kind != 0 && program && std::strcmp(program, program_invocation_short_name) == 0;
 }
@@ -132,23 +123,9 @@ int open(const char *path, int flags, ...)
   ISOSTAT_NEXT(open);
   return (flags & O_ACCMODE) != O_RDONLY && fails("open", path) ? -1 : original(path, flags, mode);
 }
-int open64(const char *path, int flags, ...)
-{
-  std::va_list list;
-  va_start(list, flags);
-  const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(list, mode_t) : 0;
-  va_end(list);
-  ISOSTAT_NEXT(open64);
-  return (flags & O_ACCMODE) != O_RDONLY && fails("open", path) ? -1 : original(path, flags, mode);
-}
 std::FILE *fopen(const char *path, const char *mode)
 {
   ISOSTAT_NEXT(fopen);
-  return std::strpbrk(mode, "wa+") && fails("open", path) ? nullptr : original(path, mode);
-}
-std::FILE *fopen64(const char *path, const char *mode)
-{
-  ISOSTAT_NEXT(fopen64);
   return std::strpbrk(mode, "wa+") && fails("open", path) ? nullptr : original(path, mode);
 }
 ssize_t write(int descriptor, const void *bytes, size_t n)
@@ -159,11 +136,6 @@ ssize_t write(int descriptor, const void *bytes, size_t n)
 ssize_t pwrite(int descriptor, const void *bytes, size_t n, off_t at)
 {
   ISOSTAT_NEXT(pwrite);
-  return fails("write", descriptor) ? -1 : original(descriptor, bytes, n, at);
-}
-ssize_t pwrite64(int descriptor, const void *bytes, size_t n, off64_t at)
-{
-  ISOSTAT_NEXT(pwrite64);
   return fails("write", descriptor) ? -1 : original(descriptor, bytes, n, at);
 }
 ssize_t writev(int descriptor, const struct iovec *parts, int n)
@@ -186,7 +158,8 @@ int mkdir(const char *path, mode_t mode)
   ISOSTAT_NEXT(mkdir);
   return fails("mkdir", path) ? -1 : original(path, mode);
 }
-void *malloc(size_t n) { return plan.mallocs && planned && fails() ? nullptr : __libc_malloc(n); }
-void *calloc(size_t n, size_t size) { return plan.mallocs && planned && fails() ? nullptr : __libc_calloc(n, size); }
-void *realloc(void *old, size_t n) { return plan.mallocs && planned && fails() ? nullptr : __libc_realloc(old, n); }
+// Offsets have 64 bits anyway.
+int open64(const char *path, int flags, ...) __attribute__((alias("open")));
+std::FILE *fopen64(const char *path, const char *mode) __attribute__((alias("fopen")));
+ssize_t pwrite64(int descriptor, const void *bytes, size_t n, off64_t at) __attribute__((alias("pwrite")));
 }
