@@ -7,7 +7,8 @@ fig_stress_strain.png   axial stress and volumetric strain (undrained: pore pres
                         scatter of the shear strain
 fig_shear_maps.png      shear strain since the start over the block at several axial strains
 fig_rate_maps.png       shear strain between two of them: where the block deforms at the time
-fig_band.png            axial stress beside that of other runs, shear strain at the end, where it came last, void ratio
+fig_band.png            axial stress beside that of other runs (named by their folders), shear strain at the end, where
+                        it came last, void ratio
 fig_grain_maps.png      void ratio and redundancy index at the end, of packings
 
 Of fig_rate_maps the last map is asked for the inclination of a band: the direction of the smallest spread of the points
@@ -27,7 +28,8 @@ class Block:
     def __init__(self, folder):
         self.history = read_history(folder / "history.csv")
         self.summary = read_summary(folder / "summary.json")
-        self.title = self.summary.get("title") or folder.resolve().name
+        self.name = folder.resolve().name
+        self.title = self.summary.get("title") or self.name
         with h5py.File(folder / "maps.h5") as file:
             self.maps = {name: np.asarray(values) for name, values in file.items()}
         self.strain = self.maps["axial_strain"]
@@ -161,6 +163,13 @@ def band_shape(block, field):
     return ends[1] - ends[0], angle
 
 
+def band_words(block, field):
+    thickness, angle = band_shape(block, field)
+    if np.isnan(thickness):
+        return "in the middle half of the width it nowhere falls to half on both sides of a line: no band"
+    return f"band in the middle half of the width: {thickness:.3f} m thick at half of it, {angle:.0f} deg to the horizontal"
+
+
 def band(block):
     """All of a band in one figure. Shear strains are over their mean."""
     before, _, came = list(differences(block))[-1]
@@ -168,10 +177,7 @@ def band(block):
     for when, field in ("the start", total), (f"{100 * block.strain[before]:.2g} %", came):
         elements = block.cells(field)
         print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} "
-              f"to {elements.max():.2f}")
-    thickness, angle = band_shape(block, total)
-    print(f"band in the middle half of the width: {thickness:.3f} m thick at half of its shear strain, {angle:.0f} deg "
-          "to the horizontal")
+              f"to {elements.max():.2f}; {band_words(block, field)}")
     maps = [(total, 0, "Shear strain / mean", "since the start"),
             (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
     if block.maps["redundancy"].any():
@@ -179,9 +185,8 @@ def band(block):
         maps.append((void, void.min(), "Void ratio $e$", "at the end"))
     figure, axes = plt.subplots(1, 1 + len(maps), figsize=(3.2 + 2.1 * len(maps), 3.5), constrained_layout=True,
                                 gridspec_kw={"width_ratios": [1.7] + [1] * len(maps)})
-    runs = [("this block", block.history)] + [(other.title, other.history) for other in block.beside]
-    for (label, history), color in zip(runs, (BLACK, ORANGE, BLUE, GREEN)):
-        axes[0].plot(100 * history["axial_strain"], history["axial_stress"] / 1e3, color=color, label=label)
+    for run, color in zip([block, *block.beside], (BLACK, ORANGE, BLUE, GREEN)):
+        axes[0].plot(100 * run.history["axial_strain"], run.history["axial_stress"] / 1e3, color=color, label=run.name)
     axes[0].set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
     axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
     axes[0].set_xlim(left=0)
