@@ -8,8 +8,8 @@
 #
 #   format      clang-format on every file
 #   docs        scripts/docs.sh on the release preset: the site without a warning, no link that leads nowhere
-#   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on what the last ten commits have
-#               touched: a source takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of
+#   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on what the last thirty commits
+#               have touched: a source takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of
 #               its rules in each of them
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
@@ -37,11 +37,11 @@ docs() {
   scripts/setup.sh --docs && scripts/docs.sh
 }
 
-# Sources of the folders: all, or of the grains those of the last ten commits that are still there.
+# Sources of the folders: all, or of the grains those that the last thirty commits have touched and that are still there.
 sources() {
   local all=("${folders[@]/%//*.cpp}")
   if [[ $preset == asan-grains ]]; then
-    comm -12 <(git log -10 --format= --name-only -- "${all[@]}" | sort -u) <(git ls-files "${all[@]}" | sort)
+    comm -12 <(git log -30 --format= --name-only | sort -u) <(git ls-files "${all[@]}" | sort)
   else
     git ls-files "${all[@]}"
   fi

@@ -167,7 +167,8 @@ def band_words(block, field):
     thickness, angle = band_shape(block, field)
     if np.isnan(thickness):
         return "in the middle half of the width it nowhere falls to half on both sides of a line: no band"
-    return f"band in the middle half of the width: {thickness:.3f} m thick at half of it, {angle:.0f} deg to the horizontal"
+    return (f"band in the middle half of the width: {thickness:.3f} m thick at half of it, {angle:.0f} deg to the "
+            "horizontal")
 
 
 def band(block):
