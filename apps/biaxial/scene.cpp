@@ -72,8 +72,8 @@ constexpr Key test_keys[] = {
 
   {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
    .range = not_negative,
-   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation: twice "
-           "the distance of Gauss points or more. 0: its own strain.",
+   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation; Gauss "
+           "points should not be farther apart than about 1.6 of it. 0: its own strain.",
    .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
   {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
    .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",

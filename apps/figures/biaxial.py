@@ -179,7 +179,8 @@ def band(block):
         elements = block.cells(field)
         print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} "
               f"to {elements.max():.2f}; {band_words(block, field)}")
-    maps = [(total, 0, "Shear strain / mean", "since the start"),
+    whose = f"{block.name}: " if block.beside else ""
+    maps = [(total, 0, "Shear strain / mean", whose + "since the start"),
             (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
     if block.maps["redundancy"].any():
         void = block.maps["void_ratio"][-1]
@@ -197,7 +198,7 @@ def band(block):
     for panel, (field, low, bar, label) in zip(axes[1:], maps):
         image = block.show(panel, field, low, np.quantile(field, 0.99), label)
         panel.set_xlabel("$x$ (m)")
-        figure.colorbar(image, ax=panel, label=bar, shrink=0.8)
+        figure.colorbar(image, ax=panel, label=bar, shrink=0.8, extend="max")
     axes[1].set_ylabel("$z$ (m)")
     return figure
 
