@@ -23,16 +23,29 @@ namespace fs = std::filesystem;
 }
 } // namespace
 
+std::string sphere_fault(const Vec3 &centre, double radius)
+{
+  constexpr double smallest = 1e-9, largest = 1e6, farthest = 1e9; // m
+  if (!(radius >= smallest && radius <= largest))
+    return fmt::format("radius r = {} m; expected {} to {} (m)", radius, smallest, largest);
+  for (int k = 0; k < 3; ++k)
+    if (!(std::abs(centre[k]) <= farthest))
+      return fmt::format("centre {} = {} m; expected a number within {} (m)", "xyz"[k], centre[k], farthest);
+    else if (!(centre[k] - radius < centre[k] && centre[k] < centre[k] + radius))
+      return fmt::format("radius r = {} m is less than what a number as large as its centre {} = {} m can tell apart; "
+                         "expected coordinates from an origin near the grains",
+                         radius, "xyz"[k], centre[k]);
+  return "";
+}
+
 void SphereTable::check(const fs::path &path) const
 {
   if (centres.empty())
     throw InputError(fmt::format("{}: no spheres; expected lines x y z r (m)", path.string()));
   for (std::size_t i = 0; i < centres.size(); ++i)
     {
-      if (!(radii[i] > 0))
-        refuse(path, line(i), i, fmt::format("radius r = {}; expected > 0 (m)", radii[i]));
-      if (!centres[i].allFinite() || !std::isfinite(radii[i]))
-        refuse(path, line(i), i, "centre or radius is not finite; expected numbers (m)");
+      if (const std::string fault = sphere_fault(centres[i], radii[i]); !fault.empty())
+        refuse(path, line(i), i, fault);
       if ((!velocities.empty() && !velocities[i].allFinite()) || (!spins.empty() && !spins[i].allFinite()))
         refuse(path, line(i), i, "velocity or spin is not finite; expected numbers (m/s, rad/s)");
     }

@@ -8,6 +8,10 @@
 
 namespace isostat
 {
+/// What is wrong with a sphere, as text; empty if nothing: a radius outside [1e-9, 1e6] m, a centre beyond 1e9 m or not
+/// a number, a radius that is lost in the rounding of the centre (such grains would have no volume in their cell).
+std::string sphere_fault(const Vec3 &centre, double radius);
+
 /// Spheres as a file of another program lists them, one entry each in every vector that is not empty.
 struct SphereTable
 {
@@ -19,8 +23,8 @@ struct SphereTable
   std::vector<std::size_t> line_of; ///< of the file, from 1; empty where it has no lines
 
   std::size_t line(std::size_t i) const { return line_of.empty() ? 0 : line_of[i]; }
-  /// @throws InputError with file:line  no spheres, a radius that is not positive, numbers that are not finite, an id
-  ///         twice
+  /// @throws InputError with file:line  no spheres, a sphere with a fault (sphere_fault), a motion that is not finite, an
+  ///         id twice
   void check(const std::filesystem::path &path) const;
   /// @throws InputError with file:line  a centre outside the box
   void check_inside(const std::filesystem::path &path, const RigidBox &box) const;

@@ -54,7 +54,7 @@ void read_comment(const fs::path &path, std::size_t line, std::string_view text,
       if (numbers_behind(words, v))
         cell.edges = Eigen::Map<const Mat3>(v.data());
       cell.reference_volume = cell.edges.determinant();
-      if (words.size() != 10 || !(cell.reference_volume > 0))
+      if (words.size() != 10 || !(cell.reference_volume > 0 && std::isfinite(cell.reference_volume)))
         reject(path, line,
                fmt::format("\"{}\"; expected # cell ax ay az bx by bz cx cy cz, three edges of a right-handed cell (m)",
                            text));

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "dem/io/sphere_table.hpp"
 #include "dem/io/sphere_text.hpp"
 
 #include <algorithm>
@@ -47,14 +48,6 @@ RigidBox read_box(const fs::path &path)
   return box;
 }
 
-void check_sphere(const fs::path &path, std::size_t line, const Vec3 &centre, double radius)
-{
-  if (!(radius > 0))
-    reject(path, line, fmt::format("radius r = {}; expected > 0 (m)", radius));
-  if (!centre.allFinite() || !std::isfinite(radius))
-    reject(path, line, "centre or radius is not finite; expected numbers (m)");
-}
-
 void check_inside(const fs::path &path, std::size_t line, const Vec3 &centre, const RigidBox &box)
 {
   for (int k = 0; k < 3; ++k)
@@ -77,7 +70,8 @@ Packing read_particles(const fs::path &path, const RigidBox &box, double density
       const std::int64_t id = table.integer(i, 0, "id");
       if (id < 0 || !index_of_id.emplace(id, static_cast<std::uint32_t>(i)).second)
         reject(path, table.line(i), fmt::format("id = {}; expected a number >= 0 that no other grain has", id));
-      check_sphere(path, table.line(i), table.vector(i, 1), table(i, 4));
+      if (const std::string fault = sphere_fault(table.vector(i, 1), table(i, 4)); !fault.empty())
+        reject(path, table.line(i), fault);
       check_inside(path, table.line(i), table.vector(i, 1), box);
       centres.push_back(table.vector(i, 1));
       radii.push_back(table(i, 4));

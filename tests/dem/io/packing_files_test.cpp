@@ -77,6 +77,10 @@ TEST_F(PackingFiles, ColumnsOfCsvStandInAnyOrder)
   EXPECT_THAT(refusal("b.csv", "id,x,y,z,r\n1,0,0,0\n"), HasSubstr("b.csv:2: \"1,0,0,0\"; expected 5 columns"));
   EXPECT_THAT(refusal("b.csv", "id,x,y,z,r\n-1,0,0,0,1\n"), HasSubstr("b.csv:2: id = -1"));
   EXPECT_THAT(refusal("b.txt", "# cell 1 0 0 0 1 0 0 0\n0 0 0 1\n"), HasSubstr("b.txt:1"));
+  EXPECT_THAT(refusal("b.txt", "# cell 1e200 0 0 0 1e200 0 0 0 1e200\n0 0 0 1\n"), HasSubstr("b.txt:1"));
+  EXPECT_THAT(refusal("b.txt", "0 0 0 1\n5 0 0 1e-12\n"), HasSubstr("b.txt:2: radius r = 1e-12 m; expected 1e-09"));
+  EXPECT_THAT(refusal("b.txt", "0 0 0 1\n0 0 1e9 1e-8\n"), HasSubstr("b.txt:2: radius r = 1e-08 m is less than"));
+  EXPECT_THAT(refusal("b.txt", "0 -2e9 0 1\n"), HasSubstr("b.txt:1: centre y = -2000000000 m; expected"));
   EXPECT_THAT(refusal("b.vtp", "<VTKFile"), HasSubstr("b.vtp: no VTK PolyData"));
 }
 
