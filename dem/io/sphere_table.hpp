@@ -23,8 +23,8 @@ struct SphereTable
   std::vector<std::size_t> line_of; ///< of the file, from 1; empty where it has no lines
 
   std::size_t line(std::size_t i) const { return line_of.empty() ? 0 : line_of[i]; }
-  /// @throws InputError with file:line  no spheres, a sphere with a fault (sphere_fault), a motion that is not finite, an
-  ///         id twice
+  /// @throws InputError with file:line  no spheres, a sphere with a fault (sphere_fault), a motion that is not finite,
+  ///         an id twice
   void check(const std::filesystem::path &path) const;
   /// @throws InputError with file:line  a centre outside the box
   void check_inside(const std::filesystem::path &path, const RigidBox &box) const;
