@@ -56,9 +56,9 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
 {
   const ColumnMesh &mesh = scene.mesh;
   if (mesh.ground_x.size() != mesh.ground_z.size())
-    document.refuse(mesh.ground_x.empty() ? "mesh.ground_z" : "mesh.ground_x",
-                    fmt::format("has {} points, mesh.ground_z {}; each point has both.", mesh.ground_x.size(),
-                                mesh.ground_z.size()));
+    document.refuse(mesh.ground_z.empty() ? "mesh.ground_x" : "mesh.ground_z",
+                    fmt::format("has {} numbers, mesh.ground_x {}; each point of the surface has one of both.",
+                                mesh.ground_z.size(), mesh.ground_x.size()));
   if (mesh.ground_x.empty())
     return;
   const GroundLine ground = ground_line(mesh);

@@ -18,7 +18,7 @@ half of the block's width. Compression is positive.
 import h5py
 import numpy as np
 
-from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, plt, read_history, read_summary
+from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, cut_ends, plt, read_history, read_summary
 from .drawing import Drawing
 
 PANELS = 5
@@ -98,7 +98,7 @@ def map_row(block, fields, labels, bar):
         image = block.show(panel, field, 0, high, label)
         panel.set_xlabel("$x$ (m)")
     axes[0][0].set_ylabel("$z$ (m)")
-    figure.colorbar(image, ax=axes, label=bar, shrink=0.8)
+    figure.colorbar(image, ax=axes, label=bar, shrink=0.8, extend=cut_ends(fields, 0, high))
     return figure
 
 
@@ -196,9 +196,10 @@ def band(block):
     if block.beside:
         axes[0].legend(loc="lower right")
     for panel, (field, low, bar, label) in zip(axes[1:], maps):
-        image = block.show(panel, field, low, np.quantile(field, 0.99), label)
+        high = np.quantile(field, 0.99)
+        image = block.show(panel, field, low, high, label)
         panel.set_xlabel("$x$ (m)")
-        figure.colorbar(image, ax=panel, label=bar, shrink=0.8, extend="max")
+        figure.colorbar(image, ax=panel, label=bar, shrink=0.8, extend=cut_ends(field, low, high))
     axes[1].set_ylabel("$z$ (m)")
     return figure
 
@@ -209,9 +210,10 @@ def grain_maps(block):
     figure, axes = plt.subplots(1, 2, figsize=(5.4, 3.6), constrained_layout=True)
     for panel, name, label in zip(axes, ("void_ratio", "redundancy"), ("Void ratio $e$", "Redundancy index $I_R$")):
         field = block.maps[name][-1]
-        image = block.show(panel, field, *np.quantile(field, [0.01, 0.99]), f"{100 * block.strain[-1]:.2g} %")
+        ends = np.quantile(field, [0.01, 0.99])
+        image = block.show(panel, field, *ends, f"{100 * block.strain[-1]:.2g} %")
         panel.set_xlabel("$x$ (m)")
-        figure.colorbar(image, ax=panel, label=label, shrink=0.8)
+        figure.colorbar(image, ax=panel, label=label, shrink=0.8, extend=cut_ends(field, *ends))
     axes[0].set_ylabel("$z$ (m)")
     return figure
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from .common import BLACK, BLUE, GREY, ORANGE, panel_letter, plt
+from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, panel_letter, plt
 
 LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
 
@@ -81,7 +81,8 @@ def box_maps(column):
     figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)
     for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abcd"):
         elements = mesh.show(axes, row, values, low, high, colours)
-        figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01)
+        figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01,
+                        extend=cut_ends(mesh.means(values), low, high))
         axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5,
                        loc="right")
         panel_letter(axes, letter)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figure of a plate that moves into a box of soil."""
 from .column_box import Mesh
-from .common import BLACK, BLUE, GREY, panel_letter, plt
+from .common import BLACK, BLUE, GREY, cut_ends, panel_letter, plt
 
 
 def has_plate(column):
@@ -28,7 +28,8 @@ def plate(column):
     gamma = 100 * abs(maps["gamma_xz"][-1])
     high = max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6)
     elements = mesh.show(panels["map"], len(maps["time"]) - 1, gamma, 0, high, "magma_r")
-    figure.colorbar(elements, ax=panels["map"], label=r"$|\gamma_{xz}|$ (%)", fraction=0.03, pad=0.01)
+    figure.colorbar(elements, ax=panels["map"], label=r"$|\gamma_{xz}|$ (%)", fraction=0.03, pad=0.01,
+                    extend=cut_ends(mesh.means(gamma), 0, high))
     panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5, loc="right")
     panels["map"].set_xlabel("x (m)")
     for axes, letter in zip(panels.values(), "abc"):

@@ -81,7 +81,7 @@ def pore_pressure_ratio(column):
 
 def profiles(column):
     """Largest strain and stress ratio so far, and r_u at the moment, at several times."""
-    if column.consolidation or not column.profiles:
+    if column.consolidation or column.plate or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
     tau = [column.profile(name) for name in ("tau_xz", "tau_yz")]
@@ -184,7 +184,7 @@ def ru_map(column):
     shade, borders, cells = map_over_time(column, axes, ru, cmap="YlGnBu", vmin=0, vmax=max(1.0, float(np.nanmax(ru))))
     if np.nanmax(ru) > LIQUEFIED_RU:
         outline(axes, *borders, cells > LIQUEFIED_RU, colors=RED, linewidths=0.9)
-        axes.annotate(f"red: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
+        axes.annotate(f"line: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
                       fontsize=9, color=RED)
     figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
     panel_letter(top, "a")
@@ -226,7 +226,7 @@ def point_label(depth, prefix):
 
 def loops(column):
     """A row for each output depth: shear loops and stress paths, coloured by time."""
-    axes_moving = [] if column.consolidation else moving_shears(column)
+    axes_moving = [] if column.consolidation or column.plate else moving_shears(column)
     if not axes_moving or not column.points:
         return None
     stress, stress_label = path_stress(column)
@@ -267,7 +267,7 @@ def sinks(column):
 
 def histories(column):
     """r_u at the output depths and its largest value anywhere; settlement."""
-    if column.consolidation:
+    if column.consolidation or column.plate:
         return None
     wet, sinking = is_wet(column), sinks(column)
     if not wet and not sinking:

@@ -184,6 +184,12 @@ class Run:
 # --- drawing ---------------------------------------------------------------------------------------------------------
 
 
+def cut_ends(values, low, high):
+    """Which ends of a colour bar from low to high leave values out: the arrows it has to have."""
+    above, below = np.nanmax(values) > high, np.nanmin(values) < low
+    return "both" if above and below else "max" if above else "min" if below else "neither"
+
+
 def panel_letter(axes, letter):
     axes.set_title(f"({letter})", loc="left", fontsize=9.5, fontweight="bold", pad=5)
 

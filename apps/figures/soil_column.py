@@ -28,7 +28,8 @@ fig_grains_profiles.png   packings of grains: redundancy index I_R, coordination
 fig_grains_map.png        I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95
 fig_grains_history.png    I_R, r_u and yielding contacts at the output depths
 
-What the run does not have is left out: a dry soil has no r_u, a base at rest no spectra, a sine no transfer function.
+What the run does not have is left out: a dry soil has no r_u, a base at rest no spectra, a sine no transfer function, a
+plate no time.
 The input is the motion of a rigid base, or that of the outcrop of a compliant one. Stresses and strains are positive in
 compression.
 """

@@ -126,7 +126,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (has_ru(scene))
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
                         p.ru_time);
-  text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
+  if (!s.box_motion) // which says where
+    text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
   for (const CapExpansion &cap : s.expansions)
     text += fmt::format(
         "  net expansion            {:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end\n",

@@ -120,7 +120,8 @@ void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
       if (const double beyond = yield(s); beyond > round_off * std::abs(s[0] + s[1] + s[2]))
         throw InputError(at_point(i) + "initial principal stresses are beyond the strength by " +
                          number_text(std::round(beyond) / 1e3) +
-                         " kPa of (s_1 - s_3) + (s_1 + s_3) sin(phi) - 2 c cos(phi); choose k0 nearer to 1, or a "
+                         " kPa of (s_1 - s_3) - (s_1 + s_3) sin(phi) - 2 c cos(phi) with pressures s_1 >= s_3; choose "
+                         "k0 nearer to 1, or a "
                          "larger friction_angle or cohesion");
     }
   committed_ = std::move(states);
