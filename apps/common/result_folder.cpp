@@ -148,6 +148,8 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
 
 std::string draw_figures(const fs::path &folder, const std::string &program)
 {
+  if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
+    return fmt::format("figures were not drawn: {}", missing);
   const fs::path log = folder / "figures.log";
   const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m report leave {} {} > {} 2>&1",
                                           quoted(shared_folder()), program, quoted(folder), quoted(log));

@@ -92,6 +92,8 @@ void run(const std::vector<std::string> &words)
   for (const Entry &view : views)
     if (command == view.name)
       {
+        if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
+          throw InputError(missing);
         setenv("PYTHONPATH", shared_folder().c_str(), 1);
         std::vector<std::string> call = {"/usr/bin/python3", "-B", "-m", "report"};
         call.insert(call.end(), words.begin(), words.end());

@@ -12,4 +12,8 @@ std::string version();
 /// program is in. A build tree has links there, so that no path of the source is compiled in.
 /// Tested: tests/apps/micromechanics_test.py, which lets a program draw.
 std::filesystem::path shared_folder();
+
+/// What is wrong and what to do if `name` is not in shared_folder(), as of a program that was copied to another place;
+/// empty if it is there. Tested: tests/apps/command_line_test.py
+std::string missing_from_shared_folder(const std::string &name);
 } // namespace isostat

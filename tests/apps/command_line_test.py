@@ -3,6 +3,7 @@
 """Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
 import pathlib
 import re
+import shutil
 
 import h5py
 import numpy as np
@@ -174,6 +175,20 @@ class Version(AppTest):
             result = self.run_app(program, "--version")
             self.assert_done(result)
             self.assertRegex(result.stdout, rf"^{program}( \(Isostat\))? \d+\.\d+\.\d+ ")
+
+
+class Copied(AppTest):
+    def test_a_copied_program_says_what_it_misses(self):
+        for program in ("isostat", "element_test"):
+            (self.folder / "there").mkdir(exist_ok=True)
+            shutil.copy(BIN / program, self.folder / "there" / program)
+        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "share/isostat/report",
+                            "copied", "built or installed")
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=600)))
+        result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
+        self.assert_done(result)
+        self.assertIn("figures were not drawn: ", result.stdout)
+        self.assertIn("share/isostat/report is not there", result.stdout)
 
 
 class Readme(AppTest):
