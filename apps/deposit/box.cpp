@@ -57,7 +57,7 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
   const ColumnMesh &mesh = scene.mesh;
   if (mesh.ground_x.size() != mesh.ground_z.size())
     document.refuse(mesh.ground_z.empty() ? "mesh.ground_x" : "mesh.ground_z",
-                    fmt::format("has {} numbers, mesh.ground_x {}; each point of the surface has one of both.",
+                    fmt::format("has length {}, mesh.ground_x {}; each point of the surface has one of both.",
                                 mesh.ground_z.size(), mesh.ground_x.size()));
   if (mesh.ground_x.empty())
     return;
