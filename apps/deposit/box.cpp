@@ -55,12 +55,14 @@ constexpr Key in_load[] = {
 void check_ground(const SceneDocument &document, const ColumnScene &scene)
 {
   const ColumnMesh &mesh = scene.mesh;
+  if (mesh.ground_x.empty() && mesh.ground_z.empty())
+    return;
+  if (mesh.ground_z.empty())
+    document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has one of both.");
   if (mesh.ground_x.size() != mesh.ground_z.size())
-    document.refuse(mesh.ground_z.empty() ? "mesh.ground_x" : "mesh.ground_z",
+    document.refuse("mesh.ground_z",
                     fmt::format("has length {}, mesh.ground_x {}; each point of the surface has one of both.",
                                 mesh.ground_z.size(), mesh.ground_x.size()));
-  if (mesh.ground_x.empty())
-    return;
   const GroundLine ground = ground_line(mesh);
   try
     {

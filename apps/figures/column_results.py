@@ -95,6 +95,11 @@ class Column:
         self.points = [(self._depth(prefix, k, summary), prefix) for k, prefix in enumerate(prefixes)]
         self.spectra = self._read_spectra(folder / "spectra.csv")
 
+    @property
+    def shaken(self):
+        """Whether its time is one of motion: not that of a consolidation, nor the steps of a plate."""
+        return not self.consolidation and not self.plate
+
     def _depth(self, prefix, k, summary):
         """Where the data of an output depth are, m: of the point nearest to what was asked for. None: not known."""
         if self.has(f"{prefix}_depth"):

@@ -81,7 +81,7 @@ def pore_pressure_ratio(column):
 
 def profiles(column):
     """Largest strain and stress ratio so far, and r_u at the moment, at several times."""
-    if column.consolidation or column.plate or not column.profiles:
+    if not column.shaken or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
     tau = [column.profile(name) for name in ("tau_xz", "tau_yz")]
@@ -226,7 +226,7 @@ def point_label(depth, prefix):
 
 def loops(column):
     """A row for each output depth: shear loops and stress paths, coloured by time."""
-    axes_moving = [] if column.consolidation or column.plate else moving_shears(column)
+    axes_moving = moving_shears(column) if column.shaken else []
     if not axes_moving or not column.points:
         return None
     stress, stress_label = path_stress(column)
@@ -267,7 +267,7 @@ def sinks(column):
 
 def histories(column):
     """r_u at the output depths and its largest value anywhere; settlement."""
-    if column.consolidation or column.plate:
+    if not column.shaken:
         return None
     wet, sinking = is_wet(column), sinks(column)
     if not wet and not sinking:

@@ -121,8 +121,7 @@ void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
         throw InputError(at_point(i) + "initial principal stresses are beyond the strength by " +
                          number_text(std::round(beyond) / 1e3) +
                          " kPa of (s_1 - s_3) - (s_1 + s_3) sin(phi) - 2 c cos(phi) with pressures s_1 >= s_3; choose "
-                         "k0 nearer to 1, or a "
-                         "larger friction_angle or cohesion");
+                         "k0 nearer to 1, or a larger friction_angle or cohesion");
     }
   committed_ = std::move(states);
   has_trial_ = false;

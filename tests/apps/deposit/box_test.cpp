@@ -109,6 +109,8 @@ TEST(BoxScene, RefusesGroundThatIsNone)
 {
   expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"5 m\"]\n"),
                  {"box.toml:13: mesh.ground_z", "length 1", "mesh.ground_x 2;"});
+  expect_refusal(box("", "ground_z = [\"5 m\"]\n"), {"box.toml:12: mesh.ground_z", "length 1", "mesh.ground_x 0;"});
+  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\n"), {"box.toml:12: mesh.ground_x", "needs mesh.ground_z"});
   expect_refusal(box("", "ground_x = [\"3 m\", \"3 m\"]\nground_z = [\"5 m\", \"4 m\"]\n"), {"3 m after 3 m"});
   expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"4 m\", \"3 m\"]\n"),
                  {"mesh.ground_z", "must reach 5 m", "reaches 4 m"});
