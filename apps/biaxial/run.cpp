@@ -119,7 +119,7 @@ public:
 private:
   void open()
   {
-    open_result_folder(request_.folder, request_.use);
+    folder_ = open_result_folder(request_.folder, request_.use);
     write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                      {{"threads", std::to_string(request_.threads)}});
     history_ =
@@ -285,6 +285,7 @@ private:
   Statics statics_;
   BiaxialSummary summary_;
   Stopwatch since_checkpoint_;
+  FileLock folder_;
   std::unique_ptr<Recorder> history_;
   std::unique_ptr<BlockFiles> files_;
 };

@@ -10,11 +10,13 @@
 #include "dem/contact/loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <thread>
 #include <vector>
 
 namespace isostat
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
+constexpr const char *lock_name = ".lock";
 
 /// As one word of a shell command.
 std::string quoted(const fs::path &path)
@@ -52,6 +55,44 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
 {
   const fs::path &folder = requested.empty() ? of_scene : requested;
   return folder.has_filename() ? folder : folder.parent_path();
+}
+
+bool is_unused(const fs::path &folder)
+{
+  return !folder_exists(folder) ||
+         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const fs::directory_entry &entry) { return entry.path().filename() == lock_name; });
+}
+
+void empty_folder(const fs::path &folder)
+{
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder))
+    {
+      std::error_code failure;
+      if (entry.path().filename() != lock_name)
+        fs::remove_all(entry.path(), failure);
+      if (failure)
+        throw RunFailure(fmt::format("{}: cannot be removed: {}. Remove it by hand, or give another --output.",
+                                     entry.path().string(), failure.message()));
+    }
+}
+
+FileLock lock_folder(const fs::path &folder)
+{
+  constexpr int patience = 100;
+  for (int k = 0; k < patience; ++k)
+    try
+      {
+        if (FileLock lock = FileLock::attempt(folder / lock_name))
+          return lock;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+    catch (const NoLocks &)
+      {
+        return {};
+      }
+  throw InputError(
+      fmt::format("{}: another program is at work in it. Wait for it, or give another --output.", folder.string()));
 }
 
 bool folder_exists(const fs::path &folder)
@@ -92,9 +133,10 @@ void check_result_folder(const fs::path &folder, FolderUse use)
         throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it. Give the folder of "
                                      "an interrupted run with --output, or start without --resume.",
                                      folder.string()));
+      const FileLock free = lock_folder(folder);
       return;
     }
-  const bool used = folder_exists(folder) && !fs::is_empty(folder);
+  const bool used = !is_unused(folder);
   if (used && use == FolderUse::fresh)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
@@ -104,15 +146,20 @@ void check_result_folder(const fs::path &folder, FolderUse use)
                                  "Choose another --output.",
                                  folder.string()));
   try_writable_folder(folder);
+  if (used)
+    const FileLock free = lock_folder(folder);
 }
 
-void open_result_folder(const fs::path &folder, FolderUse use)
+FileLock open_result_folder(const fs::path &folder, FolderUse use)
 {
-  if (use == FolderUse::resume)
-    return;
-  if (use == FolderUse::overwrite)
-    fs::remove_all(folder);
   make_writable_folder(folder);
+  FileLock lock = lock_folder(folder);
+  if (use == FolderUse::fresh && fs::exists(folder / "scene.toml")) // of another program, since check_result_folder()
+    throw InputError(
+        fmt::format("{}: another program has used it since this one began. Give another --output.", folder.string()));
+  if (use == FolderUse::overwrite)
+    empty_folder(folder);
+  return lock;
 }
 
 namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/apps/command_line_test.py
 #pragma once
+#include "base/files/file_lock.hpp"
 #include "dem/scene/scene.hpp"
 
 #include <filesystem>
@@ -25,12 +26,24 @@ std::filesystem::path output_folder(const std::filesystem::path &requested, cons
 /// Looks whether a run may use the folder and could write to it. Leaves all as it is: call it first, so that a mistake
 /// shows before hours of preparation.
 /// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
-///         look like results; --resume without a checkpoint; a path that cannot be written
+///         look like results; --resume without a checkpoint; a path that cannot be written; a run is at work in it
 void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 
-/// Makes the folder; with FolderUse::overwrite removes what was in it. Call it when the run is ready to start, so that
-/// old results survive a run that never does.      @pre check_result_folder()
-void open_result_folder(const std::filesystem::path &folder, FolderUse use);
+/// Makes the folder and locks it; with FolderUse::overwrite removes what was in it. Call it when the run is ready to
+/// start, so that old results survive a run that never does.
+/// @return the lock, to be kept as long as the run writes   @throws InputError  as lock_folder()
+/// @pre check_result_folder()   tested: tests/apps/shared_folder_test.py
+[[nodiscard]] FileLock open_result_folder(const std::filesystem::path &folder, FolderUse use);
+
+/// A lock on a folder that is there (of its file .lock), or none where the file system has no locks. Waits up to five
+/// seconds for what a dying process still holds.   @throws InputError  a program is at work in it
+[[nodiscard]] FileLock lock_folder(const std::filesystem::path &folder);
+
+/// Whether there is nothing in it but a lock.   @throws InputError  it is a file
+bool is_unused(const std::filesystem::path &folder);
+
+/// Removes all but the lock.   @throws RunFailure  something cannot be removed
+void empty_folder(const std::filesystem::path &folder);
 
 /// Whether the folder is there.     @throws InputError  it is a file
 bool folder_exists(const std::filesystem::path &folder);

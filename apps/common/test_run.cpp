@@ -70,7 +70,8 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
 TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher)
 {
   const auto &[scene, folder, command_line, use, quiet, threads] = request;
-  open_result_folder(folder, use); // only now that everything else went well may older results go
+  if (!run.folder)
+    run.folder = open_result_folder(folder, use); // only now that everything else went well may older results go
   write_provenance(folder, scene, command_line);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   Watched observer(output, watcher);

@@ -4,10 +4,12 @@
 #pragma once
 #include "apps/common/scene_program.hpp"
 #include "apps/common/test_summary.hpp"
+#include "base/files/file_lock.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/specimen_file.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace isostat
 {
@@ -18,6 +20,7 @@ struct TestRun
   DriveState state;
   std::map<std::string, double> specimen; ///< figures for the summary
   std::unique_ptr<Checkpoint> resumed;
+  std::optional<FileLock> folder; ///< of the results, once they are begun
 };
 
 /// On a specimen, with the law of the scene.

@@ -210,7 +210,7 @@ void run(const Options &options)
   const fs::path folder = output_folder(options.output, fs::path(options.record) / "replay");
   const FolderUse use = folder_use(options.overwrite);
   check_result_folder(folder, use);
-  open_result_folder(folder, use);
+  const FileLock lock = open_result_folder(folder, use);
   write_provenance(folder, scene_text(options, settings.rve), options.command_line, {});
   const Stopwatch watch;
   const ReplayResult result = replay(record, settings, folder, options);

@@ -124,6 +124,7 @@ protected:
   SoilMaterial soil_;
   double settled_; ///< how far a box has moved to its equilibrium, m
   Solver run_;
+  FileLock folder_; ///< of the results, on the first rank
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
@@ -181,7 +182,7 @@ private:
   {
     MPI_Barrier(MPI_COMM_WORLD); // all ranks have read their checkpoint, and are ready to start
     on_first_rank([&] {
-      open_result_folder(request_.folder, request_.use);
+      folder_ = open_result_folder(request_.folder, request_.use);
       write_provenance(request_.folder, to_toml(scene_), request_.command_line,
                        {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
       files_.open(velocities_, resumed_.get());

@@ -226,7 +226,7 @@ void find_limits(const Options &options)
   const Cloud cloud = make_cloud(scene.grading);
   const Dense dense = densest(cloud, scene, observer);
   observer.event(fmt::format("e_min = {:.4f} after {:.0f} s", dense.void_ratio, dense.seconds));
-  open_result_folder(folder, use);
+  const FileLock lock = open_result_folder(folder, use);
   write_provenance(folder, scene, options.command_line);
   keep(folder / "densest.h5", scene, dense.state,
        fmt::format("isotropic compression to {:g} Pa without friction", scene.specimen.pressure),

@@ -23,7 +23,12 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
   FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
   if (!lock && missing == MissingFile::create)
     throw RunFailure(fmt::format("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno)));
-  return lock && flock(lock.file_, LOCK_EX | LOCK_NB) == 0 ? std::move(lock) : FileLock();
+  if (!lock || flock(lock.file_, LOCK_EX | LOCK_NB) == 0)
+    return lock;
+  if (errno != EWOULDBLOCK)
+    throw NoLocks(fmt::format("{}: cannot be locked: {}. Work on a file system that has locks (flock).", file.string(),
+                              std::strerror(errno)));
+  return FileLock();
 }
 
 bool is_unlocked(const std::filesystem::path &file)

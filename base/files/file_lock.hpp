@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/base/files/file_lock_test.cpp
 #pragma once
+#include "base/error.hpp"
+
 #include <filesystem>
 #include <utility>
 
 namespace isostat
 {
+/// The file system of a file knows no locks.
+class NoLocks : public RunFailure
+{
+public:
+  using RunFailure::RunFailure;
+};
+
 /// A lock on a file (flock): one holder among the processes and threads of all machines that see the file. It ends with
 /// this object, or with the last process that has the file open, however that ends.
 class FileLock
@@ -28,6 +37,7 @@ public:
 
   /// The lock, or none if another holder has it, or (no_lock) the file is not there. Children that become another
   /// program do not inherit it.   @throws RunFailure  the file cannot be made or opened for writing (create)
+  /// @throws NoLocks  nobody can lock it
   static FileLock attempt(const std::filesystem::path &file, MissingFile missing = MissingFile::create);
 
   explicit operator bool() const { return file_ >= 0; }

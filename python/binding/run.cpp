@@ -165,14 +165,16 @@ TestRun begin_from(const Specimen &given, Request &request, const StepSettings &
 {
   WatchedPreparation preparation(request.quiet);
   const Specimen specimen = given_specimen(request.scene, given, preparation);
+  std::optional<FileLock> folder;
   if (!request.output.empty())
     {
-      open_result_folder(request.output, request.use);
-      request.use = FolderUse::fresh;
+      folder = open_result_folder(request.output, request.use);
       write_specimen(fs::path(request.output) / kept_specimen, specimen);
       name_kept_specimen(request.scene);
     }
-  return start_test(request.scene, specimen, how);
+  TestRun test = start_test(request.scene, specimen, how);
+  test.folder = std::move(folder);
+  return test;
 }
 
 TestRun begin(Request &request)

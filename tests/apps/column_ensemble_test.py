@@ -103,7 +103,7 @@ class Ensemble(ColumnTest):
         def kept(folder):
             return {name for name in contents(self.folder / folder)
                     if not any(word in name for word in ("provenance", "times.json", "checkpoint", "logs/", "queue",
-                                                         "lock"))}
+                                                         ".lock"))}
         self.assertIn("members/02/history.csv", kept(one))
         self.assert_same_contents(one, other, kept)
 

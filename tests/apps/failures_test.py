@@ -111,6 +111,20 @@ class Failures(AppTest):
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=3)
 
+    def test_without_locks(self):
+        """On a file system that has none: one run goes on, many in one folder would not be safe."""
+        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
+                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 600\n'))
+        command = self.command("element_test", scene, "-o", "out", "--no-figures", "-q")
+        result, n = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
+        self.assert_done(result)
+        self.assertGreater(n, 0)
+        self.empty()
+        command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "--no-figures", "-q")
+        result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("cannot be locked: No locks available. Work on a file system that has locks", result.stderr)
+
 
 if __name__ == "__main__":
     main()

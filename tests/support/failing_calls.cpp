@@ -2,7 +2,7 @@
 // Preloaded into a program (LD_PRELOAD), makes calls of one kind fail, as a full disk or a folder without permission
 // does:
 //
-//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir; of files below FAILING_UNDER
+//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir, flock; of files below FAILING_UNDER
 //   FAILING_AT      number of the first call that fails, counted from 1; 0: none
 //   FAILING_CALLS   how many fail from there on; left out: all
 //   FAILING_CODE    errno, ENOSPC if left out
@@ -19,6 +19,7 @@
 #include <cstring>
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -147,6 +148,11 @@ int fsync(int descriptor)
 {
   ISOSTAT_NEXT(fsync);
   return fails("fsync", descriptor) ? -1 : original(descriptor);
+}
+int flock(int descriptor, int how)
+{
+  ISOSTAT_NEXT(flock);
+  return fails("flock", descriptor) ? -1 : original(descriptor, how);
 }
 int rename(const char *from, const char *to)
 {

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two runs in one folder: the second is refused whether it would start anew or go on, the first does not notice, and
+its folder is free as soon as it has ended, however it has."""
+import contextlib
+import os
+import signal
+import subprocess
+import time
+
+from biaxial_test import FRICTION
+from failures_test import COLUMN, SAVED
+from support import PATIENCE, AppTest, main, tiny_scene
+
+WITHOUT = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they tell of times
+
+
+class SharedFolder(AppTest):
+    def files(self, folder):
+        root = self.folder / folder
+        return {path.relative_to(root): path.read_bytes() for path in root.rglob("*")
+                if path.is_file() and path.name not in WITHOUT and "checkpoint" not in path.parts}
+
+    @contextlib.contextmanager
+    def halted(self, command):
+        """A run that has a checkpoint and stands still."""
+        with subprocess.Popen([*command, "-o", "out", "-q", "--no-figures"], cwd=self.folder) as process:
+            end = time.time() + 60 * PATIENCE
+            while not (self.folder / "out/checkpoint/last.h5").exists() and time.time() < end:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGSTOP)
+            self.assertTrue(os.WIFSTOPPED(os.waitpid(process.pid, os.WUNTRACED)[1]), "it is still at work")
+            try:
+                yield process
+            finally:
+                process.send_signal(signal.SIGCONT)
+
+    def share(self, program, *arguments):
+        self.assert_done(self.run_app(program, *arguments, "-o", "whole", "-q", "--no-figures"))
+        command = self.command(program, *arguments)
+        with self.halted(command) as first:
+            for use in ("--overwrite", "--resume"):
+                self.assert_refused(self.run_app(program, *arguments, "-o", "out", "-q", use),
+                                    "out: another program is at work in it", "--output")
+            first.send_signal(signal.SIGCONT)
+            self.assertEqual(first.wait(timeout=120 * PATIENCE), 0)
+        self.assertEqual(self.files("out"), self.files("whole"))
+        self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--overwrite"))
+        self.assertEqual(self.files("out"), self.files("whole"))
+        (self.folder / "out").rename(self.folder / "done")
+        with self.halted(command) as killed:
+            killed.kill()
+        self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--resume"))
+        self.assertEqual(self.files("out"), self.files("whole"))
+
+    def test_element_test(self):
+        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
+                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 6000\n'))
+        self.share("element_test", scene, *SAVED)
+
+    def test_biaxial(self):
+        self.share("biaxial", self.write("block.toml", FRICTION), *SAVED)
+
+    def test_soil_column(self):
+        self.share("soil_column", self.write("column.toml", COLUMN), *SAVED)
+
+    def test_a_folder_with_nothing_but_a_lock_is_free(self):
+        scene = self.write("scene.toml", tiny_scene(stages="# none"))
+        (self.folder / "out").mkdir()
+        (self.folder / "out/.lock").touch()
+        self.assert_done(self.run_app("element_test", scene, "-o", "out", "-q", "--no-figures"))
+
+
+if __name__ == "__main__":
+    main()
