@@ -6,6 +6,7 @@
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -64,6 +65,16 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
 } // namespace
 
 double ColumnCheckpoint::number(const std::string &name) const { return field(*this, numbers, name); }
+
+std::size_t ColumnCheckpoint::count(const std::string &name) const
+{
+  const double value = number(name);
+  if (!(value >= 0 && value < 0x1p53 && value == std::floor(value)))
+    throw InputError(fmt::format("{}: {} = {}, expected a whole number from 0: the file is damaged. Start anew with "
+                                 "--overwrite.",
+                                 file, name, value));
+  return static_cast<std::size_t>(value);
+}
 
 const std::vector<double> &ColumnCheckpoint::vector(const std::string &name) const
 {

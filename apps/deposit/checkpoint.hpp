@@ -3,6 +3,7 @@
 #include "fem/solve/solver_state.hpp"
 
 #include <filesystem>
+#include <type_traits>
 
 namespace isostat
 {
@@ -24,19 +25,24 @@ struct ColumnCheckpoint
   template <class State>
   void get(State &state) const
   {
-    State::for_each(state,
-                    [&]<class Number>(const char *name, Number &value) { value = static_cast<Number>(number(name)); });
+    State::for_each(state, [&]<class Number>(const char *name, Number &value) {
+      if constexpr (std::is_integral_v<Number>)
+        value = count(name);
+      else
+        value = number(name);
+    });
   }
 
   /// @throws InputError  the file lacks it
   double number(const std::string &name) const;
+  std::size_t count(const std::string &name) const; ///< @throws InputError  no whole number either
   const std::vector<double> &vector(const std::string &name) const;
 };
 
 /// A number of a checkpoint that counts; 0 without one.   @throws InputError  the file lacks it
 inline std::size_t counter(const ColumnCheckpoint *checkpoint, const char *name)
 {
-  return checkpoint ? static_cast<std::size_t>(checkpoint->number(name)) : 0;
+  return checkpoint ? checkpoint->count(name) : 0;
 }
 
 /// As folder/last.h5 with folder/previous.h5 (base/record/checkpoint_folder.hpp).

@@ -208,8 +208,7 @@ void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(state);
   expansions_.restore(checkpoint);
-  filter_.restore(checkpoint.vector("filtered_accelerations"),
-                  static_cast<std::uint64_t>(checkpoint.number("filtered_steps")));
+  filter_.restore(checkpoint.vector("filtered_accelerations"), checkpoint.count("filtered_steps"));
   const std::vector<double> &rows = checkpoint.vector("waiting_rows");
   const std::size_t n = columns().size();
   for (std::size_t k = 0; k + n <= rows.size(); k += n)

@@ -6,6 +6,7 @@
 #include "dem/io/sphere_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -40,6 +41,13 @@ struct DumpReader
   [[noreturn]] void refuse(const std::string &what) const { reject(path, next, what); }
 
   double number(std::string_view word) const { return finite_number(path, next, word); }
+  std::size_t count(std::string_view word) const
+  {
+    const double n = number(word);
+    if (!(n >= 0 && n < 0x1p32 && n == std::floor(n)))
+      refuse(fmt::format("{} atoms; expected a whole number below 2^32", word));
+    return static_cast<std::size_t>(n);
+  }
 };
 
 struct Frame
@@ -113,7 +121,7 @@ Frame read_frame(DumpReader &in)
           return frame;
         }
       else if (item[1] == "NUMBER")
-        n_atoms = static_cast<std::size_t>(std::max(0.0, in.number(in.take())));
+        n_atoms = in.count(in.take());
       else if (const std::string_view value = in.take(); item[1] == "UNITS" && value != "si")
         in.refuse(fmt::format("units {}; expected si. Scale the dump, or write it in a run with `units si`", value));
     }

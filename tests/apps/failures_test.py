@@ -120,7 +120,7 @@ class Failures(AppTest):
         self.assert_done(result)
         self.assertGreater(n, 0)
         self.empty()
-        command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "--no-figures", "-q")
+        command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "-q")
         result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("cannot be locked: No locks available. Work on a file system that has locks", result.stderr)

@@ -88,6 +88,9 @@ class Resume(ColumnTest):
                     "holds no peak_gamma", "--overwrite")
         self.refuse(lambda file: file["numbers"].attrs.pop("peak_ru"), "out/checkpoint/last.h5",
                     "holds no peak_ru", "--overwrite")
+        for wrong in (-1.0, 0.5, float("nan"), 1e300):
+            self.refuse(lambda file, wrong=wrong: file["numbers"].attrs.modify("rows", wrong),
+                        f"last.h5: rows = {wrong:g}, expected a whole number", "--overwrite")
 
     def test_consolidation(self):
         options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]

@@ -138,6 +138,9 @@ TEST_F(Lammps, BadDumpsNameFileAndLine)
               HasSubstr("bad.dump:8: centre x = 2"));
   EXPECT_THAT(refusal_of_dump(head + "pp pp pp\n0 1\n0 0\n0 1\n"), HasSubstr("no volume"));
   EXPECT_THAT(refusal_of_dump("ITEM: UNITS\nlj\n"), HasSubstr("units lj; expected si"));
+  for (const char *n : {"-1", "1.5", "1e300"})
+    EXPECT_THAT(refusal_of_dump("ITEM: NUMBER OF ATOMS\n" + std::string(n) + "\n"),
+                HasSubstr("bad.dump:2: " + std::string(n) + " atoms; expected a whole number below 2^32"));
 }
 
 TEST_F(Lammps, ADataFileOfAnotherProgram)

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One grain or two, against closed forms: the cases DEM-01 to DEM-05 of the verification manual of MFiX (R. Garg, J.
+// Galvin, T. Li, S. Pannala, Documentation of open-source MFIX-DEM software for gas-solids flows, 2012), which LAMMPS
+// has as well. DEM-06, the terminal velocity in a fluid, needs a drag that there is none of. Walls here are frictionless
+// and elastic, so what a case has as a plate with friction or a dashpot is a sphere a thousand times as large.
+#include "dem/assembly/assembly.hpp"
+#include "dem/contact/linear_rolling/law.hpp"
+#include "tests/support/near.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace isostat
+{
+namespace
+{
+constexpr double radius = 1e-4, plate_radius = 0.1, density = 2650, young = 1e7, g = 9.81;
+constexpr double kn = 2 * young * radius / (1 + radius / plate_radius); // of ball and plate, N/m
+
+double mass_of(double r) { return 4. / 3 * M_PI * r * r * r * density; }
+const double mass = mass_of(radius), natural = std::sqrt(kn / mass); // rad/s
+const double step = 0.01 / natural;
+
+LinearRolling sliding_law(double friction)
+{
+  LinearRolling law;
+  law.young = young, law.friction = friction;
+  return law.with({friction > 0, false, false});
+}
+
+struct Ball
+{
+  Vec3 centre, velocity, spin; ///< velocity and spin of the half step before
+};
+
+/// A ball above a plate at the origin, which lies on the floor where there is gravity. Velocities are those at the time
+/// of the start.
+class BallOnPlate
+{
+public:
+  BallOnPlate(const Vec3 &ball, const Vec3 &velocity, double friction, double damping, double gravity)
+      : assembly_(start(ball, velocity + 0.5 * step * Vec3(0, 0, gravity), friction, gravity),
+                  {.time_step = step, .contact_damping = damping, .damping = 0, .gravity = Vec3(0, 0, -gravity)})
+  {}
+
+  Ball after_step()
+  {
+    assembly_.compute_forces();
+    assembly_.move(assembly_.box());
+    const Packing &grains = assembly_.packing();
+    return {grains.centre(1) - grains.centre(0), grains.linear_velocity(1), grains.angular_velocity(1)};
+  }
+  /// After `least` steps more, the first in which they do not touch.
+  Ball after_contact(int least)
+  {
+    Ball ball = after_step();
+    for (int k = 0; k < least || gap(ball) < 0; ++k)
+      ball = after_step();
+    return ball;
+  }
+  static double gap(const Ball &ball) { return ball.centre.norm() - radius - plate_radius; }
+
+private:
+  static Snapshot start(const Vec3 &ball, const Vec3 &velocity, double friction, double gravity)
+  {
+    Snapshot s;
+    s.law = sliding_law(friction);
+    s.grains = make_packing({Vec3::Zero(), ball}, {plate_radius, radius}, density);
+    s.grains.set_linear_velocity(1, velocity);
+    const double sag = mass_of(plate_radius) * gravity / (young * plate_radius);
+    s.box = {Vec3(-1, -1, gravity > 0 ? sag - plate_radius : -1), Vec3::Constant(1)};
+    return s;
+  }
+  Assembly assembly_;
+};
+
+/// Fall from rest, then half a period of contact, and the way back up: a spring with a dashpot (DEM-01).
+TEST(SingleGrains, AFallingGrainBounces)
+{
+  constexpr double height = 1e-4, beta = 0.1;
+  BallOnPlate scene(Vec3(0, 0, plate_radius + radius + height), Vec3::Zero(), 0, beta, g);
+  const double fall = std::sqrt(2 * height / g), speed = g * fall;
+  const double damped = natural * std::sqrt(1 - beta * beta), sag = g / (natural * natural);
+  const double push_ends = std::atan2(2 * beta * std::sqrt(1 - beta * beta), 2 * beta * beta - 1) / damped; // F_n = 0
+  double falling = 0, touching = 0;
+  const double deepest = speed / natural;
+  for (int k = 1; k * step < fall + 0.98 * push_ends; ++k)
+    {
+      const double t = k * step, s = t - fall, gap = BallOnPlate::gap(scene.after_step());
+      if (s < 0)
+        falling = std::max(falling, std::abs(gap - (height - 0.5 * g * t * t)));
+      else
+        touching = std::max(touching, std::abs(gap + sag -
+                                               std::exp(-beta * natural * s) *
+                                                   (sag * std::cos(damped * s) +
+                                                    (beta * natural * sag - speed) / damped * std::sin(damped * s))));
+    }
+  EXPECT_BELOW_BECAUSE(falling / height, 1e-9, "round-off of 1e5 steps; a parabola is exact in the leapfrog");
+  EXPECT_BELOW_BECAUSE(touching / deepest, 0.02, "first order: the impact lies within a step of 0.01, the dashpot");
+}
+
+/// Each bounce reaches e^2 of the height before (DEM-02).
+TEST(SingleGrains, HeightsOfBouncesFallWithTheRestitution)
+{
+  constexpr double height = 4e-5, beta = 0.05;
+  const double w = std::sqrt(1 - beta * beta);
+  const double e = std::exp(-beta / w * (M_PI - std::atan2(2 * beta * w, 1 - 2 * beta * beta)));
+  BallOnPlate scene(Vec3(0, 0, plate_radius + radius + height), Vec3::Zero(), 0, beta, g);
+  double top = height, before = height;
+  for (int bounce = 1, rising = 0; bounce <= 4;)
+    {
+      const double gap = BallOnPlate::gap(scene.after_step());
+      rising = gap > before ? rising + 1 : 0;
+      if (rising > 0)
+        top = gap;
+      else if (top < height && before == top) // the first step down
+        {
+          EXPECT_CLOSE_BECAUSE(top / height, std::pow(e, 2 * bounce), 0.01 * bounce, "first order in the dashpot");
+          ++bounce;
+        }
+      if (gap < 0)
+        top = 0;
+      before = gap;
+    }
+}
+
+/// Two grains of different density, pressed between floor and ceiling, go to and fro (DEM-03).
+TEST(SingleGrains, TwoStackedGrainsAreTwoOscillators)
+{
+  constexpr double ceiling = 3.9 * radius, heavy = 2;
+  Snapshot s;
+  s.law = sliding_law(0);
+  const Eigen::Vector2d start(0.965 * radius, 2.92 * radius);
+  s.grains = make_packing({Vec3(0, 0, start[0]), Vec3(0, 0, start[1])}, {radius, radius}, density);
+  s.grains.velocity[4 + 3] /= heavy;
+  s.box = {Vec3(-1, -1, 0), Vec3(1, 1, ceiling)};
+
+  // M x'' = -K x + f with the stiffness E R of all three contacts, all of which stay closed
+  constexpr double k = young * radius;
+  const Eigen::Vector2d masses(mass, heavy * mass);
+  Eigen::Matrix2d stiffness;
+  stiffness << 2 * k, -k, -k, 2 * k;
+  const Eigen::Vector2d load(k * radius - 2 * k * radius - masses[0] * g,
+                             2 * k * radius + k * (ceiling - radius) - masses[1] * g);
+  const Eigen::Vector2d rest = stiffness.lu().solve(load);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> modes(stiffness, masses.asDiagonal().toDenseMatrix());
+  const Eigen::Vector2d amplitude = modes.eigenvectors().transpose() * masses.asDiagonal() * (start - rest);
+
+  const double dt = 0.01 / std::sqrt(modes.eigenvalues()[1]);
+  const Eigen::Vector2d pull = (load - stiffness * start).cwiseQuotient(masses);
+  for (int i = 0; i < 2; ++i)
+    s.grains.set_linear_velocity(i, Vec3(0, 0, -0.5 * dt * pull[i]));
+  Assembly grains(s, {.time_step = dt, .damping = 0, .gravity = Vec3(0, 0, -g)});
+  double worst = 0;
+  for (int n = 1; n <= 2000; ++n)
+    {
+      grains.compute_forces();
+      grains.move(grains.box());
+      Eigen::Vector2d expected = rest;
+      for (int m = 0; m < 2; ++m)
+        expected += modes.eigenvectors().col(m) * amplitude[m] * std::cos(std::sqrt(modes.eigenvalues()[m]) * n * dt);
+      for (int i = 0; i < 2; ++i)
+        worst = std::max(worst, std::abs(grains.packing().centre(i)[2] - expected[i]));
+    }
+  EXPECT_BELOW_BECAUSE(worst / (start - rest).norm(), 2e-4, "phase of 20 rad, off by (0.01)^2/24 of it");
+  EXPECT_GT((start - rest).norm(), 0.005 * radius);
+}
+
+/// A ball that is set down sliding is braked at mu g until it rolls, with 5/7 of its speed (DEM-04).
+TEST(SingleGrains, ASlidingBallBeginsToRoll)
+{
+  constexpr double speed = 0.01, friction = 0.3;
+  const double sag = g / (natural * natural), until = 2 * speed / (7 * friction * g);
+  BallOnPlate scene(Vec3(0, 0, plate_radius + radius - sag), Vec3(speed, 0, 0), friction, 0, g);
+  double worst = 0;
+  for (int k = 1; k * step < 1.5 * until; ++k)
+    {
+      const Ball ball = scene.after_step();
+      const double t = std::min((k - 0.5) * step, until); // of the half step
+      worst = std::max({worst, std::abs(ball.velocity.norm() - (speed - friction * g * t)),
+                        std::abs(ball.spin[1] * radius - 2.5 * friction * g * t)});
+    }
+  EXPECT_BELOW_BECAUSE(worst / speed, 5e-3, "mu g / (omega v) = 1e-3 of swinging on; the plate's slope, 1e-4");
+}
+
+/// Far from the normal a ball slides all the while it touches; without a limit of friction it swings half a period and
+/// more of its tangential spring (DEM-05).
+TEST(SingleGrains, ObliqueImpacts)
+{
+  constexpr double speed = 0.01, friction = 0.3;
+  const double contact = M_PI / (natural * step); // steps
+  const auto impact = [&](double angle, double mu) {
+    const Vec3 velocity = speed * Vec3(std::sin(angle), 0, -std::cos(angle));
+    const double ahead = plate_radius + radius + 1e-12;
+    return BallOnPlate(Vec3(0, 0, ahead), velocity, mu, 0, 0).after_contact(static_cast<int>(0.9 * contact));
+  };
+  for (const double degrees : {60., 70., 80.})
+    {
+      const double angle = degrees * M_PI / 180, normal = speed * std::cos(angle);
+      const Ball ball = impact(angle, friction);
+      EXPECT_NEAR_BECAUSE(ball.velocity[2] / normal, 1, 2e-3, "overlap of 2e-4 R, a step of 0.01");
+      EXPECT_CLOSE_BECAUSE(speed * std::sin(angle) - ball.velocity[0], 2 * friction * normal, 5e-3, "the same");
+      EXPECT_CLOSE_BECAUSE(ball.spin[1] * radius, 5 * friction * normal, 5e-3, "the same");
+    }
+  for (const double degrees : {5., 30., 60.})
+    {
+      const double tangential = speed * std::sin(degrees * M_PI / 180);
+      const double swing = 1 - std::cos(M_PI * std::sqrt(3.5 * LinearRolling().stiffness_ratio));
+      const Ball ball = impact(degrees * M_PI / 180, 1e3);
+      EXPECT_CLOSE_BECAUSE(ball.velocity[0] / tangential, 1 - 2. / 7 * swing, 5e-3, "the same");
+      EXPECT_CLOSE_BECAUSE(ball.spin[1] * radius / tangential, 5. / 7 * swing, 5e-3, "the same");
+    }
+}
+} // namespace
+} // namespace isostat
