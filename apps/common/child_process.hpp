@@ -41,6 +41,12 @@ private:
   Stopwatch watch_;
 };
 
+/// Runs a program to its end, without a shell. Ctrl-C ends that program, not this one.
+/// @param log  what it prints; replaced   @return its exit code, or 128 + the signal that ended it
+/// @throws RunFailure  it cannot be started, or the log not be written
+/// tested: tests/apps/report_test.py, tests/apps/figures_interrupt_test.py
+int run_program(std::vector<std::string> command, const std::filesystem::path &log);
+
 /// Last line of a log that says anything; empty if there is none.
 std::string last_line(const std::filesystem::path &log);
 } // namespace isostat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/result_folder.hpp"
 
-#include "apps/common/child_runs.hpp"
+#include "apps/common/child_process.hpp"
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
@@ -11,11 +11,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <thread>
 #include <vector>
 
@@ -28,7 +26,7 @@ namespace
 constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
 constexpr const char *lock_name = ".lock";
 
-/// As one word of a shell command.
+/// As one word of a shell command, for messages.
 std::string quoted(const fs::path &path)
 {
   std::string word = "'";
@@ -198,10 +196,18 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
     return fmt::format("figures were not drawn: {}", missing);
   const fs::path log = folder / "figures.log";
-  const std::string command = fmt::format("PYTHONPATH={} /usr/bin/python3 -B -m report leave {} {} > {} 2>&1",
-                                          quoted(shared_folder()), program, quoted(folder), quoted(log));
-  const int status = std::system(command.c_str()); // Ctrl-C ends that process, not this one
-  const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  int code = 0;
+  try
+    {
+      // -P: modules of the working folder, whosever they are, are left alone
+      code = run_program({"/usr/bin/env", "PYTHONPATH=" + shared_folder().string(), "/usr/bin/python3", "-B", "-P",
+                          "-m", "report", "leave", program, folder.string()},
+                         log);
+    }
+  catch (const RunFailure &failure)
+    {
+      return fmt::format("figures were not drawn: {}", failure.what());
+    }
   if (std::ranges::any_of(stopping_signals, [&](int signal) { return code == 128 + signal; }))
     throw Interrupted(fmt::format("interrupted while its figures were drawn; all other results are complete. Draw the "
                                   "figures with: isostat report {}",

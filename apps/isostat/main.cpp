@@ -95,7 +95,7 @@ void run(const std::vector<std::string> &words)
         if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
           throw InputError(missing);
         setenv("PYTHONPATH", shared_folder().c_str(), 1);
-        std::vector<std::string> call = {"/usr/bin/python3", "-B", "-m", "report"};
+        std::vector<std::string> call = {"/usr/bin/python3", "-B", "-P", "-m", "report"};
         call.insert(call.end(), words.begin(), words.end());
         become(call.front(), call);
       }

@@ -183,6 +183,20 @@ class Reports(ReportTest):
         self.assertIn("figures in cyclic/figures", result.stdout)
         self.assertNotIn("one page", result.stdout)
 
+    def test_python_of_the_working_folder_is_left_alone(self):
+        """Whoever wrote it: a folder of results from a stranger may hold anything."""
+        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
+        shutil.rmtree(self.folder / "cyclic/figures")
+        shutil.copy(self.runs / "cyclic.toml", self.folder)
+        for name in ("report", "figures", "json", "numpy", "random"):
+            self.write(f"{name}.py", "open('was_run', 'w').close()")
+        (self.folder / "cyclic/report.html").unlink()
+        self.assert_done(self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume"))
+        self.assertTrue((self.folder / "cyclic/report.html").exists())
+        self.assert_done(self.run_app("isostat", "report", "cyclic"))
+        self.assertTrue((self.folder / "cyclic/figures").is_dir())
+        self.assertFalse((self.folder / "was_run").exists())
+
     def test_a_package_that_is_missing_is_named(self):
         self.write("matplotlib.py", "raise ModuleNotFoundError('No module', name='matplotlib')")
         for module in ("figures", "report"):

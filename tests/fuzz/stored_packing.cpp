@@ -24,7 +24,7 @@ struct Files
   Files()
   {
     fs::create_directories(folder / "checkpoint");
-    const Specimen lattice{sheared_lattice(), {{"title", "a lattice"}}, {{"void_ratio", 0.9}, {"seed", 1}}};
+    const Specimen lattice{fuzz::sheared_lattice(), {{"title", "a lattice"}}, {{"void_ratio", 0.9}, {"seed", 1}}};
     write_specimen(folder / "specimen.h5", lattice);
     specimen = read_text(folder / "specimen.h5");
     LibraryWriter writer = LibraryWriter::create(folder / "library.h5");
