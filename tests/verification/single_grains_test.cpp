@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One grain or two, against closed forms: the cases DEM-01 to DEM-05 of the verification manual of MFiX (R. Garg, J.
 // Galvin, T. Li, S. Pannala, Documentation of open-source MFIX-DEM software for gas-solids flows, 2012), which LAMMPS
-// has as well. DEM-06, the terminal velocity in a fluid, needs a drag that there is none of. Walls here are frictionless
-// and elastic, so what a case has as a plate with friction or a dashpot is a sphere a thousand times as large.
+// has as well. DEM-06, the terminal velocity in a fluid, needs a drag that there is none of. Walls are frictionless and
+// elastic, so what a case has as a plate with friction or a dashpot is a sphere a thousand times as large.
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "tests/support/near.hpp"
