@@ -51,8 +51,10 @@ TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSetti
 {
   Snapshot initial = specimen.state;
   initial.law = scene.contact;
-  return {
-      .assembly = std::make_shared<Assembly>(initial, how), .state = {}, .specimen = specimen.numbers, .resumed = {}};
+  TestRun run;
+  run.assembly = std::make_shared<Assembly>(initial, how);
+  run.specimen = specimen.numbers;
+  return run;
 }
 
 TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettings &how)

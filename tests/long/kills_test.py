@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs that are killed (SIGKILL) at random moments, again and again, and go on with another number of threads, jobs or
+ranks: what is left in the end are the bytes of a run that nobody disturbed. Not part of the usual tests: ctest --preset
+long.
+
+ISOSTAT_KILLS   of each program (20)          ISOSTAT_SEED    draws the same moments again
+"""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
+from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (the path comes first)
+from column_support import NO_FILES, settings  # noqa: E402
+from failures_test import COLUMN  # noqa: E402
+from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
+from support import AppTest, main, tiny_scene  # noqa: E402
+
+KILLS = int(os.environ.get("ISOSTAT_KILLS", "20"))
+SEED = int(os.environ.get("ISOSTAT_SEED", time.time_ns() % 1000000))
+ROW = 5  # kills until a run is left to its end
+SAVED = settings(output__checkpoint="1e-9 min")
+NO_RESULTS = NO_FILES | {".lock", "summary.txt", "summary.json"}  # of clocks, and of how often it was started
+ONE_TEST = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "40 kPa"\nmax_steps = {}\n'
+RANKS = ("mpirun", "--oversubscribe", "-n")
+
+
+class Kills(AppTest):
+    def setUp(self):
+        super().setUp()
+        os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        self.draw = random.Random(SEED)
+
+    def results(self, folder, left_out):
+        root = self.folder / folder
+        files = [root] if root.is_file() else [path for path in root.rglob("*") if path.is_file()]
+        return {path.relative_to(root): path.read_bytes() for path in files
+                if path.name not in NO_RESULTS and not left_out & set(path.relative_to(root).parts)}
+
+    def run_to(self, command, wait):
+        """Whether it was killed, after `wait` s; 0: it is left alone, and must not fail."""
+        with subprocess.Popen([str(word) for word in command], cwd=self.folder, start_new_session=True, text=True,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+            try:
+                said = process.communicate(timeout=wait or None)[1]
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate()
+                return True
+        self.assertEqual(process.returncode, 0, f"ISOSTAT_SEED={SEED}\n{said}")
+        return False
+
+    def kill(self, program, arguments, goes_on, others=(("--threads", (1, 2)),), ranks=(), left_out=()):
+        """@param goes_on  options of a call that goes on, from whether there is a checkpoint   @param others  option and
+        its values, one of which each call has   @param left_out  names of files and folders that are no results"""
+        begin = time.monotonic()
+        left_out = {"checkpoint", *left_out}
+        self.run_to([*self.command(program, *arguments), "-o", "whole"], 0)
+        whole, seconds, killed, rows = self.results("whole", left_out), time.monotonic() - begin, 0, 0
+        while killed < KILLS:
+            shutil.rmtree(self.folder / "parts", ignore_errors=True)
+            (self.folder / "parts").unlink(missing_ok=True)
+            for k in range(ROW + 1):
+                command = [*self.command(program, *arguments), "-o", "parts"]
+                for option, values in others:
+                    command += [option, self.draw.choice(values)]
+                command += goes_on(self.folder / "parts")
+                if ranks:
+                    command = [*RANKS, self.draw.choice(ranks), *command]
+                if not self.run_to(command, self.draw.uniform(0.02, seconds) if k < ROW else 0):
+                    break
+                killed += 1
+            self.assertEqual(self.results("parts", left_out), whole, f"ISOSTAT_SEED={SEED}")
+            rows += 1
+        print(f"  {program}: {killed} kills in {rows} runs, {time.monotonic() - begin:.0f} s", flush=True)
+
+    @staticmethod
+    def with_resume(parts):
+        """As a user does: from the checkpoint, or anew."""
+        if any(parts.glob("checkpoint/*.h5")):
+            return ["--resume"]
+        return ["--overwrite"] if (parts / "scene.toml").exists() else []
+
+    def folder_of_run(self, parts):
+        if parts.is_dir() and not (parts / "scene.toml").exists():
+            shutil.rmtree(parts)  # it was killed before it had written what it is
+        return self.with_resume(parts)
+
+    def test_element_test(self):
+        scene = self.write("scene.toml", tiny_scene(stages=ONE_TEST.format(4000)))
+        self.kill("element_test", (scene, *SAVED, "-q", "--no-figures"), self.folder_of_run)
+
+    def test_specimen_library(self):
+        scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
+        self.kill("specimen_library", (scene, *FEW, "-n", 3, "-q"),
+                  lambda parts: ["--append"] if parts.exists() else [], others=(("--jobs", (1, 2)),))
+
+    def test_liquefaction_resistance(self):
+        scene = self.write("scene.toml", tiny_scene(stages=ONE_TEST.format(2000)))
+        self.kill("liquefaction_resistance", (scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
+                  lambda parts: [], others=(("--jobs", (1, 2)),), left_out=("queue", "logs"))
+
+    def test_soil_column(self):
+        scene = self.write("column.toml", COLUMN)
+        self.kill("soil_column", (scene, *SAVED, "-q", "--no-figures"), self.folder_of_run, ranks=(1, 2, 3))
+
+    def test_column_of_grains(self):
+        scene = self.write("grains.toml", COLUMN_OF_GRAINS.format(cache=self.folder))
+        library = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
+        self.assert_done(self.run_app(
+            "specimen_library", library, "-o", "library.h5", "--pressures", "30 kPa", "-q",
+            *settings(grading__grains=250, grading__cloud_edge="2.924 mm", specimen__density_tolerance=0.04)))
+        self.run_to([*self.command("soil_column", scene), "-o", "first", "-q", "--no-figures"], 0)  # fills the cache
+        self.kill("soil_column", (scene, "-q", "--no-figures"), self.folder_of_run, ranks=(1, 2, 3))
+
+    def test_biaxial(self):
+        self.kill("biaxial", (self.write("block.toml", FRICTION), *SAVED, "-q", "--no-figures"), self.folder_of_run)
+
+    def test_block_of_grains(self):
+        scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
+        self.assert_done(self.run_app("specimen_library", scene, *FEW, "-n", "2", "-o", "library.h5", "-q"))
+        self.kill("biaxial", (self.write("block.toml", BLOCK), *SAVED, "-q", "--no-figures"), self.folder_of_run)
+
+
+if __name__ == "__main__":
+    main()
