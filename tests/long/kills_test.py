@@ -57,8 +57,9 @@ class Kills(AppTest):
         return False
 
     def kill(self, program, arguments, goes_on, others=(("--threads", (1, 2)),), ranks=(), left_out=()):
-        """@param goes_on  options of a call that goes on, from whether there is a checkpoint   @param others  option and
-        its values, one of which each call has   @param left_out  names of files and folders that are no results"""
+        """@param goes_on   options of a call, from what is there
+        @param others    options and their values, one of which each call has
+        @param left_out  names of files and folders that are no results"""
         begin = time.monotonic()
         left_out = {"checkpoint", *left_out}
         self.run_to([*self.command(program, *arguments), "-o", "whole"], 0)
