@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
+#include <new>
 #include <span>
 #include <string_view>
 
@@ -43,6 +44,13 @@ int guarded(const std::function<void()> &program)
     {
       std::fprintf(stderr, "%s\n", stop.what());
       return 130;
+    }
+  catch (const std::bad_alloc &)
+    {
+      std::fputs("failed: there is not enough memory, or a limit of it (ulimit -v) is reached. Give fewer grains or "
+                 "points, or run fewer side by side; what a checkpoint holds goes on with --resume\n",
+                 stderr);
+      return 1;
     }
   catch (const std::exception &error)
     {

@@ -2,7 +2,7 @@
 // Preloaded into a program (LD_PRELOAD), makes calls of one kind fail, as a full disk or a folder without permission
 // does:
 //
-//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir, flock; of files below FAILING_UNDER
+//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir, flock; of files below FAILING_UNDER; or malloc
 //   FAILING_AT      number of the first call that fails, counted from 1; 0: none
 //   FAILING_CALLS   how many fail from there on; left out: all
 //   FAILING_CODE    errno, ENOSPC if left out
@@ -23,6 +23,10 @@
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
+
+// What glibc has beneath its own malloc and the others.
+extern "C" void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t),
+    *__libc_memalign(size_t, size_t);
 
 namespace
 {
@@ -79,6 +83,8 @@ bool fails()
   errno = plan.code;
   return true;
 }
+
+bool fails(const char *kind) { return planned && std::strcmp(kind, plan.kind) == 0 && fails(); }
 
 bool fails(const char *kind, const char *path)
 {
@@ -153,6 +159,16 @@ int flock(int descriptor, int how)
 {
   ISOSTAT_NEXT(flock);
   return fails("flock", descriptor) ? -1 : original(descriptor, how);
+}
+void *malloc(size_t n) { return fails("malloc") ? nullptr : __libc_malloc(n); }
+void *calloc(size_t n, size_t size) { return fails("malloc") ? nullptr : __libc_calloc(n, size); }
+void *realloc(void *old, size_t n) { return fails("malloc") ? nullptr : __libc_realloc(old, n); }
+void *memalign(size_t alignment, size_t n) { return fails("malloc") ? nullptr : __libc_memalign(alignment, n); }
+void *aligned_alloc(size_t alignment, size_t n) { return memalign(alignment, n); }
+int posix_memalign(void **result, size_t alignment, size_t n)
+{
+  *result = memalign(alignment, n);
+  return *result ? 0 : ENOMEM;
 }
 int rename(const char *from, const char *to)
 {
