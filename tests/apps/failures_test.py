@@ -8,15 +8,17 @@ import errno
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 
 from biaxial_test import FRICTION
-from support import BIN, PATIENCE, AppTest, main, tiny_scene
+from support import BIN, CYCLIC, PATIENCE, AppTest, main, tiny_scene
 
 KINDS = ("open", "write", "fsync", "rename", "mkdir")
 LIBRARY = BIN.parent / "tests/libfailing_calls.so"
 SAVED = ("--set", "output.checkpoint=1e-9 min")
 EVERY = bool(os.environ.get("ISOSTAT_EVERY_CALL"))
+SHORT_TEST = tiny_scene(stages=CYCLIC.format(steps=600))
 COLUMN = """[[layer]]
 thickness = "4 m"
 cells = 4
@@ -42,12 +44,13 @@ paraview_interval = "0.3 s"
 class Failures(AppTest):
     def run_failing(self, command, kind="none", at=0, calls=0, code=errno.ENOSPC):
         count = self.folder / "calls.txt"
+        count.unlink(missing_ok=True)
         plan = {"LD_PRELOAD": LIBRARY, "FAILING_KIND": kind, "FAILING_PROGRAM": pathlib.Path(command[0]).name,
                 "FAILING_UNDER": self.folder / "out", "FAILING_AT": at,
                 "FAILING_CALLS": calls, "FAILING_CODE": code, "FAILING_COUNT": count}
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
                                 check=False, env=os.environ | {name: str(value) for name, value in plan.items()})
-        return result, int(count.read_text(encoding="utf-8"))
+        return result, int(count.read_text(encoding="utf-8")) if count.exists() else None
 
     def files(self, folder):
         """Results with their bytes, without what tells of times and calls and the checkpoints, which may be others."""
@@ -101,8 +104,7 @@ class Failures(AppTest):
         print(f"  {program}: {dict(tried)} failures", flush=True)
 
     def test_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
-                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 600\n'))
+        scene = self.write("scene.toml", SHORT_TEST)
         self.every_call("element_test", scene, *SAVED)
 
     def test_biaxial(self):
@@ -111,10 +113,33 @@ class Failures(AppTest):
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=3)
 
+    def test_memory(self):
+        """Where it runs out within HDF5 1.10 that library may crash, or end the program with 255: files are whole even
+        so, as nothing of HDF5 writes to them."""
+        arguments = (self.write("scene.toml", SHORT_TEST), *SAVED)
+        self.assert_done(self.run_app("element_test", *arguments, "-o", "whole", "--no-figures", "-q"))
+        whole = self.files("whole")
+        command = self.command("element_test", *arguments, "-o", "out", "--no-figures", "-q")
+        result, n = self.run_failing(command, "malloc")
+        self.assert_done(result)
+        codes = collections.Counter()
+        for calls in (1, 0):
+            for at in range(1, n + 1, 1 if EVERY else n // 12):
+                with self.subTest(at=at, calls=calls):
+                    self.empty()
+                    result, _ = self.run_failing(command, "malloc", at, calls, errno.ENOMEM)
+                    codes[result.returncode] += 1
+                    self.assertIn(result.returncode, (0, 1, 255, -signal.SIGSEGV, -signal.SIGABRT), result.stderr)
+                    if result.returncode == 1:
+                        self.assertRegex(result.stderr, "not enough memory|cannot write|not enough space|bad_alloc")
+                    if result.returncode != 0:
+                        self.goes_on("element_test", arguments)
+                    self.assertEqual(self.files("out"), whole)
+        print(f"  element_test: {sum(codes.values())} of {n} allocations failed, exit codes {dict(codes)}", flush=True)
+
     def test_without_locks(self):
         """On a file system that has none: one run goes on, many in one folder would not be safe."""
-        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
-                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 600\n'))
+        scene = self.write("scene.toml", SHORT_TEST)
         command = self.command("element_test", scene, "-o", "out", "--no-figures", "-q")
         result, n = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assert_done(result)

@@ -10,7 +10,7 @@ import time
 
 from biaxial_test import FRICTION
 from failures_test import COLUMN, SAVED
-from support import PATIENCE, AppTest, main, tiny_scene
+from support import CYCLIC, PATIENCE, AppTest, main, tiny_scene
 
 WITHOUT = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they tell of times
 
@@ -54,8 +54,7 @@ class SharedFolder(AppTest):
         self.assertEqual(self.files("out"), self.files("whole"))
 
     def test_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages='[[stage]]\nkind = "undrained-cyclic"\n'
-                                                    'deviator_amplitude = "40 kPa"\nmax_steps = 6000\n'))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         self.share("element_test", scene, *SAVED)
 
     def test_biaxial(self):

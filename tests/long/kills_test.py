@@ -20,14 +20,13 @@ from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (th
 from column_support import NO_FILES, settings  # noqa: E402
 from failures_test import COLUMN  # noqa: E402
 from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
-from support import AppTest, main, tiny_scene  # noqa: E402
+from support import CYCLIC, AppTest, main, tiny_scene  # noqa: E402
 
 KILLS = int(os.environ.get("ISOSTAT_KILLS", "20"))
 SEED = int(os.environ.get("ISOSTAT_SEED", time.time_ns() % 1000000))
 ROW = 5  # kills until a run is left to its end
 SAVED = settings(output__checkpoint="1e-9 min")
 NO_RESULTS = NO_FILES | {".lock", "summary.txt", "summary.json"}  # of clocks, and of how often it was started
-ONE_TEST = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "40 kPa"\nmax_steps = {}\n'
 RANKS = ("mpirun", "--oversubscribe", "-n")
 
 
@@ -94,7 +93,7 @@ class Kills(AppTest):
         return self.with_resume(parts)
 
     def test_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages=ONE_TEST.format(4000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
         self.kill("element_test", (scene, *SAVED, "-q", "--no-figures"), self.folder_of_run)
 
     def test_specimen_library(self):
@@ -103,7 +102,7 @@ class Kills(AppTest):
                   lambda parts: ["--append"] if parts.exists() else [], others=(("--jobs", (1, 2)),))
 
     def test_liquefaction_resistance(self):
-        scene = self.write("scene.toml", tiny_scene(stages=ONE_TEST.format(2000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
         self.kill("liquefaction_resistance", (scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
                   lambda parts: [], others=(("--jobs", (1, 2)),), left_out=("queue", "logs"))
 

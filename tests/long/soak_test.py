@@ -75,10 +75,11 @@ class Soak(AppTest):
         momentum = np.linalg.norm((mass * velocity[:, :3]).sum(axis=0)) / np.abs(mass * velocity[:, :3]).sum()
         volume = np.ptp(e) / (1 + e[0])
         summary = json.loads((self.results / "summary.json").read_text(encoding="utf-8"))
-        print(f"  {step[-1]:.0f} steps in {len(pieces)} pieces, {rows['reversals'][-1]:.0f} reversals, p' "
-              f"{p.min():.1f} to {p.max():.0f} Pa\n"
-              f"  volume within {volume:.1e}, residual {np.abs(residual).max():.2e} J of {np.abs(work).max():.2e} J of work, "
-              f"momentum {momentum:.1e} of the sum of all\n  memory {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files {size:.1f} MB", flush=True)
+        print(f"  {step[-1]:.0f} steps in {len(pieces)} pieces, {rows['reversals'][-1]:.0f} reversals, "
+              f"p' {p.min():.1f} to {p.max():.0f} Pa\n"
+              f"  volume within {volume:.1e}, residual {np.abs(residual).max():.2e} J of {np.abs(work).max():.2e} J of "
+              f"work, momentum {momentum:.1e} of the sum of all\n"
+              f"  memory {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files {size:.1f} MB", flush=True)
         self.assertEqual(summary["steps"], step[-1])
         self.assertGreaterEqual(step[-1], STEPS)
         self.assertTrue((np.diff(step) > 0).all())

@@ -39,7 +39,8 @@ struct Plan
   int code = ENOSPC;
 };
 Plan plan;
-bool planned = false;
+bool is_planned = false, planned = false; ///< for this program; from now on
+int (*own_main)(int, char **, char **);
 
 long number(const char *name, long otherwise)
 {
@@ -59,7 +60,7 @@ __attribute__((constructor)) void read_plan()
     plan.last = plan.at + n - 1;
   plan.code = static_cast<int>(number("FAILING_CODE", ENOSPC));
   const char *program = std::getenv("FAILING_PROGRAM");
-  planned = *plan.kind != 0 && program && std::strcmp(program, program_invocation_short_name) == 0;
+  is_planned = *plan.kind != 0 && program && std::strcmp(program, program_invocation_short_name) == 0;
 }
 
 __attribute__((destructor)) void write_count()
@@ -121,6 +122,18 @@ Function next(Function, const char *name)
 
 extern "C"
 {
+// What is needed before the program itself begins does not fail.
+int __libc_start_main(int (*program)(int, char **, char **), int argc, char **argv, void (*init)(), void (*fini)(),
+                      void (*unload)(), void *stack_end)
+{
+  ISOSTAT_NEXT(__libc_start_main);
+  own_main = program;
+  const auto begin = [](int n, char **arguments, char **environment) {
+    planned = is_planned;
+    return own_main(n, arguments, environment);
+  };
+  return original(begin, argc, argv, init, fini, unload, stack_end);
+}
 int open(const char *path, int flags, ...)
 {
   std::va_list list;
