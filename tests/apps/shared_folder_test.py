@@ -24,7 +24,8 @@ class SharedFolder(AppTest):
     @contextlib.contextmanager
     def halted(self, command):
         """A run that has a checkpoint and stands still."""
-        with subprocess.Popen([*command, "-o", "out", "-q", "--no-figures"], cwd=self.folder) as process:
+        with subprocess.Popen([*command, "-o", "out", "-q", "--no-figures"], cwd=self.folder,
+                              stdout=subprocess.DEVNULL) as process:
             end = time.time() + 60 * PATIENCE
             while not (self.folder / "out/checkpoint/last.h5").exists() and time.time() < end:
                 time.sleep(0.005)
