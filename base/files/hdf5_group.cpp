@@ -113,6 +113,17 @@ Handle create_dataset(const FileState &file, const std::string &item, hid_t spac
                  file, item, "creating the dataset failed (does it exist already?)");
 }
 
+/// Rows that a dataset claims, but does not store, would ask for any amount of memory. Deflated zeros take a 1032nd of
+/// their size; rows that a resumed run has filled up take nothing.
+void expect_stored(const FileState &file, const std::string &item, hid_t dataset, hid_t type, hid_t space)
+{
+  constexpr double most_deflated = 1100, filled_up = 1 << 26;
+  const auto n = static_cast<double>(H5Sget_simple_extent_npoints(space));
+  const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
+  if (n < 0 || n * static_cast<double>(H5Tget_size(type)) > most_deflated * stored + filled_up)
+    fail(file, item, fmt::format("it claims {:.0f} values, but stores {:.0f} bytes", n, stored));
+}
+
 Shape extent(hid_t dataset)
 {
   const Handle space(H5Dget_space(dataset), H5Sclose);
@@ -189,6 +200,7 @@ std::vector<T> Group::read(const std::string &name) const
 {
   const Handle dataset = open_dataset(*file_, child(name));
   const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  expect_stored(*file_, child(name), dataset, type, space);
   return read_values<T>(*file_, child(name), type, space, [id = hid_t(dataset)](hid_t memory, void *buffer) {
     return H5Dread(id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
   });

@@ -48,6 +48,7 @@ struct Content
   hid_t type = -1, space = -1;
   std::vector<std::uint64_t> words; ///< the values, in whatever type
   const char *text = nullptr;       ///< of a string of variable length
+  bool stored = true;               ///< not more rows than there are values for
 
   explicit Content(Choices &choices)
   {
@@ -63,6 +64,12 @@ struct Content
     space =
         shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
     choose_type(choices);
+    if (shape.size() == 1 && choices.below(16) == 0)
+      {
+        const hsize_t rows = 1'000'000'000'000;
+        H5Sset_extent_simple(space, 1, &rows, nullptr);
+        stored = false;
+      }
     const bool real = choices.below(2) == 0;
     const double x = choices.number();
     const std::uint64_t k = choices.count();
@@ -109,7 +116,8 @@ void add_dataset(hid_t file, const std::string &name, Choices &choices)
 {
   const Content content(choices);
   const hid_t id = H5Dcreate2(file, name.c_str(), content.type, content.space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  H5Dwrite(id, content.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.words.data());
+  if (content.stored)
+    H5Dwrite(id, content.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.words.data());
   H5Dclose(id);
 }
 
@@ -118,7 +126,8 @@ void add_attribute(hid_t file, const std::string &object, const std::string &nam
   const Content content(choices);
   const hid_t id = H5Acreate_by_name(file, object.c_str(), name.c_str(), content.type, content.space, H5P_DEFAULT,
                                      H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(id, content.type, content.words.data());
+  if (content.stored)
+    H5Awrite(id, content.type, content.words.data());
   H5Aclose(id);
 }
 

@@ -165,6 +165,20 @@ TEST_F(Hdf5, BadItemsNameFileItemAndExpectation)
   EXPECT_THAT(message_of<InputError>([&] { group.attribute<std::string>("number"); }), HasSubstr("text"));
 }
 
+TEST_F(Hdf5, RowsThatAreNotThereAskForNoMemory)
+{
+  File file = File::create(folder / "huge.h5");
+  Group root = file.root();
+  root.create_series("x", "m");
+  root.append("x", std::vector<double>{1, 2});
+  root.resize("x", 1'000'000'000'000);
+  file.commit();
+  EXPECT_LT(std::filesystem::file_size(folder / "huge.h5"), 100'000u);
+  const File again = File::open(folder / "huge.h5");
+  EXPECT_THAT(message_of<InputError>([&] { again.root().read<double>("x"); }),
+              HasSubstr("/x: it claims 1000000000000 values, but stores "));
+}
+
 TEST_F(Hdf5, BytesComeBackWhateverTheirNumber)
 {
   const std::filesystem::path path = folder / "bytes.h5";
