@@ -113,15 +113,18 @@ Handle create_dataset(const FileState &file, const std::string &item, hid_t spac
                  file, item, "creating the dataset failed (does it exist already?)");
 }
 
-/// Rows that a dataset claims, but does not store, would ask for any amount of memory. Deflated zeros take a 1032nd of
-/// their size; rows that a resumed run has filled up take nothing.
-void expect_stored(const FileState &file, const std::string &item, hid_t dataset, hid_t type, hid_t space)
+/// A dataset that stores what it claims: rows that are not there would ask for any amount of memory. Deflated zeros
+/// take a 1032nd of their size; rows that a resumed run has filled up take nothing.
+Handle open_stored(const FileState &file, const std::string &item)
 {
-  constexpr double most_deflated = 1100, filled_up = 1 << 26;
+  constexpr double most_deflated = 1100, filled_up = 1 << 20;
+  Handle dataset = open_dataset(file, item);
+  const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
   const auto n = static_cast<double>(H5Sget_simple_extent_npoints(space));
   const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
   if (n < 0 || n * static_cast<double>(H5Tget_size(type)) > most_deflated * stored + filled_up)
     fail(file, item, fmt::format("it claims {:.0f} values, but stores {:.0f} bytes", n, stored));
+  return dataset;
 }
 
 Shape extent(hid_t dataset)
@@ -193,14 +196,13 @@ Group Group::create_group(const std::string &name)
   return {file_, child(name)};
 }
 
-Shape Group::shape(const std::string &name) const { return extent(open_dataset(*file_, child(name))); }
+Shape Group::shape(const std::string &name) const { return extent(open_stored(*file_, child(name))); }
 
 template <typename T>
 std::vector<T> Group::read(const std::string &name) const
 {
-  const Handle dataset = open_dataset(*file_, child(name));
+  const Handle dataset = open_stored(*file_, child(name));
   const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
-  expect_stored(*file_, child(name), dataset, type, space);
   return read_values<T>(*file_, child(name), type, space, [id = hid_t(dataset)](hid_t memory, void *buffer) {
     return H5Dread(id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
   });

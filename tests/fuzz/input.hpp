@@ -42,6 +42,21 @@ auto accepted(const Read &read) -> std::optional<decltype(read())>
     }
 }
 
+/// The same where what can be read may still not be run.
+template <typename Run>
+auto possible(const Run &run) -> std::optional<decltype(run())>
+{
+  try
+    {
+      return accepted(run);
+    }
+  catch (const RunFailure &failure)
+    {
+      require(std::string_view(failure.what()).size() > 10, "a failure says what is wrong");
+      return std::nullopt;
+    }
+}
+
 inline std::string text_of(const std::uint8_t *data, std::size_t size)
 {
   return {reinterpret_cast<const char *>(data), size};
