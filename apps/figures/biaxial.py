@@ -18,7 +18,7 @@ half of the block's width. Compression is positive.
 import h5py
 import numpy as np
 
-from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, cut_ends, plt, read_history, read_summary
+from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, cut_ends, plain, plt, read_history, read_summary
 from .drawing import Drawing
 
 PANELS = 5
@@ -179,7 +179,7 @@ def band(block):
         elements = block.cells(field)
         print(f"shear strain since {when} over its mean: points up to {field.max():.2f}, elements {elements.min():.2f} "
               f"to {elements.max():.2f}; {band_words(block, field)}")
-    whose = f"{block.name}: " if block.beside else ""
+    whose = f"{plain(block.name)}: " if block.beside else ""
     maps = [(total, 0, "Shear strain / mean", whose + "since the start"),
             (came, 0, "Shear strain / mean", f"since {100 * block.strain[before]:.2g} %")]
     if block.maps["redundancy"].any():
@@ -188,7 +188,8 @@ def band(block):
     figure, axes = plt.subplots(1, 1 + len(maps), figsize=(3.2 + 2.1 * len(maps), 3.5), constrained_layout=True,
                                 gridspec_kw={"width_ratios": [1.7] + [1] * len(maps)})
     for run, color in zip([block, *block.beside], (BLACK, ORANGE, BLUE, GREEN)):
-        axes[0].plot(100 * run.history["axial_strain"], run.history["axial_stress"] / 1e3, color=color, label=run.name)
+        axes[0].plot(100 * run.history["axial_strain"], run.history["axial_stress"] / 1e3, color=color,
+                     label=plain(run.name))
     axes[0].set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
     axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
     axes[0].set_xlim(left=0)

@@ -13,7 +13,7 @@ import csv
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain_log_ticks, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain, plain_log_ticks, plt
 from .drawing import Drawing
 from .files import read_parsed
 
@@ -78,7 +78,8 @@ def draw_curve(upper, lower, curve):
     draw_band(upper, curve.strain, curve.q)
     if curve.drained:
         draw_band(lower, curve.strain, curve.other)
-    upper.set_title(curve.name + (" (blind)" if curve.blind else ""), fontsize=8.5, color=RED if curve.blind else BLACK)
+    upper.set_title(plain(curve.name) + (" (blind)" if curve.blind else ""), fontsize=8.5,
+                    color=RED if curve.blind else BLACK)
     upper.set_xlabel(r"$\varepsilon_1$ (%)")
     lower.set_xlabel(r"$\varepsilon_1$ (%)" if curve.drained else r"$p^\prime$ (kPa)")
 

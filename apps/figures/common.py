@@ -54,6 +54,11 @@ def note(text):
     print(f"figures: {text}", file=sys.stderr)
 
 
+def plain(text):
+    """Words of a user, for matplotlib: a dollar sign begins no formula."""
+    return str(text).replace("$", r"\$")
+
+
 # --- reading ---------------------------------------------------------------------------------------------------------
 
 

@@ -4,7 +4,7 @@ import dataclasses
 import re
 import typing
 
-from .common import STYLE, BadInput, plt
+from .common import STYLE, BadInput, plain, plt
 
 # What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
 KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil",
@@ -60,7 +60,7 @@ class Drawing:
     @staticmethod
     def _save(name, figure, results, out):
         if results.title:
-            figure.suptitle(results.title, fontsize=9.5, x=0.01, ha="left")
+            figure.suptitle(plain(results.title), fontsize=9.5, x=0.01, ha="left")
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
         figure.savefig(out / f"{name}.png")

@@ -16,7 +16,7 @@ import re
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plt
+from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plain, plt
 from .drawing import Drawing
 from .files import read_parsed
 
@@ -107,7 +107,7 @@ def roses(analysis):
             axes.set_ylim(0, max(1.6, min(3.5, 1.05 * max(density.max(), force.max()))))
             axes.tick_params(labelsize=7, pad=0)
             if row == 0:
-                axes.set_title(name + "\n" + analysis.label(name).split(": ")[1].replace(", ", "\n"), fontsize=8)
+                axes.set_title(plain(name) + "\n" + analysis.label(name).split(": ")[1].replace(", ", "\n"), fontsize=8)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, 0.06, 1, 0.94))
     figure.legend(handles, labels, loc="lower center", ncols=3)

@@ -183,6 +183,18 @@ class Reports(ReportTest):
         self.assertIn("figures in cyclic/figures", result.stdout)
         self.assertNotIn("one page", result.stdout)
 
+    def test_a_title_is_words(self):
+        """Neither markup nor formula, whatever stands in it."""
+        title = "<script>alert(1)</script> $x_{ % $ \\frac{"
+        scene = (self.runs / "cyclic.toml").read_text(encoding="utf-8").replace('"tiny"', f"'{title}'")
+        self.assertIn(title, scene)
+        result = self.run_app("element_test", self.write("odd.toml", scene), "-o", "odd", "-q")
+        self.assert_done(result)
+        self.assertIn("all on one page", result.stdout)
+        text = (self.folder / "odd/report.html").read_text(encoding="utf-8")
+        self.assertNotIn("<script>alert", text)
+        self.assertIn(html.escape(title), text)
+
     def test_python_of_the_working_folder_is_left_alone(self):
         """Whoever wrote it: a folder of results from a stranger may hold anything."""
         shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
