@@ -99,6 +99,21 @@ public:
   BiaxialSummary go()
   {
     open();
+    try
+      {
+        run();
+      }
+    catch (const RunFailure &failure) // of its files
+      {
+        throw failure_of_run(failure, request_.folder);
+      }
+    summary_.complete = summary_.failure.empty();
+    return with_costs();
+  }
+
+private:
+  void run()
+  {
     progress_.say(fmt::format("{} points, {} steps{}", space_.n_points(), scene_.test.steps,
                               resumed_ ? fmt::format(", from step {} on", summary_.steps) : ""));
     if (!resumed_)
@@ -112,11 +127,8 @@ public:
         if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
           save();
       }
-    summary_.complete = summary_.failure.empty();
-    return with_costs();
   }
 
-private:
   void open()
   {
     folder_ = open_result_folder(request_.folder, request_.use);

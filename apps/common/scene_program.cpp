@@ -121,9 +121,22 @@ bool has_finished(const std::filesystem::path &folder, FolderUse use, const std:
   return true;
 }
 
-std::string last_checkpoint(const std::filesystem::path &folder)
+RunFailure failure_of_run(const RunFailure &failure, const std::filesystem::path &folder,
+                          const std::function<void()> &flush)
 {
+  std::string what = failure.what();
+  try
+    {
+      flush();
+    }
+  catch (const std::exception &error) // the disk is full, say
+    {
+      if (what.find(error.what()) == std::string::npos)
+        what += fmt::format("\n  and then: {}", error.what());
+    }
   const std::filesystem::path last = folder / "checkpoint" / "last.h5";
-  return "last good checkpoint: " + (std::filesystem::exists(last) ? last.string() : "none was written yet");
+  std::error_code ignored;
+  const bool there = std::filesystem::exists(last, ignored);
+  return RunFailure(fmt::format("{}\n  last good checkpoint: {}", what, there ? last.string() : "there is none"));
 }
 } // namespace isostat

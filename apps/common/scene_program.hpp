@@ -3,6 +3,9 @@
 #pragma once
 #include "apps/common/command_line.hpp"
 #include "apps/common/result_folder.hpp"
+#include "base/error.hpp"
+
+#include <functional>
 
 namespace isostat
 {
@@ -69,6 +72,8 @@ bool has_finished(const std::filesystem::path &folder, FolderUse use, const std:
 /// tested: tests/apps/figures_interrupt_test.py
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures);
 
-/// A line for a failure: where the last good checkpoint is.
-std::string last_checkpoint(const std::filesystem::path &folder);
+/// A failure with what a last attempt to bring its files up to date had to say, and a line about the last checkpoint.
+/// tested: tests/apps/shared_folder_test.py, tests/apps/failures_test.py
+RunFailure failure_of_run(
+    const RunFailure &failure, const std::filesystem::path &folder, const std::function<void()> &flush = [] {});
 } // namespace isostat

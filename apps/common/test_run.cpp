@@ -86,8 +86,7 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
     }
   catch (const RunFailure &failure)
     {
-      output.finish();
-      throw RunFailure(fmt::format("{}\n  {}", failure.what(), last_checkpoint(folder)));
+      throw failure_of_run(failure, folder, [&] { output.finish(); });
     }
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)

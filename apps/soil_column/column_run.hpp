@@ -226,20 +226,13 @@ private:
   /// for this one it ends them all.
   [[noreturn]] void fail(const RunFailure &failure, std::uint64_t step)
   {
-    std::string what = fmt::format("{}{}\n  {}", place_of(step), failure.what(), last_checkpoint(request_.folder));
+    const RunFailure here(place_of(step) + failure.what());
     if (space_.shared_out())
-      abort_all(what.c_str());
-    try
-      {
-        files_.write_rows(true);
-        files_.flush();
-      }
-    catch (const std::exception &error) // the disk is full, say
-      {
-        if (what.find(error.what()) == std::string::npos)
-          what += fmt::format("\n  and then: {}", error.what());
-      }
-    throw RunFailure(what);
+      abort_all(failure_of_run(here, request_.folder).what());
+    throw failure_of_run(here, request_.folder, [&] {
+      files_.write_rows(true);
+      files_.flush();
+    });
   }
 
   /// Sizes of the mesh, largest values and the last row, over all ranks.   Collective.

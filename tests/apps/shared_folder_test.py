@@ -4,6 +4,7 @@
 its folder is free as soon as it has ended, however it has."""
 import contextlib
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -25,7 +26,7 @@ class SharedFolder(AppTest):
     def halted(self, command):
         """A run that has a checkpoint and stands still."""
         with subprocess.Popen([*command, "-o", "out", "-q", "--no-figures"], cwd=self.folder,
-                              stdout=subprocess.DEVNULL) as process:
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
             end = time.time() + 60 * PATIENCE
             while not (self.folder / "out/checkpoint/last.h5").exists() and time.time() < end:
                 time.sleep(0.005)
@@ -53,6 +54,18 @@ class SharedFolder(AppTest):
             killed.kill()
         self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--resume"))
         self.assertEqual(self.files("out"), self.files("whole"))
+
+    def test_a_folder_that_vanishes(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
+        for program, arguments in (("element_test", (scene,)), ("soil_column", (self.write("column.toml", COLUMN),)),
+                                   ("biaxial", (self.write("block.toml", FRICTION),))):
+            with self.subTest(program), self.halted(self.command(program, *arguments, *SAVED)) as run:
+                shutil.rmtree(self.folder / "out")
+                run.send_signal(signal.SIGCONT)
+                said = run.communicate(timeout=120 * PATIENCE)[1]
+                self.assertEqual(run.returncode, 1, said)
+                self.assertIn("No such file or directory", said)
+                self.assertIn("last good checkpoint: there is none", said)
 
     def test_element_test(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
