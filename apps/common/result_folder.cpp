@@ -35,6 +35,14 @@ std::string quoted(const fs::path &path)
   return word + "'";
 }
 
+/// @throws InputError  a program is at work in the folder
+void expect_free(const fs::path &folder)
+{
+  std::error_code ignored;
+  if (fs::exists(folder / lock_name, ignored))
+    const FileLock free = lock_folder(folder);
+}
+
 /// Whether the folder can be made; those that are made to find out go again.
 void try_writable_folder(const fs::path &folder)
 {
@@ -131,8 +139,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
         throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it. Give the folder of "
                                      "an interrupted run with --output, or start without --resume.",
                                      folder.string()));
-      const FileLock free = lock_folder(folder);
-      return;
+      return expect_free(folder);
     }
   const bool used = !is_unused(folder);
   if (used && use == FolderUse::fresh)
@@ -144,8 +151,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
                                  "Choose another --output.",
                                  folder.string()));
   try_writable_folder(folder);
-  if (used)
-    const FileLock free = lock_folder(folder);
+  expect_free(folder);
 }
 
 FileLock open_result_folder(const fs::path &folder, FolderUse use)

@@ -13,7 +13,6 @@ namespace isostat
 {
 namespace
 {
-constexpr double smallest_radius = 1e-6;           // m; clay is no sand
 constexpr double lightest = 500, heaviest = 25000; // kg/m3; no grain of soil or of its models is beyond
 constexpr double remarkable = 0.05;                // overlap of a radius that deserves a warning
 

@@ -26,7 +26,8 @@ struct PackingFigures
 /// Overlap, of the smaller radius, above which a packing is no state that contact laws know.
 inline constexpr double too_deep = 0.3;
 
-/// Of grains, m: cobbles are no sand.
+/// Of grains, m: neither clay nor cobbles are sand.
+inline constexpr double smallest_radius = 1e-6;
 inline constexpr double largest_radius = 0.05;
 
 /// tested: tests/dem/prepare/packing_check_test.cpp

@@ -101,15 +101,21 @@ Snapshot reach_density(const Cloud &cloud, const Scene &scene, PreparedDensity &
                   e, missed_density(spec, e), spec.density_tolerance));
 }
 
-/// Metres that were meant as millimetres.
+/// Metres that were meant as millimetres, or the other way round.
 void check_size(const GradingSpec &spec, const Packing &grains)
 {
+  const std::string given =
+      spec.d50 ? fmt::format("d50 = {:g} m", *spec.d50) : fmt::format("cloud_edge = {:g} m", spec.cloud_edge);
   if (grains.max_radius() > largest_radius)
-    throw InputError(fmt::format(
-        "grading.{} makes a largest grain of {:.3g} m across; expected at most {:g} m because it is "
-        "soil that is meant. Is it given in m instead of mm?",
-        spec.d50 ? fmt::format("d50 = {:g} m", *spec.d50) : fmt::format("cloud_edge = {:g} m", spec.cloud_edge),
-        2 * grains.max_radius(), 2 * largest_radius));
+    throw InputError(
+        fmt::format("grading.{} makes a largest grain of {:.3g} m across; expected at most {:g} m because it is "
+                    "soil that is meant. Is it given in m instead of mm?",
+                    given, 2 * grains.max_radius(), 2 * largest_radius));
+  if (grains.min_radius() < smallest_radius)
+    throw InputError(
+        fmt::format("grading.{} makes a smallest grain of {:.3g} m across; expected at least {:g} m because clay is no "
+                    "sand. Is the unit right, and so are grading.solid_fraction and the table of the curve?",
+                    given, 2 * grains.min_radius(), 2 * smallest_radius));
 }
 
 /// A cell that will be narrower than two of its grains when it is dense.

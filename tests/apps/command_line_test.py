@@ -159,6 +159,13 @@ class SpecimenMistakes(AppTest):
         self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")
 
 
+    def test_grains_that_are_no_sand(self):
+        scene = self.write("scene.toml", tiny_scene())
+        for edge, parts in (("2.7 m", ("largest grain", "in m instead of mm")),
+                            ("1e-30 m", ("smallest grain", "clay is no sand"))):
+            self.assert_refused(self.run_test(scene, "--set", f"grading.cloud_edge={edge}"),
+                                "grading.cloud_edge = ", *parts)
+
     def test_cell_of_too_few_grains(self):
         scene = self.write("scene.toml", tiny_scene('domain = "periodic-cell"\npreparation_friction = "10 deg"'))
         result = self.run_test(scene, "-o", "out", "--set", "grading.grains=12")

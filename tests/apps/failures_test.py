@@ -11,12 +11,13 @@ import shutil
 import signal
 import subprocess
 
-from biaxial_test import FRICTION
+from biaxial_test import CELL, FEW, FRICTION
 from support import BIN, CYCLIC, PATIENCE, AppTest, main, tiny_scene
 
 KINDS = ("open", "write", "fsync", "rename", "mkdir")
 LIBRARY = BIN.parent / "tests/libfailing_calls.so"
 SAVED = ("--set", "output.checkpoint=1e-9 min")
+OUTPUT = ("-o", "out", "--no-figures", "-q")
 EVERY = bool(os.environ.get("ISOSTAT_EVERY_CALL"))
 SHORT_TEST = tiny_scene(stages=CYCLIC.format(steps=600))
 COLUMN = """[[layer]]
@@ -57,29 +58,33 @@ class Failures(AppTest):
         root = self.folder / folder
         return {path.relative_to(root): path.read_bytes() for path in root.rglob("*") if path.is_file()
                 and path.name not in ("provenance.txt", "times.json", "summary.json", "summary.txt")
-                and "checkpoint" not in path.parts}
+                and not {"checkpoint", "queue", "logs"} & set(path.relative_to(root).parts)}
 
     def empty(self):
         shutil.rmtree(self.folder / "out", ignore_errors=True)
 
-    def goes_on(self, program, arguments):
+    def resumed(self, program, arguments, output):
         """As the messages say: from the checkpoint, or anew."""
         checkpoints = self.folder / "out/checkpoint"
         resumable = checkpoints.is_dir() and any(checkpoints.glob("*.h5"))
-        result = self.run_app(program, *arguments, "-o", "out", "--no-figures", "-q",
-                              "--resume" if resumable else "--overwrite")
+        result = self.run_app(program, *arguments, *output, "--resume" if resumable else "--overwrite")
         if not resumable and "holds no scene.toml" in result.stderr:
             self.empty()
-            result = self.run_app(program, *arguments, "-o", "out", "--no-figures", "-q")
+            result = self.run_app(program, *arguments, *output)
         self.assert_done(result)
         self.assertTrue((self.folder / "out/summary.txt").is_file())
 
-    def every_call(self, program, *arguments, most=6):
+    def repeated(self, program, arguments, output):
+        """By the same command, as a campaign or a library goes on."""
+        append = ["--append"] if (self.folder / "out/library.h5").exists() else []
+        self.assert_done(self.run_app(program, *arguments, *output, *append))
+
+    def every_call(self, program, *arguments, output=OUTPUT, goes_on=resumed, most=6):
         """@param most  calls of a kind and a way of failing that are tried, unless all are"""
-        self.assert_done(self.run_app(program, *arguments, "-o", "whole", "--no-figures", "-q"))
-        whole = self.files("whole")
-        self.assertGreater(len(whole), 2)
-        command = self.command(program, *arguments, "-o", "out", "--no-figures", "-q")
+        self.assert_done(self.run_app(program, *arguments, *output))
+        whole = self.files("out")
+        self.assertGreater(len(whole), 0)
+        command = self.command(program, *arguments, *output)
         tried = collections.Counter()
         for kind in KINDS:
             self.empty()
@@ -99,13 +104,12 @@ class Failures(AppTest):
                         out = self.folder / "out"
                         if calls == 1 and out.is_dir():
                             self.assertEqual(list(out.rglob("*.tmp")), [], "what was written aside is gone")
-                        self.goes_on(program, arguments)
+                        goes_on(self, program, arguments, output)
                         self.assertEqual(self.files("out"), whole)
         print(f"  {program}: {dict(tried)} failures", flush=True)
 
     def test_element_test(self):
-        scene = self.write("scene.toml", SHORT_TEST)
-        self.every_call("element_test", scene, *SAVED)
+        self.every_call("element_test", self.write("scene.toml", SHORT_TEST), *SAVED)
 
     def test_biaxial(self):
         self.every_call("biaxial", self.write("block.toml", FRICTION), *SAVED, most=3)
@@ -113,13 +117,24 @@ class Failures(AppTest):
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=3)
 
+    def test_specimen_library(self):
+        scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
+        self.every_call("specimen_library", scene, *FEW, output=("-o", "out/library.h5", "-q"),
+                        goes_on=Failures.repeated, most=3)
+
+    def test_liquefaction_resistance(self):
+        scene = self.write("scene.toml", SHORT_TEST)
+        self.every_call("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-n", 1, goes_on=Failures.repeated,
+                        most=2)
+
     def test_memory(self):
         """Where it runs out within HDF5 1.10 that library may crash, or end the program with 255: files are whole even
         so, as nothing of HDF5 writes to them."""
         arguments = (self.write("scene.toml", SHORT_TEST), *SAVED)
-        self.assert_done(self.run_app("element_test", *arguments, "-o", "whole", "--no-figures", "-q"))
-        whole = self.files("whole")
-        command = self.command("element_test", *arguments, "-o", "out", "--no-figures", "-q")
+        self.assert_done(self.run_app("element_test", *arguments, *OUTPUT))
+        whole = self.files("out")
+        command = self.command("element_test", *arguments, *OUTPUT)
+        self.empty()
         result, n = self.run_failing(command, "malloc")
         self.assert_done(result)
         codes = collections.Counter()
@@ -133,14 +148,14 @@ class Failures(AppTest):
                     if result.returncode == 1:
                         self.assertRegex(result.stderr, "not enough memory|cannot write|not enough space|bad_alloc")
                     if result.returncode != 0:
-                        self.goes_on("element_test", arguments)
+                        self.resumed("element_test", arguments, OUTPUT)
                     self.assertEqual(self.files("out"), whole)
         print(f"  element_test: {sum(codes.values())} of {n} allocations failed, exit codes {dict(codes)}", flush=True)
 
     def test_without_locks(self):
         """On a file system that has none: one run goes on, many in one folder would not be safe."""
         scene = self.write("scene.toml", SHORT_TEST)
-        command = self.command("element_test", scene, "-o", "out", "--no-figures", "-q")
+        command = self.command("element_test", scene, *OUTPUT)
         result, n = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assert_done(result)
         self.assertGreater(n, 0)
