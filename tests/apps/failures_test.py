@@ -79,7 +79,7 @@ class Failures(AppTest):
         append = ["--append"] if (self.folder / "out/library.h5").exists() else []
         self.assert_done(self.run_app(program, *arguments, *output, *append))
 
-    def every_call(self, program, *arguments, output=OUTPUT, goes_on=resumed, most=6):
+    def every_call(self, program, *arguments, output=OUTPUT, goes_on=resumed, most=4):
         """@param most  calls of a kind and a way of failing that are tried, unless all are"""
         self.assert_done(self.run_app(program, *arguments, *output))
         whole = self.files("out")
@@ -139,7 +139,7 @@ class Failures(AppTest):
         self.assert_done(result)
         codes = collections.Counter()
         for calls in (1, 0):
-            for at in range(1, n + 1, 1 if EVERY else n // 12):
+            for at in range(1, n + 1, 1 if EVERY else n // 8):
                 with self.subTest(at=at, calls=calls):
                     self.empty()
                     result, _ = self.run_failing(command, "malloc", at, calls, errno.ENOMEM)
