@@ -79,9 +79,10 @@ std::string to_text(const std::vector<DrainedStage> &stages)
   std::string text;
   for (const auto &[number, cycle, s] : stages)
     {
+      const std::string which =
+          stages.size() > 1 || !cycle.empty() ? fmt::format(" (stage {}{})", number, cycle) : std::string();
       const auto line = [&](const char *name, const std::string &value) {
-        text += fmt::format("\n  {:<25}{}{}", name, value,
-                            stages.size() > 1 || !cycle.empty() ? fmt::format(" (stage {}{})", number, cycle) : "");
+        text += fmt::format("\n  {:<25}{}{}", name, value, which);
       };
       const bool rises = std::abs(s.end_ratio) > 0.99 * std::abs(s.peak_ratio);
       line("peak friction", fmt::format("{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %{}", s.peak_friction,
