@@ -115,6 +115,31 @@ TEST(WaterTable, WavesDrainAtTheTable)
     }
 }
 
+/// On a base that is accelerated upwards water weighs more: permeable soil gets the excess pressure rho_f a h at a depth
+/// of h below the table, from -L a_base of the flow, equation (8) of the theory.
+TEST(WaterTable, WaterOnAnAcceleratedBaseIsHeavier)
+{
+  constexpr double rise = 0.5, end = 6, interval = 0.01, acceleration = 0.2; // s, s, s, m/s2
+  const Discretisation<1> space(column(1e-1, 10), shaken_supports(false));
+  Elastic soil = elastic(space);
+  DynamicsSettings settings{.mass_damping = 100, .drainage = Drainage::coupled};
+  std::vector<double> samples;
+  for (double t = 0; t < end + 1; t += interval)
+    samples.push_back(acceleration * std::min(1.0, t / rise));
+  settings.motion[2] = Motion(samples, interval);
+  Dynamics run(space, soil, settings);
+  while (run.time() < end)
+    run.step();
+  const std::vector<double> pressure = run.point_pressure();
+  const double deepest = Water{}.density * acceleration * below;
+  for (std::size_t q = 0; q < pressure.size(); ++q)
+    if (const double z = space.position[q][2]; z < below)
+      {
+        EXPECT_NEAR_BECAUSE(pressure[q], Water{}.density * acceleration * (below - z), 1e-3 * deepest,
+                            "at rest after 6 s: exp(-8)");
+      }
+}
+
 /// A block of several ranks would hold the same pressures: 2D gives the column's numbers.
 TEST(WaterTable, AStripIsTheColumn)
 {
