@@ -115,8 +115,8 @@ TEST(WaterTable, WavesDrainAtTheTable)
     }
 }
 
-/// On a base that is accelerated upwards water weighs more: permeable soil gets the excess pressure rho_f a h at a depth
-/// of h below the table, from -L a_base of the flow, equation (8) of the theory.
+/// On a base that is accelerated upwards water weighs more: permeable soil gets the excess pressure rho_f a h at a
+/// depth of h below the table.
 TEST(WaterTable, WaterOnAnAcceleratedBaseIsHeavier)
 {
   constexpr double rise = 0.5, end = 6, interval = 0.01, acceleration = 0.2; // s, s, s, m/s2
