@@ -76,7 +76,16 @@ public:
   void value(T &x)
   {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
-    raw(&x, sizeof x);
+    if constexpr (std::is_same_v<T, bool>)
+      {
+        unsigned char byte = 0;
+        raw(&byte, sizeof byte);
+        if (byte > 1)
+          fail("a byte that says yes or no is " + std::to_string(byte));
+        x = byte != 0;
+      }
+    else
+      raw(&x, sizeof x);
   }
   std::uint64_t count()
   {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -125,7 +126,11 @@ SphereTable read_points(const Arrays &arrays, const pugi::xml_node &piece)
   table.velocities = vectors(arrays.named(data, "velocity"));
   table.spins = vectors(arrays.named(data, "spin"));
   for (const double id : arrays.named(data, "id"))
-    table.ids.push_back(static_cast<std::uint32_t>(id));
+    {
+      if (!(id >= 0 && id < 0x1p32 && id == std::floor(id)))
+        arrays.refuse(fmt::format("id = {}; expected whole numbers from 0, below 2^32", id));
+      table.ids.push_back(static_cast<std::uint32_t>(id));
+    }
   const std::size_t n = table.centres.size();
   if (n != piece.attribute("NumberOfPoints").as_ullong())
     arrays.refuse(fmt::format("{} points, but {} are promised; is the file cut off?", n,

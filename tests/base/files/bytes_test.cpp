@@ -55,6 +55,22 @@ TEST(Bytes, CutAtAnyPlaceAreRefused)
     }
 }
 
+TEST(Bytes, YesAndNoAreOneAndZero)
+{
+  bool x = false;
+  for (const unsigned char byte : {1, 0, 2, 255})
+    {
+      ByteReader in(std::as_bytes(std::span(&byte, 1)), "test");
+      if (byte > 1)
+        EXPECT_THROW(in.value(x), InputError);
+      else
+        {
+          in.value(x);
+          EXPECT_EQ(x, byte == 1);
+        }
+    }
+}
+
 TEST(Bytes, SayWhoReadsAndWhatHelps)
 {
   ByteReader in({}, "a packed element", "pack it again");
