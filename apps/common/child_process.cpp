@@ -86,16 +86,6 @@ std::vector<std::string> command_of(const ChildRun &run)
   return words;
 }
 
-/// As execv() takes them.   @pre the words stay where they are
-std::vector<char *> pointers_to(std::vector<std::string> &words)
-{
-  std::vector<char *> arguments;
-  for (std::string &word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  return arguments;
-}
-
 pid_t start(const ChildRun &run, int kept_open)
 {
   std::vector<std::string> words = command_of(run);
@@ -109,6 +99,15 @@ pid_t start(const ChildRun &run, int kept_open)
   return id;
 }
 } // namespace
+
+std::vector<char *> pointers_to(std::vector<std::string> &words)
+{
+  std::vector<char *> arguments;
+  for (std::string &word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  return arguments;
+}
 
 ChildProcess::ChildProcess(const ChildRun &run, int kept_open) : id_(start(run, kept_open)) {}
 

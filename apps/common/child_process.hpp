@@ -41,6 +41,9 @@ private:
   Stopwatch watch_;
 };
 
+/// As execv() takes them.   @pre the words stay where they are
+std::vector<char *> pointers_to(std::vector<std::string> &words);
+
 /// Runs a program to its end, without a shell. Ctrl-C ends that program, not this one.
 /// @param log  what it prints; replaced   @return its exit code, or 128 + the signal that ended it
 /// @throws RunFailure  it cannot be started, or the log not be written

@@ -10,11 +10,9 @@
 #include "dem/contact/loop.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <thread>
 #include <vector>
 
 namespace isostat
@@ -85,20 +83,16 @@ void empty_folder(const fs::path &folder)
 
 FileLock lock_folder(const fs::path &folder)
 {
-  constexpr int patience = 100;
-  for (int k = 0; k < patience; ++k)
-    try
-      {
-        if (FileLock lock = FileLock::attempt(folder / lock_name))
-          return lock;
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      }
-    catch (const NoLocks &)
-      {
-        return {};
-      }
-  throw InputError(
-      fmt::format("{}: another program is at work in it. Wait for it, or give another --output.", folder.string()));
+  FileLock lock;
+  try
+    {
+      if (!within_patience([&] { return static_cast<bool>(lock = FileLock::attempt(folder / lock_name)); }))
+        throw InputError(fmt::format("{}: another program is at work in it. Wait for it, or give another --output.",
+                                     folder.string()));
+    }
+  catch (const NoLocks &) // then nobody is told
+    {}
+  return lock;
 }
 
 bool folder_exists(const fs::path &folder)
@@ -197,6 +191,15 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
                    {{"instruction set", instruction_set()}, {"seed", std::to_string(scene.grading.seed)}});
 }
 
+std::vector<std::string> report_command(const std::vector<std::string> &words)
+{
+  // -P: modules of the working folder, whosever they are, are left alone
+  std::vector<std::string> command = {
+      "/usr/bin/env", "PYTHONPATH=" + shared_folder().string(), "/usr/bin/python3", "-B", "-P", "-m", "report"};
+  command.insert(command.end(), words.begin(), words.end());
+  return command;
+}
+
 std::string draw_figures(const fs::path &folder, const std::string &program)
 {
   if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
@@ -205,10 +208,7 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   int code = 0;
   try
     {
-      // -P: modules of the working folder, whosever they are, are left alone
-      code = run_program({"/usr/bin/env", "PYTHONPATH=" + shared_folder().string(), "/usr/bin/python3", "-B", "-P",
-                          "-m", "report", "leave", program, folder.string()},
-                         log);
+      code = run_program(report_command({"leave", program, folder.string()}), log);
     }
   catch (const RunFailure &failure)
     {

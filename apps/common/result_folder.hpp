@@ -59,6 +59,9 @@ void write_provenance(const std::filesystem::path &folder, const std::string &sc
 /// The same of a scene of grains, with instruction set and seed.
 void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
 
+/// The Python package `report` with these words, which `execv` takes: figures and reports are its work.
+std::vector<std::string> report_command(const std::vector<std::string> &words);
+
 /// Draws the figures of a results folder and leaves report.html there, with the Python packages `figures` and `report`.
 /// A report that fails is one line on stderr.   @param program  that left the folder
 /// @return a line for the summary; what else goes wrong never fails a run

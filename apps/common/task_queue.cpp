@@ -11,7 +11,6 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <unistd.h>
 
 namespace isostat
@@ -20,17 +19,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-constexpr int patience = 50; ///< times a tenth of a second, for what dying processes still hold
-
-template <typename Condition>
-bool within_patience(const Condition &condition)
-{
-  bool met = condition();
-  for (int k = 0; k < patience && !met; ++k, met = condition())
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  return met;
-}
-
 std::string session_name()
 {
   char host[256] = "";

@@ -2,11 +2,11 @@
 #include "apps/deposit/checkpoint.hpp"
 
 #include "base/error.hpp"
+#include "base/files/csv_table.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -69,7 +69,7 @@ double ColumnCheckpoint::number(const std::string &name) const { return field(*t
 std::size_t ColumnCheckpoint::count(const std::string &name) const
 {
   const double value = number(name);
-  if (!(value >= 0 && value < 0x1p53 && value == std::floor(value)))
+  if (!is_count(value, 0x1p53))
     throw InputError(fmt::format("{}: {} = {}, expected a whole number from 0: the file is damaged. Start anew with "
                                  "--overwrite.",
                                  file, name, value));

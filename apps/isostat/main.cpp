@@ -5,7 +5,9 @@
 //   isostat report results/one                     figures and report.html once more, also of a run under way
 //   isostat convert packing.dump packing.h5        packings of LAMMPS, YADE, CSV and ParaView in and out
 //   isostat element_test SCENE                     the program beside this one, with everything that follows
+#include "apps/common/child_process.hpp"
 #include "apps/common/command_line.hpp"
+#include "apps/common/result_folder.hpp"
 #include "apps/isostat/convert.hpp"
 #include "base/error.hpp"
 #include "base/record/installation.hpp"
@@ -65,14 +67,10 @@ std::string help()
 }
 
 /// Becomes the program; does not return.     @throws RunFailure  it cannot be started
-void become(const fs::path &program, std::vector<std::string> words)
+void become(std::vector<std::string> words)
 {
-  std::vector<char *> arguments;
-  for (std::string &word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execv(program.c_str(), arguments.data());
-  throw RunFailure(fmt::format("{}: cannot be started ({})", program.string(), std::strerror(errno)));
+  execv(words.front().c_str(), pointers_to(words).data());
+  throw RunFailure(fmt::format("{}: cannot be started ({})", words.front(), std::strerror(errno)));
 }
 
 void run(const std::vector<std::string> &words)
@@ -87,17 +85,14 @@ void run(const std::vector<std::string> &words)
       {
         std::vector<std::string> call = words;
         call.front() = beside(command).string();
-        become(call.front(), call);
+        become(std::move(call));
       }
   for (const Entry &view : views)
     if (command == view.name)
       {
         if (const std::string missing = missing_from_shared_folder("report"); !missing.empty())
           throw InputError(missing);
-        setenv("PYTHONPATH", shared_folder().c_str(), 1);
-        std::vector<std::string> call = {"/usr/bin/python3", "-B", "-P", "-m", "report"};
-        call.insert(call.end(), words.begin(), words.end());
-        become(call.front(), call);
+        become(report_command(words));
       }
   throw InputError(fmt::format("{}: is no command of isostat. See isostat --help.", command));
 }

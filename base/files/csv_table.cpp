@@ -143,6 +143,8 @@ CsvTable::CsvTable(const fs::path &path, const std::vector<std::string> &columns
     }
 }
 
+bool is_count(double value, double end) { return value >= 0 && value < end && value == std::floor(value); }
+
 std::int64_t CsvTable::integer(std::size_t row, std::size_t column, const char *name) const
 {
   const double value = (*this)(row, column);

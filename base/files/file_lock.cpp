@@ -3,10 +3,12 @@
 
 #include "base/error.hpp"
 
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <thread>
 #include <unistd.h>
 
 namespace isostat
@@ -29,6 +31,15 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
     throw NoLocks(fmt::format("{}: cannot be locked: {}. Work on a file system that has locks (flock).", file.string(),
                               std::strerror(errno)));
   return FileLock();
+}
+
+bool within_patience(const std::function<bool()> &condition)
+{
+  constexpr int patience = 50; // times a tenth of a second
+  bool met = condition();
+  for (int k = 0; k < patience && !met; ++k, met = condition())
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  return met;
 }
 
 bool is_unlocked(const std::filesystem::path &file)

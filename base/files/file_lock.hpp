@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <utility>
 
 namespace isostat
@@ -48,6 +49,9 @@ private:
   explicit FileLock(int file) : file_(file) {}
   int file_ = -1;
 };
+
+/// Whether the condition is met within five seconds: what dying processes still hold becomes free.
+bool within_patience(const std::function<bool()> &condition);
 
 /// Whether the file is there and nobody has its lock.
 bool is_unlocked(const std::filesystem::path &file);

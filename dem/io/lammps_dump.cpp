@@ -6,7 +6,6 @@
 #include "dem/io/sphere_table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -44,7 +43,7 @@ struct DumpReader
   std::size_t count(std::string_view word) const
   {
     const double n = number(word);
-    if (!(n >= 0 && n < 0x1p32 && n == std::floor(n)))
+    if (!is_count(n))
       refuse(fmt::format("{} atoms; expected a whole number below 2^32", word));
     return static_cast<std::size_t>(n);
   }

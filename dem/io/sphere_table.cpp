@@ -144,7 +144,7 @@ void SphereColumns::read(const fs::path &path, std::size_t line, std::string_vie
 std::uint32_t grain_id(const fs::path &path, std::size_t line, double value, std::uint32_t first_id)
 {
   const double id = value - first_id;
-  if (!(id >= 0 && id < 4294967296.0 && id == std::floor(id)))
+  if (!is_count(id))
     reject(path, line, fmt::format("id = {}; expected a whole number from {}, below 2^32", value, first_id));
   return static_cast<std::uint32_t>(id);
 }

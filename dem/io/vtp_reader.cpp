@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -127,7 +126,7 @@ SphereTable read_points(const Arrays &arrays, const pugi::xml_node &piece)
   table.spins = vectors(arrays.named(data, "spin"));
   for (const double id : arrays.named(data, "id"))
     {
-      if (!(id >= 0 && id < 0x1p32 && id == std::floor(id)))
+      if (!is_count(id))
         arrays.refuse(fmt::format("id = {}; expected whole numbers from 0, below 2^32", id));
       table.ids.push_back(static_cast<std::uint32_t>(id));
     }

@@ -3,7 +3,6 @@
 """Campaigns whose runs are shared by several processes, as on several nodes: ranks of mpirun, helpers that come later,
 helpers that are killed, a leader that is stopped or killed. The tables are those of one process."""
 import contextlib
-import csv
 import os
 import pathlib
 import signal
@@ -13,18 +12,11 @@ import time
 from calibrate_test import LABORATORY, SCENE as DRAINED, plan_text
 from liquefaction_resistance_test import SHEAR
 from specimen_library_test import NARROW, SCENE as LIBRARY
-from support import AppTest, PATIENCE, main
+from support import AppTest, PATIENCE, main, table
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 RATIOS = ("--ratios", "0.12,0.16,0.25", "-n", "2", "--cycles", "15", "--no-figures")
 DEADLINE = 90 * PATIENCE
-
-
-def table(path):
-    """Rows of a CSV file, but for times."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{name: cell for name, cell in row.items() if not name.startswith("wall")}
-                for row in csv.DictReader(file)]
 
 
 class CampaignRanks(AppTest):

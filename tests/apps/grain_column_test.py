@@ -107,7 +107,7 @@ class Bits(GrainColumnTest):
                               "checkpoint/last.h5"}, names)
         self.assertGreater(summary["max_ru"], 0.95)
         self.assertGreater(summary["peak_gamma"], 0.01)
-        for n in (2, 3, 4):
+        for n in (1, 2, 3, 4):
             result = self.run_on_ranks(n, self.scene, "-o", f"on{n}")
             self.assert_done(result)
             self.assertEqual(result.stdout.count("peak shear strain"), 1)

@@ -11,17 +11,10 @@ import time
 
 from biaxial_test import FRICTION
 from failures_test import COLUMN, SAVED
-from support import CYCLIC, PATIENCE, AppTest, main, tiny_scene
-
-WITHOUT = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they tell of times
+from support import CYCLIC, PATIENCE, AppTest, main, results, tiny_scene
 
 
 class SharedFolder(AppTest):
-    def files(self, folder):
-        root = self.folder / folder
-        return {path.relative_to(root): path.read_bytes() for path in root.rglob("*")
-                if path.is_file() and path.name not in WITHOUT and "checkpoint" not in path.parts}
-
     @contextlib.contextmanager
     def halted(self, command):
         """A run that has a checkpoint and stands still."""
@@ -46,14 +39,14 @@ class SharedFolder(AppTest):
                                     "out: another program is at work in it", "--output")
             first.send_signal(signal.SIGCONT)
             self.assertEqual(first.wait(timeout=120 * PATIENCE), 0)
-        self.assertEqual(self.files("out"), self.files("whole"))
+        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
         self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--overwrite"))
-        self.assertEqual(self.files("out"), self.files("whole"))
+        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
         (self.folder / "out").rename(self.folder / "done")
         with self.halted(command) as killed:
             killed.kill()
         self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--resume"))
-        self.assertEqual(self.files("out"), self.files("whole"))
+        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
 
     def test_a_folder_that_vanishes(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))

@@ -4,6 +4,7 @@
 Every test script takes the folder of the executables as its first argument.
 """
 import contextlib
+import csv
 import os
 import pathlib
 import shutil
@@ -170,6 +171,26 @@ class AppTest(ToleranceTest):
 def contents(folder):
     """All files below a folder with their bytes: to see that nothing has changed."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def table(path):
+    """Rows of a CSV file, but for times."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{name: cell for name, cell in row.items() if not name.startswith("wall")}
+                for row in csv.DictReader(file)]
+
+
+TIMED = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they tell of times, and of calls
+
+
+def results(path):
+    """A file, or contents() of a folder, without what tells of times and calls, checkpoints, which may be others, and
+    what a campaign keeps beside its runs."""
+    if path.is_file():
+        return {"": path.read_bytes()}
+    left_out = TIMED | {"checkpoint", "queue", "logs"}
+    return {name: table(path / name) if name.endswith("resistance.csv") else data
+            for name, data in contents(path).items() if not left_out & set(pathlib.PurePath(name).parts)}
 
 
 def main():

@@ -5,6 +5,7 @@
 #pragma once
 #include "base/error.hpp"
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -55,6 +56,21 @@ auto possible(const Run &run) -> std::optional<decltype(run())>
       require(std::string_view(failure.what()).size() > 10, "a failure says what is wrong");
       return std::nullopt;
     }
+}
+
+/// Text as a scene or a plan: what `parse(text, name)` takes is written and read back to the same, bit for bit.
+template <typename Parse>
+void round_trip(const std::string &text, const Parse &parse)
+{
+  const auto taken = accepted([&] { return parse(text, "given.toml"); });
+  if (!taken)
+    return;
+  const std::string written = to_toml(*taken);
+  const auto again = parse(written, "written.toml");
+  if constexpr (std::equality_comparable<decltype(again)>)
+    require(again == *taken, "what is written is what was taken");
+  else
+    require(to_toml(again) == written, "what is written is what was taken");
 }
 
 inline std::string text_of(const std::uint8_t *data, std::size_t size)

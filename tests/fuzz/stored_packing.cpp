@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A specimen, a library and a checkpoint of HDF5 with damaged members: what is taken can be written and read again, and
-// a run can begin from it or says why not.
+// A specimen, a library and a checkpoint of HDF5 with damaged members: what is taken can be written and read again.
 #include "base/files/csv_table.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/specimen_library.hpp"

@@ -18,16 +18,14 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
 from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (the path comes first)
-from column_support import NO_FILES, settings  # noqa: E402
-from failures_test import COLUMN  # noqa: E402
+from column_support import settings  # noqa: E402
+from failures_test import COLUMN, SAVED  # noqa: E402
 from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
-from support import CYCLIC, AppTest, main, tiny_scene  # noqa: E402
+from support import CYCLIC, AppTest, main, results, tiny_scene  # noqa: E402
 
 KILLS = int(os.environ.get("ISOSTAT_KILLS", "20"))
 SEED = int(os.environ.get("ISOSTAT_SEED", time.time_ns() % 1000000))
 ROW = 5  # kills until a run is left to its end
-SAVED = settings(output__checkpoint="1e-9 min")
-NO_RESULTS = NO_FILES | {".lock", "summary.txt", "summary.json"}  # of clocks, and of how often it was started
 RANKS = ("mpirun", "--oversubscribe", "-n")
 
 
@@ -36,12 +34,6 @@ class Kills(AppTest):
         super().setUp()
         os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         self.draw = random.Random(SEED)
-
-    def results(self, folder, left_out):
-        root = self.folder / folder
-        files = [root] if root.is_file() else [path for path in root.rglob("*") if path.is_file()]
-        return {path.relative_to(root): path.read_bytes() for path in files
-                if path.name not in NO_RESULTS and not left_out & set(path.relative_to(root).parts)}
 
     def run_to(self, command, wait):
         """Whether it was killed, after `wait` s; 0: it is left alone, and must not fail."""
@@ -52,7 +44,7 @@ class Kills(AppTest):
             except subprocess.TimeoutExpired:
                 ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
                 os.killpg(process.pid, signal.SIGKILL)
-                for rank in ranks.split() if command[0] == "mpirun" else ():  # it starts them in groups of their own
+                for rank in ranks.split() if command[0] == "mpirun" else ():  # which gives each a group of its own
                     with contextlib.suppress(ProcessLookupError):
                         os.kill(int(rank), signal.SIGKILL)
                 process.communicate()
@@ -60,14 +52,12 @@ class Kills(AppTest):
         self.assertEqual(process.returncode, 0, f"ISOSTAT_SEED={SEED}\n{said}")
         return False
 
-    def kill(self, program, arguments, goes_on, others=(("--threads", (1, 2)),), ranks=(), left_out=(), ending=""):
+    def kill(self, program, arguments, goes_on, others=(("--threads", (1, 2)),), ranks=(), ending=""):
         """@param goes_on   options of a call, from what is there
-        @param others    options and their values, one of which each call has
-        @param left_out  names of files and folders that are no results"""
+        @param others    options and their values, one of which each call has"""
         begin = time.monotonic()
-        left_out = {"checkpoint", *left_out}
         self.run_to([*self.command(program, *arguments), "-o", "whole" + ending], 0)
-        whole, seconds, killed, rows = self.results("whole" + ending, left_out), time.monotonic() - begin, 0, 0
+        whole, seconds, killed, rows = results(self.folder / ("whole" + ending)), time.monotonic() - begin, 0, 0
         parts = self.folder / ("parts" + ending)
         while killed < KILLS:
             shutil.rmtree(parts, ignore_errors=True)
@@ -82,7 +72,7 @@ class Kills(AppTest):
                 if not self.run_to(command, self.draw.uniform(0.02, seconds) if k < ROW else 0):
                     break
                 killed += 1
-            found = self.results(parts.name, left_out)
+            found = results(parts)
             self.assertEqual(sorted(found), sorted(whole), f"ISOSTAT_SEED={SEED}")
             for name, data in found.items():
                 self.assertEqual(data == whole[name], True, f"ISOSTAT_SEED={SEED}: {name} has changed")
@@ -90,16 +80,13 @@ class Kills(AppTest):
         print(f"  {program}: {killed} kills in {rows} runs, {time.monotonic() - begin:.0f} s", flush=True)
 
     @staticmethod
-    def with_resume(parts):
+    def folder_of_run(parts):
         """As a user does: from the checkpoint, or anew."""
         if any(parts.glob("checkpoint/*.h5")):
             return ["--resume"]
-        return ["--overwrite"] if (parts / "scene.toml").exists() else []
-
-    def folder_of_run(self, parts):
         if parts.is_dir() and not (parts / "scene.toml").exists():
             shutil.rmtree(parts)  # it was killed before it had written what it is
-        return self.with_resume(parts)
+        return ["--overwrite"] if parts.exists() else []
 
     def test_element_test(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
@@ -113,8 +100,7 @@ class Kills(AppTest):
     def test_liquefaction_resistance(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
         self.kill("liquefaction_resistance", (scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
-                  lambda parts: [], others=(("--jobs", (1, 2)),),
-                  left_out=("queue", "logs", "resistance.csv", "resistance.json"))  # tables tell of times
+                  lambda parts: [], others=(("--jobs", (1, 2)),))
 
     def test_soil_column(self):
         scene = self.write("column.toml", COLUMN)

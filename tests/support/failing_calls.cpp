@@ -85,11 +85,11 @@ bool fails()
   return true;
 }
 
-bool fails(const char *kind) { return planned && std::strcmp(kind, plan.kind) == 0 && fails(); }
+bool is_meant(const char *kind) { return planned && std::strcmp(kind, plan.kind) == 0; }
 
 bool fails(const char *kind, const char *path)
 {
-  if (!planned || std::strcmp(kind, plan.kind) != 0)
+  if (!is_meant(kind))
     return false;
   char absolute[2 * PATH_MAX] = "";
   if (path[0] != '/' && getcwd(absolute, PATH_MAX))
@@ -100,7 +100,7 @@ bool fails(const char *kind, const char *path)
 
 bool fails(const char *kind, int descriptor)
 {
-  if (!planned || std::strcmp(kind, plan.kind) != 0)
+  if (!is_meant(kind))
     return false;
   char link[64], path[PATH_MAX];
   std::snprintf(link, sizeof(link), "/proc/self/fd/%d", descriptor);
@@ -173,10 +173,13 @@ int flock(int descriptor, int how)
   ISOSTAT_NEXT(flock);
   return fails("flock", descriptor) ? -1 : original(descriptor, how);
 }
-void *malloc(size_t n) { return fails("malloc") ? nullptr : __libc_malloc(n); }
-void *calloc(size_t n, size_t size) { return fails("malloc") ? nullptr : __libc_calloc(n, size); }
-void *realloc(void *old, size_t n) { return fails("malloc") ? nullptr : __libc_realloc(old, n); }
-void *memalign(size_t alignment, size_t n) { return fails("malloc") ? nullptr : __libc_memalign(alignment, n); }
+void *malloc(size_t n) { return (is_meant("malloc") && fails()) ? nullptr : __libc_malloc(n); }
+void *calloc(size_t n, size_t size) { return (is_meant("malloc") && fails()) ? nullptr : __libc_calloc(n, size); }
+void *realloc(void *old, size_t n) { return (is_meant("malloc") && fails()) ? nullptr : __libc_realloc(old, n); }
+void *memalign(size_t alignment, size_t n)
+{
+  return (is_meant("malloc") && fails()) ? nullptr : __libc_memalign(alignment, n);
+}
 void *aligned_alloc(size_t alignment, size_t n) { return memalign(alignment, n); }
 int posix_memalign(void **result, size_t alignment, size_t n)
 {
