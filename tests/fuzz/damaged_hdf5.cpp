@@ -4,18 +4,11 @@
 #include "tests/fuzz/input.hpp"
 
 #include <hdf5.h>
-#include <vector>
 
 namespace isostat::fuzz
 {
 namespace
 {
-/// A group or dataset, or one of its attributes.
-struct Member
-{
-  std::string object, attribute; ///< no attribute: empty
-};
-
 std::vector<Member> members_of(hid_t file)
 {
   std::vector<Member> all;
@@ -157,9 +150,9 @@ void change_value(hid_t file, const Member &member, Choices &choices)
   H5Tclose(type), H5Sclose(space), H5Dclose(id);
 }
 
-void damage(hid_t file, Choices &choices)
+/// @pre some of the members may be gone: HDF5 refuses what is asked of those
+void damage(hid_t file, const std::vector<Member> &all, Choices &choices)
 {
-  const std::vector<Member> all = members_of(file);
   const Member &member = all[choices.below(all.size())], &other = all[choices.below(all.size())];
   switch (choices.below(6))
     {
@@ -186,25 +179,38 @@ void damage(hid_t file, Choices &choices)
                                    : add_attribute(file, member.object, "more", choices);
     }
 }
-} // namespace
-
-std::string damaged_hdf5(const std::string &whole, Choices &choices)
+/// A file in memory. @throws nothing: the target ends if the bytes are no file of HDF5
+hid_t open_image(std::string &bytes)
 {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  std::string bytes = whole;
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, 1 << 16, false);
   H5Pset_file_image(access, bytes.data(), bytes.size());
   const hid_t file = H5Fopen("fuzz", H5F_ACC_RDWR, access);
+  H5Pclose(access);
   require(file >= 0, "the whole file can be opened");
+  return file;
+}
+} // namespace
+
+WholeHdf5::WholeHdf5(std::string bytes) : bytes_(std::move(bytes))
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t file = open_image(bytes_);
+  members_ = members_of(file);
+  H5Fclose(file);
+}
+
+std::string WholeHdf5::damaged(Choices &choices) const
+{
+  std::string bytes = bytes_;
+  const hid_t file = open_image(bytes);
   do
-    damage(file, choices);
+    damage(file, members_, choices);
   while (!choices.used_up());
   H5Fflush(file, H5F_SCOPE_GLOBAL);
   bytes.resize(static_cast<std::size_t>(H5Fget_file_image(file, nullptr, 0)));
   H5Fget_file_image(file, bytes.data(), bytes.size());
   H5Fclose(file);
-  H5Pclose(access);
   return bytes;
 }
 } // namespace isostat::fuzz

@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A whole HDF5 file, damaged as the bytes of a fuzzer choose: values, types, shapes, links and attributes; still a valid
+// file of HDF5.
 #pragma once
 #include "tests/fuzz/choices.hpp"
 
 #include <string>
+#include <vector>
 
 namespace isostat::fuzz
 {
-/// The bytes of an HDF5 file with some of its members replaced by others of another value, shape or type, removed,
-/// renamed, linked to each other, or new: what HDF5 itself takes as a whole file.
-std::string damaged_hdf5(const std::string &whole, Choices &choices);
+/// A group or dataset, or one of its attributes.
+struct Member
+{
+  std::string object, attribute; ///< no attribute: empty
+};
+
+class WholeHdf5
+{
+public:
+  explicit WholeHdf5(std::string bytes);
+
+  /// The bytes of a file with at least one member damaged.
+  std::string damaged(Choices &choices) const;
+
+private:
+  std::string bytes_;
+  std::vector<Member> members_;
+};
 } // namespace isostat::fuzz

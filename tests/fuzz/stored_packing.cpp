@@ -18,22 +18,22 @@ namespace fs = std::filesystem;
 struct Files
 {
   fs::path folder = fs::temp_directory_path() / ("isostat_fuzz_" + std::to_string(getpid()));
-  std::string specimen, library, checkpoint;
+  std::optional<fuzz::WholeHdf5> specimen, library, checkpoint;
 
   Files()
   {
     fs::create_directories(folder / "checkpoint");
     const Specimen lattice{fuzz::sheared_lattice(), {{"title", "a lattice"}}, {{"void_ratio", 0.9}, {"seed", 1}}};
     write_specimen(folder / "specimen.h5", lattice);
-    specimen = read_text(folder / "specimen.h5");
+    specimen.emplace(read_text(folder / "specimen.h5"));
     LibraryWriter writer = LibraryWriter::create(folder / "library.h5");
     writer.add("s0001", lattice), writer.add("s0002", lattice);
     writer.commit();
-    library = read_text(folder / "library.h5");
+    library.emplace(read_text(folder / "library.h5"));
     Checkpoint state;
     state.state = lattice.state, state.scene = "# of a lattice\n";
     write_checkpoint(folder / "checkpoint", state);
-    checkpoint = read_text(folder / "checkpoint/last.h5");
+    checkpoint.emplace(read_text(folder / "checkpoint/last.h5"));
   }
   ~Files() { fs::remove_all(folder); }
 
@@ -62,14 +62,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     {
     case 0:
       {
-        const fs::path path = files.leave("specimen.h5", fuzz::damaged_hdf5(files.specimen, choices));
+        const fs::path path = files.leave("specimen.h5", files.specimen->damaged(choices));
         if (const auto specimen = fuzz::accepted([&] { return read_specimen(path); }))
           try_specimen(files, *specimen);
         break;
       }
     case 1:
       {
-        const fs::path path = files.leave("library.h5", fuzz::damaged_hdf5(files.library, choices));
+        const fs::path path = files.leave("library.h5", files.library->damaged(choices));
         if (const auto entries = fuzz::accepted([&] { return list_library(path); }))
           for (const LibraryEntry &entry : *entries)
             if (const auto specimen = fuzz::accepted([&] { return read_library_entry(path, entry.name); }))
@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         break;
       }
     default:
-      files.leave("checkpoint/last.h5", fuzz::damaged_hdf5(files.checkpoint, choices));
+      files.leave("checkpoint/last.h5", files.checkpoint->damaged(choices));
       fs::remove(files.folder / "checkpoint/previous.h5");
       if (const auto checkpoint = fuzz::accepted([&] { return read_checkpoint(files.folder / "checkpoint"); }))
         write_checkpoint(files.folder / "checkpoint", *checkpoint);
