@@ -14,6 +14,14 @@ namespace isostat
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
+/// The matrix of n x (..).   tested: tests/dem/motion/critical_step_test.cpp, tests/dem/measure/stiffness_test.cpp
+inline Mat3 cross_matrix(const Vec3 &n)
+{
+  Mat3 m;
+  m << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+  return m;
+}
+
 /// Allocator for 64-byte aligned storage: one cache line, one AVX-512 vector.
 template <typename T>
 struct CacheAligned

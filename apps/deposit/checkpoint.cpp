@@ -13,9 +13,9 @@ namespace isostat
 {
 namespace
 {
-const std::string format_name = "isostat-column-checkpoint";
+const std::string checkpoint_format = "isostat-column-checkpoint";
 // 2: unknowns in the order of their numbers, the soil as one row of bytes; 3: without viscosity
-constexpr std::uint64_t schema_version = 4;
+constexpr std::uint64_t checkpoint_schema_version = 4;
 
 /// Numbers and vectors of a checkpoint or of the solver's state in it.
 template <class Part>
@@ -52,7 +52,7 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
   const hdf5::Group root = file.root();
-  expect_format(root, format_name, schema_version);
+  expect_format(root, checkpoint_format, checkpoint_schema_version);
   ColumnCheckpoint checkpoint;
   checkpoint.file = path.string();
   checkpoint.scene = root.attribute<std::string>("scene");
@@ -84,7 +84,7 @@ const std::vector<double> &ColumnCheckpoint::vector(const std::string &name) con
 void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint)
 {
   write_newest(folder, [&](hdf5::Group root) {
-    set_format(root, format_name, schema_version, checkpoint.scene);
+    set_format(root, checkpoint_format, checkpoint_schema_version, checkpoint.scene);
     root.set_attribute("step", checkpoint.state.step);
     hdf5::write_bytes(root, "material", checkpoint.state.material.bytes());
     put(root, "state_", checkpoint.state);

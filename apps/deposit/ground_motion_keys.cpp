@@ -9,7 +9,7 @@ namespace
 {
 using namespace ranges;
 
-constexpr const char *axis_choices[] = {"x", "y", "z"};
+constexpr const char *motion_axes[] = {"x", "y", "z"};
 constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
 constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
 constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
@@ -20,7 +20,7 @@ constexpr unsigned ricker = kind_bit(MotionKind::ricker);
 
 // clang-format off
 constexpr Key keys[] = {
-  {.path = "axis", .kind = Kind::choice, .value = "x", .choices = axis_choices, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
+  {.path = "axis", .kind = Kind::choice, .value = "x", .choices = motion_axes, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
            "rigid body: no P waves; use coupled for them.",
    .field = [](ColumnMotion &m) -> Field { return &m.axis; }},
   {.path = "kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",

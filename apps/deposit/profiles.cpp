@@ -12,8 +12,8 @@ namespace isostat
 {
 namespace
 {
-const std::string format_name = "isostat-column-profiles";
-constexpr std::uint64_t schema_version = 1;
+const std::string profiles_format = "isostat-column-profiles";
+constexpr std::uint64_t profiles_schema_version = 1;
 } // namespace
 
 ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths, std::span<const double> sigma_v0,
@@ -28,7 +28,7 @@ ProfileFile::ProfileFile(std::filesystem::path path, std::vector<double> depths,
     load(resume_rows);
   hdf5::File file = hdf5::File::create(path_);
   hdf5::Group root = file.root();
-  set_format(root, format_name, schema_version);
+  set_format(root, profiles_format, profiles_schema_version);
   root.write("depth", std::span<const double>(depths_), "m");
   root.write("sigma_v0", sigma_v0, "Pa");
   root.write("shear_velocity", shear_velocity, "m/s");
@@ -47,7 +47,7 @@ void ProfileFile::load(std::size_t rows)
 {
   const hdf5::File file = hdf5::File::open(path_);
   const hdf5::Group root = file.root();
-  refuse_newer(root, schema_version);
+  refuse_newer(root, profiles_schema_version);
   if (root.read<double>("depth") != depths_)
     throw InputError(fmt::format("{}: has other depths; resume with the scene of the first run", path_.string()));
   times_ = root.read<double>("time");

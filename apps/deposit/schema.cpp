@@ -18,7 +18,7 @@ namespace isostat
 namespace
 {
 constexpr const char *base_choices[] = {"rigid", "compliant"};
-constexpr const char *axis_choices[] = {"x", "y", "z"};
+constexpr const char *load_axes[] = {"x", "y", "z"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 
 using namespace ranges;
@@ -188,7 +188,7 @@ constexpr Key loading_keys[] = {
    .range = not_negative, .text = "Vertical load on the unit of the surface, there from the start and part of the in-situ effective stress; on a "
            "slope its part along x is carried by shear.",
    .field = [](ColumnScene &s) -> Field { return &s.load.surcharge; }},
-  {.path = "load.direction", .kind = Kind::choice, .value = "z", .choices = axis_choices, .kinds = loaded,
+  {.path = "load.direction", .kind = Kind::choice, .value = "z", .choices = load_axes, .kinds = loaded,
    .text = "Direction of the traction; along z compression is positive.",
    .field = [](ColumnScene &s) -> Field { return &s.load.direction; }},
   {.path = "load.amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",

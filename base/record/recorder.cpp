@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-const std::string format_name = "isostat-history";
-constexpr std::uint64_t schema_version = 1;
+const std::string history_format = "isostat-history";
+constexpr std::uint64_t history_schema_version = 1;
 } // namespace
 
 Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows,
@@ -62,7 +62,7 @@ void Recorder::start_anew(const std::string &scene)
   write_replacing(csv_, header());
   csv_bytes_ = header().size();
   hdf5::File file = hdf5::File::create(hdf5_);
-  set_format(file.root(), format_name, schema_version, scene);
+  set_format(file.root(), history_format, history_schema_version, scene);
   hdf5::Group series = file.root().create_group("history");
   for (const RecordColumn &column : columns_)
     series.create_series(column.name, column.unit.empty() ? "-" : column.unit);
@@ -105,7 +105,7 @@ void Recorder::resume()
 void Recorder::resume_hdf5()
 {
   hdf5::File file = hdf5::File::update(hdf5_);
-  refuse_newer(file.root(), schema_version);
+  refuse_newer(file.root(), history_schema_version);
   if (!file.root().has("history"))
     throw InputError(fmt::format("{}: no group \"history\"; restore the file or start the run anew", hdf5_.string()));
   hdf5::Group series = file.root().group("history");

@@ -10,16 +10,16 @@ namespace isostat
 {
 namespace
 {
-const std::string format_name = "isostat-checkpoint";
+const std::string checkpoint_format = "isostat-checkpoint";
 // 6: nothing about early ends, rows by any component; 5: nothing about control, repeats and paths;
 // 4: no window of the slope; 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
-constexpr std::uint64_t schema_version = 7;
+constexpr std::uint64_t checkpoint_schema_version = 7;
 
 Checkpoint read_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
   const hdf5::Group root = file.root();
-  expect_format(root, format_name, schema_version);
+  expect_format(root, checkpoint_format, checkpoint_schema_version);
   Checkpoint checkpoint;
   checkpoint.scene = root.attribute<std::string>("scene");
   checkpoint.state = read_snapshot(root.group("state"));
@@ -34,7 +34,7 @@ Checkpoint read_file(const std::filesystem::path &path)
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint)
 {
   write_newest(folder, [&](hdf5::Group root) {
-    set_format(root, format_name, schema_version, checkpoint.scene);
+    set_format(root, checkpoint_format, checkpoint_schema_version, checkpoint.scene);
     write_snapshot(root.create_group("state"), checkpoint.state);
     hdf5::write_field(root, "drive", checkpoint.drive);
     hdf5::write_field(root, "written", checkpoint.written);

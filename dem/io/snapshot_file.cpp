@@ -17,8 +17,8 @@ namespace
 {
 using hdf5::Group;
 
-const std::string format_name = "isostat-snapshot";
-constexpr std::uint64_t schema_version = 1;
+const std::string snapshot_file_format = "isostat-snapshot";
+constexpr std::uint64_t snapshot_file_schema_version = 1;
 
 /// One field of all rows as a column, whole numbers with 32 bits, and back.
 template <typename Row, typename T>
@@ -258,7 +258,7 @@ Snapshot read_snapshot(const Group &group)
 void write_snapshot_file(const std::filesystem::path &path, const Snapshot &snapshot)
 {
   hdf5::File file = hdf5::File::create(path);
-  set_format(file.root(), format_name, schema_version);
+  set_format(file.root(), snapshot_file_format, snapshot_file_schema_version);
   write_snapshot(file.root().create_group("snapshot"), snapshot);
   file.commit();
 }
@@ -267,7 +267,7 @@ Snapshot read_snapshot_file(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
   const Group root = file.root();
-  refuse_newer(root, schema_version);
+  refuse_newer(root, snapshot_file_schema_version);
   return read_snapshot(format_of(root).empty() && root.has("grains") ? root : root.group("snapshot"));
 }
 } // namespace isostat

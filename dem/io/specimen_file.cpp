@@ -13,7 +13,7 @@ namespace isostat
 {
 namespace
 {
-const std::string format_name = "isostat-specimen";
+const std::string specimen_format = "isostat-specimen";
 const std::string snapshot_format = "isostat-snapshot"; // of a run, without a story
 
 std::string grain_fault(const Packing &grains)
@@ -117,7 +117,7 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 {
   hdf5::File file = hdf5::File::create(path);
   hdf5::Group root = file.root();
-  set_format(root, format_name, specimen_schema_version);
+  set_format(root, specimen_format, specimen_schema_version);
   write_specimen(root, specimen);
   file.commit();
 }
@@ -145,7 +145,7 @@ Specimen read_specimen(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
   expect_specimens(
-      file.root(), format_name, specimen_schema_version,
+      file.root(), specimen_format, specimen_schema_version,
       fmt::format("a specimen made by Isostat, of a library one of its entries ({}#s0001)", path.string()));
   return read_specimen(file.root());
 }

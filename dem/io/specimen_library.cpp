@@ -14,12 +14,12 @@ namespace isostat
 {
 namespace
 {
-const std::string format_name = "isostat-specimen-library";
+const std::string library_format = "isostat-specimen-library";
 constexpr std::size_t most_in_message = 40;
 
 void check_header(const hdf5::Group &root)
 {
-  expect_specimens(root, format_name, library_schema_version, "a library made by specimen_library");
+  expect_specimens(root, library_format, library_schema_version, "a library made by specimen_library");
 }
 
 std::vector<LibraryEntry> entries_of(const hdf5::Group &root)
@@ -79,7 +79,7 @@ std::string LibraryEntry::text(const std::string &key) const
 bool is_specimen_library(const std::filesystem::path &path)
 {
   const hdf5::File file = hdf5::File::open(path);
-  return format_of(file.root()) == format_name;
+  return format_of(file.root()) == library_format;
 }
 
 std::vector<LibraryEntry> list_library(const std::filesystem::path &path)
@@ -128,7 +128,7 @@ std::string library_table(const std::vector<LibraryEntry> &entries, std::size_t 
 LibraryWriter LibraryWriter::create(const std::filesystem::path &path)
 {
   LibraryWriter writer(hdf5::File::create(path));
-  set_format(writer.file_.root(), format_name, library_schema_version);
+  set_format(writer.file_.root(), library_format, library_schema_version);
   return writer;
 }
 

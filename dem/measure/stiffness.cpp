@@ -64,13 +64,6 @@ std::vector<Element> elements_of(const Snapshot &snapshot, Sliding sliding)
   return elements;
 }
 
-Mat3 cross_matrix(const Vec3 &n)
-{
-  Mat3 m;
-  m << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
-  return m;
-}
-
 /// eps n as a function of (xx, yy, zz, yz, xz, xy), engineering shear.
 Mat3x6 strain_along(const Vec3 &n)
 {

@@ -16,7 +16,7 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 constexpr double overlap_expected = 0.01;
 
 /// One closed contact as an elastic element.
-struct Element
+struct ElasticContact
 {
   std::uint32_t first, second;
   Vec3 normal;
@@ -24,9 +24,9 @@ struct Element
   ContactStiffness k;
 };
 
-std::vector<Element> closed_contacts(const ContactLaw &law, const Packing &packing, const ContactList &contacts)
+std::vector<ElasticContact> closed_contacts(const ContactLaw &law, const Packing &packing, const ContactList &contacts)
 {
-  std::vector<Element> elements;
+  std::vector<ElasticContact> elements;
   elements.reserve(contacts.n_pairs());
   for (std::size_t p = 0; p < contacts.n_lanes(); ++p)
     {
@@ -39,15 +39,8 @@ std::vector<Element> closed_contacts(const ContactLaw &law, const Packing &packi
   return elements;
 }
 
-Mat3 cross_matrix(const Vec3 &n)
-{
-  Mat3 m;
-  m << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
-  return m;
-}
-
 /// Stiffness block of one body: `sign` -1 for the first, +1 for the second grain of the contact.
-Mat6 body_block(const Element &e, double radius, double sign)
+Mat6 body_block(const ElasticContact &e, double radius, double sign)
 {
   const Mat3 nn = e.normal * e.normal.transpose(), tangential = Mat3::Identity() - nn;
   const Mat3 coupling = sign * e.k.shear * radius * cross_matrix(e.normal);
@@ -121,7 +114,7 @@ struct SmallestPair
 struct ScaledStiffness
 {
   const Packing &packing;
-  const std::vector<Element> &elements;
+  const std::vector<ElasticContact> &elements;
   const std::vector<Vec3> &wall_stiffness_of;
 
   void apply(const std::vector<Vec6> &x, std::vector<Vec6> &y) const
@@ -140,7 +133,7 @@ struct ScaledStiffness
         y[i].setZero();
         y[i].head<3>() = wall_stiffness_of[i].cwiseProduct(u[i].head<3>());
       }
-    for (const Element &e : elements)
+    for (const ElasticContact &e : elements)
       {
         const Vec3 &n0 = e.normal;
         const Vec6 &a = u[e.first], &b = u[e.second];
@@ -163,11 +156,11 @@ struct ScaledStiffness
 
 /// Upper bound of the largest eigenvalue of M^-1/2 K M^-1/2, K of these elements and of what holds single grains.
 /// @param minimum  the bound is never below it
-double largest_eigenvalue(const Packing &packing, const std::vector<Element> &elements, const Blocks &held,
+double largest_eigenvalue(const Packing &packing, const std::vector<ElasticContact> &elements, const Blocks &held,
                           double minimum)
 {
   Blocks alone = held;
-  for (const Element &e : elements)
+  for (const ElasticContact &e : elements)
     {
       alone[e.first] += body_block(e, e.radius1, -1);
       alone[e.second] += body_block(e, e.radius2, +1);
@@ -179,14 +172,14 @@ double largest_eigenvalue(const Packing &packing, const std::vector<Element> &el
 
   // only grains that could exceed the largest lambda with their neighbours' share are looked at again
   std::vector<double> neighbour(packing.n_grains(), 0.0);
-  for (const Element &e : elements)
+  for (const ElasticContact &e : elements)
     {
       neighbour[e.first] = std::max(neighbour[e.first], lambda[e.second]);
       neighbour[e.second] = std::max(neighbour[e.second], lambda[e.first]);
     }
   const auto matters = [&](std::size_t i) { return lambda[i] + neighbour[i] > max_alone; };
   Blocks weighted = held;
-  for (const Element &e : elements)
+  for (const ElasticContact &e : elements)
     {
       if (matters(e.first))
         weighted[e.first] += (1 + lambda[e.second] / lambda[e.first]) * body_block(e, e.radius1, -1);
@@ -201,8 +194,8 @@ double largest_eigenvalue(const Packing &packing, const std::vector<Element> &el
 }
 
 /// Rayleigh quotient of M^-1/2 K M^-1/2 after so many power iterations: its largest eigenvalue, from below.
-double power_iteration(const Packing &packing, const std::vector<Element> &elements, const std::vector<Vec3> &held,
-                       int iterations)
+double power_iteration(const Packing &packing, const std::vector<ElasticContact> &elements,
+                       const std::vector<Vec3> &held, int iterations)
 {
   const std::size_t n = packing.n_grains();
   const ScaledStiffness stiffness{packing, elements, held};
@@ -229,9 +222,10 @@ double power_iteration(const Packing &packing, const std::vector<Element> &eleme
 }
 
 /// The same contacts with dashpots in place of their springs.
-std::vector<Element> dashpots(const Packing &packing, std::vector<Element> elements, double contact_damping)
+std::vector<ElasticContact> dashpots(const Packing &packing, std::vector<ElasticContact> elements,
+                                     double contact_damping)
 {
-  for (Element &e : elements)
+  for (ElasticContact &e : elements)
     e.k = {dashpot_coefficient(contact_damping, e.k.normal, packing.mass(e.first), packing.mass(e.second)), 0, 0, 0};
   return elements;
 }
@@ -243,7 +237,7 @@ double stable_step(double omega2, double gamma) { return (std::sqrt(gamma * gamm
 double critical_step_bound(const ContactLaw &law, const Packing &packing, const RigidBox *walls,
                            const ContactList &contacts, double contact_damping)
 {
-  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  const std::vector<ElasticContact> elements = closed_contacts(law, packing, contacts);
   Blocks held(packing.n_grains(), Mat6::Zero());
   for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i](axis, axis) += k; });
   const double omega2 = largest_eigenvalue(packing, elements, held, SmallestPair(law, packing).eigenvalue());
@@ -259,7 +253,7 @@ double critical_step_by_power_iteration(const ContactLaw &law, const Packing &pa
 {
   std::vector<Vec3> held(packing.n_grains(), Vec3::Zero());
   for_wall_contacts(law, packing, walls, [&](std::size_t i, int axis, double k) { held[i][axis] += k; });
-  const std::vector<Element> elements = closed_contacts(law, packing, contacts);
+  const std::vector<ElasticContact> elements = closed_contacts(law, packing, contacts);
   const double omega2 = power_iteration(packing, elements, held, iterations);
   if (contact_damping <= 0)
     return 2 / std::sqrt(omega2);

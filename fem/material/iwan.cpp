@@ -43,7 +43,7 @@ void check(const IwanParameters &p)
     }
 }
 
-std::string at_point(std::size_t i) { return "iwan: point " + std::to_string(i) + ": "; }
+std::string at_iwan_point(std::size_t i) { return "iwan: point " + std::to_string(i) + ": "; }
 } // namespace
 
 Backbone fit_hyperbola(unsigned n)
@@ -108,10 +108,10 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
       const Shear s{(t[0] - t[1]) / 2, (2 * t[2] - t[0] - t[1]) / (2 * root3), t[3], t[4], t[5]};
       const double size = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
       if (!(p > 0) || !std::isfinite(p))
-        throw InputError(at_point(i) + "initial mean effective stress = " + std::to_string(p) +
+        throw InputError(at_iwan_point(i) + "initial mean effective stress = " + std::to_string(p) +
                          " Pa; must be above 0 (compression); give the surface a load");
       if (!(size <= parameters_.strength_ratio * p))
-        throw InputError(at_point(i) + "initial stress ratio = " + std::to_string(size / p) +
+        throw InputError(at_iwan_point(i) + "initial stress ratio = " + std::to_string(size / p) +
                          "; must not be above strength_ratio; choose k0 nearer to 1");
       double *state = &states[i * stride_];
       state[pressure] = p;

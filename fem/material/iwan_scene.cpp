@@ -12,7 +12,7 @@ namespace
 using namespace ranges;
 
 // clang-format off
-constexpr Key in_scenes[] = {
+constexpr Key iwan_in_scenes[] = {
   {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive,
    .text = "Mean effective stress p_r at which the stiffness is given.",
@@ -48,7 +48,7 @@ constexpr Key in_scenes[] = {
    .field = [](IwanParameters &p) -> Field { return &p.elements; }},
 };
 
-constexpr Key fixed[] = {
+constexpr Key iwan_fixed[] = {
   {.path = "shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
    .field = [](IwanParameters &p) -> Field { return &p.shear_modulus; }},
   {.path = "poisson_ratio", .range = {-1, 0.5, true, true}, .field = [](IwanParameters &p) -> Field { return &p.poisson_ratio; }},
@@ -61,11 +61,11 @@ constexpr Key fixed[] = {
 // clang-format on
 } // namespace
 
-SceneFragment<IwanParameters> iwan_keys() { return {in_scenes}; }
+SceneFragment<IwanParameters> iwan_keys() { return {iwan_in_scenes}; }
 
 SceneFragment<IwanParameters> all_iwan_keys()
 {
-  static const KeyTable table{in_scenes, fixed};
+  static const KeyTable table{iwan_in_scenes, iwan_fixed};
   return {table.keys()};
 }
 

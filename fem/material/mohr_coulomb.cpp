@@ -60,7 +60,7 @@ void check(const MohrCoulombParameters &p)
     }
 }
 
-std::string at_point(std::size_t i) { return "mohr_coulomb: point " + std::to_string(i) + ": "; }
+std::string at_mohr_coulomb_point(std::size_t i) { return "mohr_coulomb: point " + std::to_string(i) + ": "; }
 
 bool is_finite(const Stress &stress)
 {
@@ -115,10 +115,10 @@ void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
       std::copy(s.begin(), s.end(), state);
       state[modulus] = p.shear_modulus * std::pow(pressure / p.reference_pressure, p.exponent);
       if (!is_finite(s))
-        throw InputError(at_point(i) + "the initial stress is not a number; give one");
+        throw InputError(at_mohr_coulomb_point(i) + "the initial stress is not a number; give one");
       constexpr double round_off = 1e-9;
       if (const double beyond = yield(s); beyond > round_off * std::abs(s[0] + s[1] + s[2]))
-        throw InputError(at_point(i) + "initial principal stresses are beyond the strength by " +
+        throw InputError(at_mohr_coulomb_point(i) + "initial principal stresses are beyond the strength by " +
                          number_text(std::round(beyond) / 1e3) +
                          " kPa of (s_1 - s_3) - (s_1 + s_3) sin(phi) - 2 c cos(phi) with pressures s_1 >= s_3; choose "
                          "k0 nearer to 1, or a larger friction_angle or cohesion");
@@ -137,7 +137,7 @@ void MohrCoulomb::trial(std::span<const Gradient> increments, std::span<Stress> 
       double *to = &trial_[i * stride];
       const Step d = step(from, increments[i]);
       if (!is_finite(d.stress))
-        throw RunFailure(at_point(i) + "the stress is not a number; take smaller steps");
+        throw RunFailure(at_mohr_coulomb_point(i) + "the stress is not a number; take smaller steps");
       std::copy(d.stress.begin(), d.stress.end(), to);
       to[plastic] = d.plastic;
       to[modulus] = from[modulus];

@@ -12,7 +12,7 @@ namespace
 using namespace ranges;
 
 // clang-format off
-constexpr Key in_scenes[] = {
+constexpr Key mohr_coulomb_in_scenes[] = {
   {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "100 kPa", .range = positive,
    .text = "Mean effective stress p_r at which the stiffness is given.",
@@ -46,7 +46,7 @@ constexpr Key in_scenes[] = {
    .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_dilatancy; }},
 };
 
-constexpr Key fixed[] = {
+constexpr Key mohr_coulomb_fixed[] = {
   {.path = "shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
    .field = [](MohrCoulombParameters &p) -> Field { return &p.shear_modulus; }},
   {.path = "poisson_ratio", .range = {-1, 0.5, true, true},
@@ -55,11 +55,11 @@ constexpr Key fixed[] = {
 // clang-format on
 } // namespace
 
-SceneFragment<MohrCoulombParameters> mohr_coulomb_keys() { return {in_scenes}; }
+SceneFragment<MohrCoulombParameters> mohr_coulomb_keys() { return {mohr_coulomb_in_scenes}; }
 
 SceneFragment<MohrCoulombParameters> all_mohr_coulomb_keys()
 {
-  static const KeyTable table{in_scenes, fixed};
+  static const KeyTable table{mohr_coulomb_in_scenes, mohr_coulomb_fixed};
   return {table.keys()};
 }
 

@@ -13,13 +13,13 @@ namespace isostat
 {
 namespace
 {
-constexpr double load = 1e3, porosity = 0.4; // Pa, [-]
+constexpr double surcharge = 1e3, porosity = 0.4; // Pa, [-]
 
 StaticsSettings loaded()
 {
   StaticsSettings settings;
   settings.pore_water = true;
-  settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -load}; }}};
+  settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -surcharge}; }}};
   return settings;
 }
 const Supports supports = {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = {Face::surface}};
@@ -30,7 +30,7 @@ struct Stratum
   double thickness, modulus, permeability; ///< m, D in Pa, m/s
   double mobility() const { return permeability / 9810; }
   double storage() const { return 1 / modulus + porosity / 2.2e9; }
-  double start() const { return load / (modulus * storage()); } ///< pressure before any flow
+  double start() const { return surcharge / (modulus * storage()); } ///< pressure before any flow
 };
 constexpr Stratum cap{2, 2e7, 1e-7}, sand{8, 1e8, 1e-5};
 
@@ -69,13 +69,13 @@ public:
   {
     const double carried =
         sum(t, [](double a, double b) { return std::sin(b * sand.thickness) / b * std::sin(a * cap.thickness); });
-    return (load * sand.thickness - carried) / sand.modulus;
+    return (surcharge * sand.thickness - carried) / sand.modulus;
   }
   double settlement_of_cap(double t) const
   {
     const double carried =
         sum(t, [](double a, double b) { return (1 - std::cos(a * cap.thickness)) / a * std::cos(b * sand.thickness); });
-    return (load * cap.thickness - carried) / cap.modulus;
+    return (surcharge * cap.thickness - carried) / cap.modulus;
   }
 
 private:
@@ -108,9 +108,9 @@ private:
   std::vector<std::array<double, 2>> modes_;
 };
 
-struct Column
+struct LayeredColumn
 {
-  explicit Column(std::vector<Layer> layers, Water water, std::vector<double> moduli)
+  explicit LayeredColumn(std::vector<Layer> layers, Water water, std::vector<double> moduli)
       : space({.soil = {std::move(layers), water}}, supports), soil(parts(moduli)), statics(space, *soil, loaded())
   {}
   std::unique_ptr<Material> parts(const std::vector<double> &moduli)
@@ -135,9 +135,9 @@ struct Column
   Statics statics;
 };
 
-Column capped_sand()
+LayeredColumn capped_sand()
 {
-  return Column(
+  return LayeredColumn(
       {{.name = "cap", .thickness = cap.thickness, .porosity = porosity, .permeability = cap.permeability, .cells = 40},
        {.name = "sand",
         .thickness = sand.thickness,
@@ -151,8 +151,9 @@ Column capped_sand()
 TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
 {
   const Exact exact;
-  EXPECT_NEAR_BECAUSE(exact.settlement_of_cap(1e9), load * cap.thickness / cap.modulus, 1e-15, "all water has left");
-  Column column = capped_sand();
+  EXPECT_NEAR_BECAUSE(exact.settlement_of_cap(1e9), surcharge * cap.thickness / cap.modulus, 1e-15,
+                      "all water has left");
+  LayeredColumn column = capped_sand();
   column.statics.step_undrained();
   double duration = 1;
   for (double end : {1e3, 1e4, 3e4, 1e5})
@@ -163,14 +164,14 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
           duration *= 1.05;
         }
       const double t = column.statics.time(), middle = sand.thickness, top = sand.thickness + cap.thickness;
-      const double p = (column.pressure(middle) - exact.pressure(middle, t)) / load,
-                   base = (column.pressure(0) - exact.pressure(0, t)) / load,
+      const double p = (column.pressure(middle) - exact.pressure(middle, t)) / surcharge,
+                   base = (column.pressure(0) - exact.pressure(0, t)) / surcharge,
                    u = column.down(middle) / exact.settlement_of_sand(t) - 1,
                    all = column.down(top) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
-      std::printf(
-          "  t = %6.0f s: p under the cap %.3f of the load (%+.1e), base (%+.1e), settlement of the sand (%+.1e), of "
-          "the surface (%+.1e)\n",
-          t, column.pressure(middle) / load, p, base, u, all);
+      std::printf("  t = %6.0f s: p under the cap %.3f of the surcharge (%+.1e), base (%+.1e), settlement of the sand "
+                  "(%+.1e), of "
+                  "the surface (%+.1e)\n",
+                  t, column.pressure(middle) / surcharge, p, base, u, all);
       for (double error : {p, base, u, all})
         EXPECT_NEAR_BECAUSE(error, 0, 1e-3, "steps that grow by a twentieth each, 40 elements a layer");
     }
@@ -180,7 +181,7 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
 /// Darcy's law on the other side of its upper boundary.
 TEST(LayeredConsolidation, WaterThatLeavesTheSandGoesThroughTheCap)
 {
-  Column column = capped_sand();
+  LayeredColumn column = capped_sand();
   column.statics.step_undrained();
   const double middle = sand.thickness, top = sand.thickness + cap.thickness, h = cap.thickness / 40;
   const auto stored = [&](unsigned layer) { // by the water's own compression, m
@@ -217,22 +218,23 @@ TEST(LayeredConsolidation, WaterThatLeavesTheSandGoesThroughTheCap)
   EXPECT_NEAR_BECAUSE(out_of_cap / left, 1, 2e-3, "second order in elements of 5 cm and in the steps");
 }
 
-/// A load at once: p = q/(1 + D n/K_f), 1/K_f = S/K_w + (1 - S)/p_abs at each depth; settlement q int dz/(D + K_f/n).
+/// A surcharge at once: p = q/(1 + D n/K_f), 1/K_f = S/K_w + (1 - S)/p_abs at each depth; settlement q int dz/(D + K_f/n).
 TEST(LayeredConsolidation, AirTakesItsShareOfALoad)
 {
   constexpr double height = 10, modulus = 1e8, s = 0.99;
-  Column column({{.name = "", .thickness = height, .porosity = porosity, .saturation = s, .cells = 20}}, {}, {modulus});
+  LayeredColumn column({{.name = "", .thickness = height, .porosity = porosity, .saturation = s, .cells = 20}}, {},
+                       {modulus});
   column.statics.step_undrained();
   const auto storage = [](double z) { return porosity * (s / 2.2e9 + (1 - s) / (101325 + 9810 * (height - z))); };
   double worst = 0, settlement = 0;
   for (double z = 0; z < 10.01; z += 0.5)
-    worst = std::max(worst, std::abs(column.pressure(z) / load * (1 + modulus * storage(z)) - 1));
+    worst = std::max(worst, std::abs(column.pressure(z) / surcharge * (1 + modulus * storage(z)) - 1));
   constexpr int n = 1000;
   for (int k = 0; k < n; ++k)
-    settlement += load * height / n / (modulus + 1 / storage((k + 0.5) * height / n));
+    settlement += surcharge * height / n / (modulus + 1 / storage((k + 0.5) * height / n));
   std::printf(
       "  S = 0.99: share of the water %.4f at the base, %.4f at the surface, error %.1e; settlement error %.1e\n",
-      column.pressure(0) / load, column.pressure(height) / load, worst, column.down(height) / settlement - 1);
+      column.pressure(0) / surcharge, column.pressure(height) / surcharge, worst, column.down(height) / settlement - 1);
   EXPECT_BELOW_BECAUSE(worst, 1e-3, "the pressure is linear in each of 20 elements");
   EXPECT_NEAR_BECAUSE(column.down(height) / settlement, 1, 1e-4, "the pressure is linear in each of 20 elements");
 }
@@ -240,8 +242,8 @@ TEST(LayeredConsolidation, AirTakesItsShareOfALoad)
 TEST(LayeredConsolidation, AViscousFluidTakesLongerInProportion)
 {
   const auto settled = [](double viscosity, double slower) {
-    Column column({{.name = "", .thickness = 10, .permeability = 1e-6, .cells = 20}}, {.relative_viscosity = viscosity},
-                  {1e8});
+    LayeredColumn column({{.name = "", .thickness = 10, .permeability = 1e-6, .cells = 20}},
+                         {.relative_viscosity = viscosity}, {1e8});
     column.statics.step_undrained();
     for (int k = 0; k < 50; ++k)
       column.statics.step(40 * slower);

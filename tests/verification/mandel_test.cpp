@@ -14,7 +14,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double half_width = 10, height = 2, force = 1e4; // m, m, half the load on the plate per m, N/m
+constexpr double half_width = 10, thickness = 2, force = 1e4; // m, m, half the load on the plate per m, N/m
 constexpr unsigned cells = 40;
 
 struct Mandel
@@ -22,7 +22,7 @@ struct Mandel
   static MeshSpec mesh()
   {
     MeshSpec mesh;
-    mesh.soil.layers = {{.name = "clay", .thickness = height, .porosity = 0.33, .permeability = 1e-8}};
+    mesh.soil.layers = {{.name = "clay", .thickness = thickness, .porosity = 0.33, .permeability = 1e-8}};
     mesh.soil.layers[0].cells = 2;
     mesh.width = {half_width, 1};
     mesh.cells_across = {cells, 1};
@@ -92,7 +92,7 @@ TEST(Mandel, PressureRisesThenFalls)
   const double p0 = slab.at_once();
   std::printf("nu_u %.4f, B %.4f; p(0+)/exact - 1 = %.1e\n", slab.nu_u, slab.skempton, slab.pressure(0) / p0 - 1);
   EXPECT_NEAR_BECAUSE(slab.pressure(0) / p0, 1, 1e-9, "a direct solution: round-off times the condition of the system");
-  EXPECT_NEAR_BECAUSE(slab.pressure(half_width / 2, height) / p0, 1, 1e-9,
+  EXPECT_NEAR_BECAUSE(slab.pressure(half_width / 2, thickness) / p0, 1, 1e-9,
                       "a direct solution: round-off times the condition of the system");
   double before = 0, highest = 0, exact_highest = 0;
   for (double t : {0.01, 0.05, 0.1, 0.5, 1.0, 2.0})

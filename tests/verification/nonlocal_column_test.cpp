@@ -40,7 +40,7 @@ std::unique_ptr<Material> weak_in_the_middle(const FiniteElementSpace &space)
 }
 
 /// Height over which a field is more than half of its largest value; linear between points.
-double half_width(const FiniteElementSpace &space, const std::vector<double> &x)
+double half_value_width(const FiniteElementSpace &space, const std::vector<double> &x)
 {
   const double half = *std::max_element(x.begin(), x.end()) / 2;
   double width = 0;
@@ -82,7 +82,7 @@ Outcome sheared(unsigned cells, const NonlocalParameters &nonlocal, int steps)
   for (const Gradient &point : h)
     shear.push_back(point[2]);
   outcome.largest = *std::max_element(shear.begin(), shear.end());
-  outcome.thickness = half_width(space, shear);
+  outcome.thickness = half_value_width(space, shear);
   outcome.stress = statics.reaction({Face::surface, 0});
   std::printf("%u elements, l = %g m, A %g, %d steps: %.5g Pa, thickness %.4g m, largest strain %.4g, %u iterations\n",
               cells, nonlocal.length, nonlocal.stiffness, steps, outcome.stress, outcome.thickness, outcome.largest,

@@ -18,7 +18,6 @@ namespace isostat
 {
 namespace
 {
-constexpr std::size_t xy = 3;
 constexpr double rows_between_turns = 50;
 constexpr PathQuantity stresses[] = {PathQuantity::sigma_x, PathQuantity::sigma_y, PathQuantity::sigma_z,
                                      PathQuantity::tau};
@@ -41,7 +40,7 @@ const ShearMode &Path::mode() const
 
 bool Path::needs_cell() const
 {
-  return drive == DrivenComponent::xy || components[xy] != PathComponent{} ||
+  return drive == DrivenComponent::xy || components[shear_component] != PathComponent{} ||
          (read_.table && prescribes_shear(*read_.table));
 }
 
@@ -176,8 +175,8 @@ KeptStresses Path::kept_stresses(const StageContext &c) const
   for (std::size_t k = 0; k < 3; ++k)
     if (components[k].follows_stress())
       kept[k] = targets[static_cast<int>(k)];
-  if (components[xy].follows_stress())
-    kept[xy] = tau_target(c.state);
+  if (components[shear_component].follows_stress())
+    kept[shear_component] = tau_target(c.state);
   return kept;
 }
 
@@ -284,7 +283,7 @@ Mat3 Path::next_gradient(const StageContext &c, const Observation &seen) const
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
   for (int k = 0; k < 3; ++k)
     controlled(k, k) = components[k].follows_stress();
-  controlled(0, 1) = controlled(1, 0) = components[xy].follows_stress();
+  controlled(0, 1) = controlled(1, 0) = components[shear_component].follows_stress();
   Mat3 target = (-stress_targets(c.state, c.assembly.stress())).asDiagonal();
   target(0, 1) = target(1, 0) = tau_target(c.state);
   const Mat3 served = stress_servo(c.assembly, target, controlled, servo_rate_factor * c.state.pace.rate,
@@ -294,7 +293,8 @@ Mat3 Path::next_gradient(const StageContext &c, const Observation &seen) const
     step[k] = controlled(k, k) ? -served(k, k) : prescribed[k];
   close_step(c, seen, step);
   Mat3 gradient = (-step).asDiagonal();
-  gradient(0, 1) = controlled(0, 1) ? 2 * served(0, 1) : prescribed[xy]; // planes normal to y slide along x
+  gradient(0, 1) =
+      controlled(0, 1) ? 2 * served(0, 1) : prescribed[shear_component]; // planes normal to y slide along x
   c.state.progress.gamma += gradient(0, 1);
   return gradient;
 }

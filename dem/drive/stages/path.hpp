@@ -33,6 +33,8 @@ enum class PathCondition
   b
 };
 
+inline constexpr std::size_t shear_component = 3; ///< of x, y, z, xy
+
 /// One of x, y, z, xy.
 struct PathComponent
 {

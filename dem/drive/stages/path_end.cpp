@@ -17,7 +17,6 @@ constexpr std::uint64_t rest_interval = 200, hopeless_steps = 20'000'000;
 constexpr double rest_tolerance = 0.005;  ///< relative to p', on the stresses at the end of a path that is not driven
 constexpr double start_tolerance = 0.001; ///< relative to p', on a stress that ends the path and is there already
 constexpr double hopeless_strain = 1; ///< driven, or of a path that drives nothing, where nothing ends it for sure [-]
-constexpr std::size_t xy = 3;
 
 /// The value has been passed since the stage began, or was there then.
 bool passed(const std::optional<double> &value, double start, double now, double tolerance)
@@ -42,8 +41,8 @@ double Path::target_error(const StageContext &c) const
   for (int k = 0; k < 3; ++k)
     if (kept[static_cast<std::size_t>(k)])
       worst = std::max(worst, std::abs(-stress(k, k) - *kept[static_cast<std::size_t>(k)]) / p);
-  if (kept[xy])
-    worst = std::max(worst, std::abs(stress(0, 1) - *kept[xy]) / p);
+  if (kept[shear_component])
+    worst = std::max(worst, std::abs(stress(0, 1) - *kept[shear_component]) / p);
   return worst;
 }
 

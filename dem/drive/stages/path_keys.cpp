@@ -75,10 +75,10 @@ constexpr std::array<Key, 4> component(const char *table, const char *keep, cons
      .field = InComponent<k, &PathComponent::stress>{}},
   }};
 }
-constexpr std::array<Key, 4> x = component<0>("x", "x.keep", "x.strain_ratio", "x.stress");
-constexpr std::array<Key, 4> y = component<1>("y", "y.keep", "y.strain_ratio", "y.stress");
-constexpr std::array<Key, 4> z = component<2>("z", "z.keep", "z.strain_ratio", "z.stress");
-constexpr std::array<Key, 4> xy = component<3>("xy", "xy.keep", "xy.strain_ratio", "xy.stress");
+constexpr std::array<Key, 4> x_keys = component<0>("x", "x.keep", "x.strain_ratio", "x.stress");
+constexpr std::array<Key, 4> y_keys = component<1>("y", "y.keep", "y.strain_ratio", "y.stress");
+constexpr std::array<Key, 4> z_keys = component<2>("z", "z.keep", "z.strain_ratio", "z.stress");
+constexpr std::array<Key, 4> xy_keys = component<3>("xy", "xy.keep", "xy.strain_ratio", "xy.stress");
 
 constexpr Key first[] = {
   {.path = "drive", .kind = Kind::choice, .value = "y", .choices = drives, .kinds = of_path,
@@ -155,7 +155,7 @@ KeyRun run(const std::array<Key, 4> &keys) { return {std::span<const Key>(keys),
 
 SceneFragment<StageBehaviour> path_keys()
 {
-  static const KeyTable table{first, run(x), run(y), run(z), run(xy), others};
+  static const KeyTable table{first, run(x_keys), run(y_keys), run(z_keys), run(xy_keys), others};
   return {table.keys()};
 }
 } // namespace isostat

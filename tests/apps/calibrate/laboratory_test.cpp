@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 const std::string header = "eps_a[%],eps_v[%],sigma_v[kPa],sigma_r[kPa]\n";
 const std::string rows = "0,0,100,100\n1,0.2,200,100\n2,0.1,250,100\n4,-0.5,300,100\n";
-constexpr test::Tolerance round_off{1e-12, "round-off of some ten operations"};
+constexpr test::Tolerance ten_operations{1e-12, "round-off of some ten operations"};
 
 class LaboratoryFile : public testing::Test
 {
@@ -54,7 +54,7 @@ TEST_F(LaboratoryFile, IsReadInItsUnits)
   const Curve curve = read(header + rows);
   EXPECT_THAT(curve.strain, testing::ElementsAre(0, 0.01, 0.02, 0.04));
   EXPECT_THAT(curve.q, testing::ElementsAre(0, 100e3, 150e3, 200e3));
-  EXPECT_NEAR_BECAUSE(curve.other[3], -0.005, round_off);
+  EXPECT_NEAR_BECAUSE(curve.other[3], -0.005, ten_operations);
   plan.columns = {"e1 (-)", "ev (-)", "s1 (MPa)", "s3 (Pa)", "", ""};
   const Curve other = read("s3 (Pa),s1 (MPa),e1 (-),ev (-)\n1e5,0.1,0,0\n1e5,0.3,0.05,0.001\n");
   EXPECT_THAT(other.strain, testing::ElementsAre(0, 0.05));

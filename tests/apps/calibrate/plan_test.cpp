@@ -14,7 +14,7 @@ namespace
 {
 using test::plan_text;
 
-void expect_complaint(const std::string &text, const std::vector<std::string> &parts)
+void expect_plan_refused(const std::string &text, const std::vector<std::string> &parts)
 {
   test::expect_parts(test::refusal([&] { parse_plan(text, "plan.toml"); }), parts);
 }
@@ -60,27 +60,28 @@ TEST(CalibrationPlan, DefaultsArePrintedForEveryKey)
 
 TEST(CalibrationPlan, RefusesWhatItDoesNotKnow)
 {
-  expect_complaint(plan_text() + "wieght = 2\n", {"plan.toml:13", "wieght", "Did you mean curve.weight?"});
-  expect_complaint(plan_text() + "[budget]\ntrials = 0\n", {"plan.toml:14: budget.trials = 0", "in [1, 1000000]"});
-  expect_complaint(plan_text() + "[optimiser]\nmethod = \"bobby\"\n",
-                   {"plan.toml:14", "bobby", "\"sbplx\" or \"crs2\""});
-  expect_complaint(plan_text("scale = \"square\"\n"), {"plan.toml:9", "square", "\"linear\" or \"log\""});
+  expect_plan_refused(plan_text() + "wieght = 2\n", {"plan.toml:13", "wieght", "Did you mean curve.weight?"});
+  expect_plan_refused(plan_text() + "[budget]\ntrials = 0\n", {"plan.toml:14: budget.trials = 0", "in [1, 1000000]"});
+  expect_plan_refused(plan_text() + "[optimiser]\nmethod = \"bobby\"\n",
+                      {"plan.toml:14", "bobby", "\"sbplx\" or \"crs2\""});
+  expect_plan_refused(plan_text("scale = \"square\"\n"), {"plan.toml:9", "square", "\"linear\" or \"log\""});
 }
 
 TEST(CalibrationPlan, RefusesValuesThatAreNone)
 {
-  expect_complaint(plan_text("start = [1, 2]\n"),
-                   {"plan.toml:9: parameter.1.start = [1, 2]", "must be a number, or a"});
-  expect_complaint("scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = \"1 GPa\"\n" +
-                       test::curve_text,
-                   {"plan.toml:4: parameter.0.bounds = 1 GPa", "two values, [low, high]"});
+  expect_plan_refused(plan_text("start = [1, 2]\n"),
+                      {"plan.toml:9: parameter.1.start = [1, 2]", "must be a number, or a"});
+  expect_plan_refused("scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = \"1 GPa\"\n" +
+                          test::curve_text,
+                      {"plan.toml:4: parameter.0.bounds = 1 GPa", "two values, [low, high]"});
 }
 
 TEST(CalibrationPlan, NeedsParametersAndCurves)
 {
-  expect_complaint("scene = \"s.toml\"\n" + test::curve_text, {"plan.toml", "at least one parameter", "[[parameter]]"});
-  expect_complaint("scene = \"s.toml\"\n" + test::parameter_texts, {"plan.toml", "at least one curve", "[[curve]]"});
-  expect_complaint(plan_text() + "blind = true\n", {"plan.toml:13: curve.0.blind = true", "no curve to fit"});
+  expect_plan_refused("scene = \"s.toml\"\n" + test::curve_text,
+                      {"plan.toml", "at least one parameter", "[[parameter]]"});
+  expect_plan_refused("scene = \"s.toml\"\n" + test::parameter_texts, {"plan.toml", "at least one curve", "[[curve]]"});
+  expect_plan_refused(plan_text() + "blind = true\n", {"plan.toml:13: curve.0.blind = true", "no curve to fit"});
 }
 
 TEST(CalibrationPlan, RefusesOneParameterForBobyqa)
@@ -88,25 +89,25 @@ TEST(CalibrationPlan, RefusesOneParameterForBobyqa)
   const std::string one =
       "scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = [\"1 GPa\", \"2 GPa\"]\n";
   EXPECT_EQ(parse_plan(one + test::curve_text, "p").search.method, SearchMethod::sbplx);
-  expect_complaint(one + test::curve_text + "[optimiser]\nmethod = \"bobyqa\"\n",
-                   {"\"bobyqa\" needs two parameters", "\"sbplx\""});
+  expect_plan_refused(one + test::curve_text + "[optimiser]\nmethod = \"bobyqa\"\n",
+                      {"\"bobyqa\" needs two parameters", "\"sbplx\""});
   EXPECT_EQ(parse_plan(one + test::curve_text + "[optimiser]\nmethod = \"sbplx\"\n", "p").parameters.size(), 1u);
 }
 
 TEST(CalibrationPlan, RefusesWhatStandsTwice)
 {
-  expect_complaint(plan_text() + test::curve_text, {"plan.toml:14", "names two curves \"TMD3\"", "plan.toml:11"});
-  expect_complaint(plan_text() + "relative_density = 0.6\nvoid_ratio = 0.7\n",
-                   {"plan.toml:14: curve.0.void_ratio", "excludes curve.0.relative_density (plan.toml:13)"});
-  expect_complaint(plan_text() + "[[parameter]]\nkey = \"contact.friction\"\nbounds = [\"1 deg\", \"2 deg\"]\n",
-                   {"plan.toml:14: parameter.2.key = contact.friction", "a parameter twice", "plan.toml:4"});
+  expect_plan_refused(plan_text() + test::curve_text, {"plan.toml:14", "names two curves \"TMD3\"", "plan.toml:11"});
+  expect_plan_refused(plan_text() + "relative_density = 0.6\nvoid_ratio = 0.7\n",
+                      {"plan.toml:14: curve.0.void_ratio", "excludes curve.0.relative_density (plan.toml:13)"});
+  expect_plan_refused(plan_text() + "[[parameter]]\nkey = \"contact.friction\"\nbounds = [\"1 deg\", \"2 deg\"]\n",
+                      {"plan.toml:14: parameter.2.key = contact.friction", "a parameter twice", "plan.toml:4"});
 }
 
 TEST(CalibrationPlan, RefusesNamesThatAreNone)
 {
-  expect_complaint(plan_text() + "name = \"a/b\"\n", {"plan.toml:13: curve.0.name = a/b", "name a folder"});
-  expect_complaint(plan_text("curve = \"dense\"\n"),
-                   {"plan.toml:9: parameter.1.curve = dense", "no curve that is fitted"});
+  expect_plan_refused(plan_text() + "name = \"a/b\"\n", {"plan.toml:13: curve.0.name = a/b", "name a folder"});
+  expect_plan_refused(plan_text("curve = \"dense\"\n"),
+                      {"plan.toml:9: parameter.1.curve = dense", "no curve that is fitted"});
 }
 
 TEST(CalibrationPlan, ParametersBelongToCurvesOrGroups)
@@ -117,10 +118,10 @@ TEST(CalibrationPlan, ParametersBelongToCurvesOrGroups)
       parse_plan(plan_text("curve = \"loose\"\n") + blind + "group = \"loose\"\n", "plan.toml");
   EXPECT_TRUE(concerns(plan.parameters[1], plan.curves[0]) && concerns(plan.parameters[1], plan.curves[1]));
   EXPECT_EQ(to_toml(parse_plan(to_toml(plan), "again.toml")), to_toml(plan));
-  expect_complaint(plan_text("curve = \"b\"\n") + blind,
-                   {"plan.toml:9: parameter.1.curve = b", "no curve that is fitted"});
-  expect_complaint(plan_text("curve = \"loose\"\n") + blind + limit + "curve = \"TMD3\"\n",
-                   {"parameter.2.key = contact.rolling.limit", "a parameter twice"});
+  expect_plan_refused(plan_text("curve = \"b\"\n") + blind,
+                      {"plan.toml:9: parameter.1.curve = b", "no curve that is fitted"});
+  expect_plan_refused(plan_text("curve = \"loose\"\n") + blind + limit + "curve = \"TMD3\"\n",
+                      {"parameter.2.key = contact.rolling.limit", "a parameter twice"});
   EXPECT_EQ(
       parse_plan(plan_text("curve = \"TMD3\"\n") + test::curve_text + "name = \"c\"\n" + limit + "curve = \"c\"\n",
                  "plan.toml")
@@ -130,8 +131,8 @@ TEST(CalibrationPlan, ParametersBelongToCurvesOrGroups)
 
 TEST(CalibrationPlan, RefusesColumnsOfTheOtherTest)
 {
-  expect_complaint(plan_text() + "columns = { p = \"p[kPa]\" }\n",
-                   {"plan.toml:13: curve.0.columns.p", "only to undrained"});
+  expect_plan_refused(plan_text() + "columns = { p = \"p[kPa]\" }\n",
+                      {"plan.toml:13: curve.0.columns.p", "only to undrained"});
 }
 } // namespace
 } // namespace isostat

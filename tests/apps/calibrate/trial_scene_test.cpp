@@ -24,8 +24,8 @@ CalibrationPlan plan_of(const std::string &text)
   return plan;
 }
 
-void expect_complaint(const std::string &parameter, const std::vector<std::string> &parts,
-                      const std::string &curve = "")
+void expect_trial_refused(const std::string &parameter, const std::vector<std::string> &parts,
+                          const std::string &curve = "")
 {
   const std::string text =
       "scene = \"s\"\n[optimiser]\nmethod = \"sbplx\"\n[[parameter]]\n" + parameter + test::curve_text + curve;
@@ -60,28 +60,32 @@ TEST(CalibrationParameter, GoesAlongTheLogarithm)
 
 TEST(CalibrationParameter, RefusesKeysThatCannotBeVaried)
 {
-  expect_complaint("key = \"contact.frction\"\nbounds = [0, 1]\n", {"plan.toml:5", "Did you mean contact.friction?"});
-  expect_complaint("key = \"grading.curve\"\nbounds = [0, 1]\n", {"plan.toml:5", "is not a number"});
-  expect_complaint("key = \"stage.0.strain\"\nbounds = [0.1, 0.2]\n", {"plan.toml:5", "is set by [[curve]]"});
+  expect_trial_refused("key = \"contact.frction\"\nbounds = [0, 1]\n",
+                       {"plan.toml:5", "Did you mean contact.friction?"});
+  expect_trial_refused("key = \"grading.curve\"\nbounds = [0, 1]\n", {"plan.toml:5", "is not a number"});
+  expect_trial_refused("key = \"stage.0.strain\"\nbounds = [0.1, 0.2]\n", {"plan.toml:5", "is set by [[curve]]"});
   for (const std::string key : {"cloud_edge", "d50"})
-    expect_complaint("key = \"grading." + key + "\"\nbounds = [\"1 mm\", \"2 mm\"]\n",
-                     {"plan.toml:5: parameter.key = grading." + key, "Give another key"});
-  expect_complaint("key = \"specimen.pressure\"\nbounds = [\"1 kPa\", \"2 kPa\"]\n", {"is set by [[curve]]"});
-  expect_complaint("key = \"specimen.relative_density\"\nbounds = [0.2, 0.6]\n",
-                   {"plan.toml:5", "curve \"TMD3\" (plan.toml:8)", "Remove one"}, "void_ratio = 0.7\n");
+    expect_trial_refused("key = \"grading." + key + "\"\nbounds = [\"1 mm\", \"2 mm\"]\n",
+                         {"plan.toml:5: parameter.key = grading." + key, "Give another key"});
+  expect_trial_refused("key = \"specimen.pressure\"\nbounds = [\"1 kPa\", \"2 kPa\"]\n", {"is set by [[curve]]"});
+  expect_trial_refused("key = \"specimen.relative_density\"\nbounds = [0.2, 0.6]\n",
+                       {"plan.toml:5", "curve \"TMD3\" (plan.toml:8)", "Remove one"}, "void_ratio = 0.7\n");
 }
 
 TEST(CalibrationParameter, RefusesBoundsThatExcludeEverything)
 {
   const std::string key = "key = \"contact.friction\"\n";
-  expect_complaint(key + "bounds = [\"95 deg\", \"99 deg\"]\n",
-                   {"plan.toml:5: parameter.key = contact.friction; bounds[0] = 95 deg; must be in [0 deg, 90 deg)"});
-  expect_complaint(key + "bounds = [\"30 deg\", \"20 deg\"]\n", {"[30 deg, 20 deg] leave nothing between them"});
-  expect_complaint(key + "bounds = [10, 20]\n", {"bounds[0] = 10", "an angle with its unit"});
-  expect_complaint(key + "bounds = [\"10 kPa\", \"20 kPa\"]\n", {"bounds[0] = 10 kPa", "an angle in deg, rad or tan"});
-  expect_complaint(key + "bounds = [\"10 deg\", \"20 deg\"]\nstart = \"25 deg\"\n",
-                   {"start = 25 deg; must be within bounds = [10 deg, 20 deg]"});
-  expect_complaint(key + "bounds = [\"0 deg\", \"20 deg\"]\nscale = \"log\"\n", {"bounds[0] = 0 deg", "scale is log"});
+  expect_trial_refused(
+      key + "bounds = [\"95 deg\", \"99 deg\"]\n",
+      {"plan.toml:5: parameter.key = contact.friction; bounds[0] = 95 deg; must be in [0 deg, 90 deg)"});
+  expect_trial_refused(key + "bounds = [\"30 deg\", \"20 deg\"]\n", {"[30 deg, 20 deg] leave nothing between them"});
+  expect_trial_refused(key + "bounds = [10, 20]\n", {"bounds[0] = 10", "an angle with its unit"});
+  expect_trial_refused(key + "bounds = [\"10 kPa\", \"20 kPa\"]\n",
+                       {"bounds[0] = 10 kPa", "an angle in deg, rad or tan"});
+  expect_trial_refused(key + "bounds = [\"10 deg\", \"20 deg\"]\nstart = \"25 deg\"\n",
+                       {"start = 25 deg; must be within bounds = [10 deg, 20 deg]"});
+  expect_trial_refused(key + "bounds = [\"0 deg\", \"20 deg\"]\nscale = \"log\"\n",
+                       {"bounds[0] = 0 deg", "scale is log"});
 }
 
 TEST(TrialScene, IsThatOfThePlanWithItsValues)

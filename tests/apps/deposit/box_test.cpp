@@ -3,7 +3,6 @@
 #include "apps/deposit/box.hpp"
 
 #include "tests/apps/deposit/scene_texts.hpp"
-#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,11 +18,6 @@ std::string box(const std::string &more = "", const std::string &of_mesh = "")
 }
 
 const std::string ground = "ground_x = [\"0 m\", \"4 m\", \"10 m\"]\nground_z = [\"5 m\", \"5 m\", \"2 m\"]\n";
-
-void expect_refusal(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
-{
-  test::expect_parts(test::refusal([&] { parse_column_scene(text, "box.toml", overrides); }), parts);
-}
 
 TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
 {
@@ -81,53 +75,53 @@ TEST(BoxScene, PlatesComeThroughTextAndGoToTheMesh)
 
 TEST(BoxScene, RefusesPlatesThatAreNone)
 {
-  expect_refusal(with_plate("", "to = \"11 m\"\n"), {"analysis.to", "from 0 m to 11 m of 10 m"});
-  expect_refusal(with_plate(), {"analysis.displacement", "nothing moves"}, {"analysis.displacement=0 m"});
-  expect_refusal(with_plate(), {"mesh.sides", "\"walls\" beside a plate"}, {"mesh.sides=tied"});
-  expect_refusal(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
-  expect_refusal(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
-  expect_refusal(box(), {"analysis.on", "only to plate"}, {"analysis.on=base"});
+  expect_refused(with_plate("", "to = \"11 m\"\n"), {"analysis.to", "from 0 m to 11 m of 10 m"});
+  expect_refused(with_plate(), {"analysis.displacement", "nothing moves"}, {"analysis.displacement=0 m"});
+  expect_refused(with_plate(), {"mesh.sides", "\"walls\" beside a plate"}, {"mesh.sides=tied"});
+  expect_refused(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
+  expect_refused(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
+  expect_refused(box(), {"analysis.on", "only to plate"}, {"analysis.on=base"});
 }
 
 TEST(BoxScene, RefusesKeysOfABoxWhereTheSidesAreTied)
 {
-  expect_refusal(sand + dry + "[output]\nx = \"1 m\"\n" + dynamic, {"box.toml:9", "output.x", "belongs to a box"});
-  expect_refusal(sand + dry + "[load]\nsurcharge_to = \"1 m\"\n" + dynamic, {"load.surcharge_to", "sides = \"walls\""});
+  expect_refused(sand + dry + "[output]\nx = \"1 m\"\n" + dynamic, {"column.toml:9", "output.x", "belongs to a box"});
+  expect_refused(sand + dry + "[load]\nsurcharge_to = \"1 m\"\n" + dynamic, {"load.surcharge_to", "sides = \"walls\""});
 }
 
 TEST(BoxScene, RefusesWhatCannotBeInABox)
 {
-  expect_refusal(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
-  expect_refusal(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
+  expect_refused(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
+  expect_refused(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
                  {"base.kind", "must be \"rigid\""});
-  expect_refusal(box(), {"mesh.points", "at least the degree, 2"}, {"mesh.points=1"});
-  expect_refusal(box("[slope]\nangle = \"5 deg\"\n"), {"slope.angle", "ground_x"});
-  expect_refusal(box("[water]\ntable = \"1 m\"\n"), {"water.table", "must be 0 m"});
+  expect_refused(box(), {"mesh.points", "at least the degree, 2"}, {"mesh.points=1"});
+  expect_refused(box("[slope]\nangle = \"5 deg\"\n"), {"slope.angle", "ground_x"});
+  expect_refused(box("[water]\ntable = \"1 m\"\n"), {"water.table", "must be 0 m"});
 }
 
 TEST(BoxScene, RefusesGroundThatIsNone)
 {
-  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"5 m\"]\n"),
-                 {"box.toml:13: mesh.ground_z", "length 1", "mesh.ground_x 2;"});
-  expect_refusal(box("", "ground_z = [\"5 m\"]\n"), {"box.toml:12: mesh.ground_z", "length 1", "mesh.ground_x 0;"});
-  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\n"), {"box.toml:12: mesh.ground_x", "needs mesh.ground_z"});
-  expect_refusal(box("", "ground_x = [\"3 m\", \"3 m\"]\nground_z = [\"5 m\", \"4 m\"]\n"), {"3 m after 3 m"});
-  expect_refusal(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"4 m\", \"3 m\"]\n"),
+  expect_refused(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"5 m\"]\n"),
+                 {"column.toml:13: mesh.ground_z", "length 1", "mesh.ground_x 2;"});
+  expect_refused(box("", "ground_z = [\"5 m\"]\n"), {"column.toml:12: mesh.ground_z", "length 1", "mesh.ground_x 0;"});
+  expect_refused(box("", "ground_x = [\"0 m\", \"10 m\"]\n"), {"column.toml:12: mesh.ground_x", "needs mesh.ground_z"});
+  expect_refused(box("", "ground_x = [\"3 m\", \"3 m\"]\nground_z = [\"5 m\", \"4 m\"]\n"), {"3 m after 3 m"});
+  expect_refused(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"4 m\", \"3 m\"]\n"),
                  {"mesh.ground_z", "must reach 5 m", "reaches 4 m"});
 }
 
 TEST(BoxScene, RefusesPlacesOutside)
 {
-  expect_refusal(box("[output]\ndepths = [\"4.6 m\"]\n", ground), {"output.depths", "[0 m, 4.5 m]"});
-  expect_refusal(box("[load]\nsurcharge_to = \"4.5 m\"\n", "cells_across = 10\n"),
+  expect_refused(box("[output]\ndepths = [\"4.6 m\"]\n", ground), {"output.depths", "[0 m, 4.5 m]"});
+  expect_refused(box("[load]\nsurcharge_to = \"4.5 m\"\n", "cells_across = 10\n"),
                  {"load.surcharge_to = 4.5 m", "boundary between elements", "1 m wide"});
-  expect_refusal(box("[load]\nsurcharge_to = \"10 m\"\n", "cells_across = 10\n"), {"load.surcharge_to", "left out"});
-  expect_refusal(box("", "cells_across = 10\nground_x = [\"0 m\", \"4.5 m\", \"10 m\"]\n"
+  expect_refused(box("[load]\nsurcharge_to = \"10 m\"\n", "cells_across = 10\n"), {"load.surcharge_to", "left out"});
+  expect_refused(box("", "cells_across = 10\nground_x = [\"0 m\", \"4.5 m\", \"10 m\"]\n"
                          "ground_z = [\"5 m\", \"5 m\", \"2 m\"]\n"),
                  {"mesh.ground_x", "boundaries between elements", "4.5 m"});
-  expect_refusal(box("[output]\nx = \"10 m\"\n"), {"output.x", "[0 m, 10 m)"});
-  expect_refusal(box("[load]\nsurcharge_to = \"11 m\"\n"), {"load.surcharge_to", "from 0 m to 11 m of 10 m"});
-  expect_refusal(box("[load]\nsurcharge_from = \"5 m\"\nsurcharge_to = \"4 m\"\n"), {"from 5 m to 4 m"});
+  expect_refused(box("[output]\nx = \"10 m\"\n"), {"output.x", "[0 m, 10 m)"});
+  expect_refused(box("[load]\nsurcharge_to = \"11 m\"\n"), {"load.surcharge_to", "from 0 m to 11 m of 10 m"});
+  expect_refused(box("[load]\nsurcharge_from = \"5 m\"\nsurcharge_to = \"4 m\"\n"), {"from 5 m to 4 m"});
 }
 } // namespace
 } // namespace isostat

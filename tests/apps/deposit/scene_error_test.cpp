@@ -23,38 +23,33 @@ std::string complaint(const std::string &text, const Overrides &overrides = {})
   return test::refusal([&] { parse_column_scene(text, "column.toml", overrides); });
 }
 
-void expect_complaint(const std::string &text, const std::vector<std::string> &parts, const Overrides &overrides = {})
-{
-  test::expect_parts(complaint(text, overrides), parts);
-}
-
 TEST(ColumnSceneError, Layers)
 {
   EXPECT_EQ(complaint(smallest), "accepted");
   EXPECT_EQ(complaint(dry + dynamic), "column.toml: layer; must have at least one layer. Write [[layer]] with its "
                                       "thickness for each layer, from the surface downwards.");
-  expect_complaint("layer = []\n" + dry + dynamic, {"column.toml:1: layer", "at least one layer"});
-  expect_complaint("[layer]\nthickness = \"1 m\"\n" + dry + dynamic,
-                   {"column.toml:1: layer; must be an array", "[[layer]]"});
+  expect_refused("layer = []\n" + dry + dynamic, {"column.toml:1: layer", "at least one layer"});
+  expect_refused("[layer]\nthickness = \"1 m\"\n" + dry + dynamic,
+                 {"column.toml:1: layer; must be an array", "[[layer]]"});
   for (const char *wrong : {"0 m", "-1 m"})
-    expect_complaint(smallest, {"layer.0.thickness", "must be > 0 m because a layer without height"},
-                     {std::string("layer.0.thickness=") + wrong});
-  expect_complaint("[[layer]]\nthickness = \"0 m\"\nmaterial = \"elastic\"\n" + dynamic,
-                   {"column.toml:2: layer.0.thickness = 0 m; must be > 0 m", "Give for example \"5 m\"."});
-  expect_complaint(layer + "permeability = \"-1e-5 m/s\"\n" + dynamic,
-                   {"column.toml:6: layer.0.permeability = -1e-5 m/s; must be >= 0 m/s"});
-  expect_complaint(layer + "permeability = \"1e-5 m\"\n" + dynamic, {"but m is the unit of a length"});
-  expect_complaint(layer + dynamic, {"column.toml:1: layer.0.permeability; is missing", "1e-5 m/s"});
-  expect_complaint(layer + "cell_size = \"1 m\"\n" + dry + dynamic,
-                   {"column.toml:6: layer.0.cell_size = 1 m; excludes layer.0.cells (column.toml:5)"});
-  expect_complaint(layer_without_cells + dry + dynamic,
-                   {"column.toml:1: layer.0; must have exactly one of cells, cell_size. Give for example cells = 10."});
-  expect_complaint(layer_without_cells + "cells = 0\n" + dry + dynamic, {"layer.0.cells = 0; must be in [1, 1000000]"});
-  expect_complaint(layer_without_cells + "cell_size = \"1 um\"\n" + dry + dynamic, {"more than 1000000 cells"});
-  expect_complaint(layer + "shear_modulus = \"1 MPa\"\n" + dry + dynamic, {"excludes layer.0.shear_velocity"});
-  expect_complaint(layer + "poisson_ratio = 0.5\n" + dry + dynamic, {"must be in [0, 0.5)"});
-  expect_complaint(layer + "porosity = 1.0\n" + dry + dynamic, {"column.toml:6: layer.0.porosity", "in (0, 1)"});
-  expect_complaint(layer + "density = \"900 kg/m3\"\n" + undrained + dynamic, {"column.toml:6:", "floats away"});
+    expect_refused(smallest, {"layer.0.thickness", "must be > 0 m because a layer without height"},
+                   {std::string("layer.0.thickness=") + wrong});
+  expect_refused("[[layer]]\nthickness = \"0 m\"\nmaterial = \"elastic\"\n" + dynamic,
+                 {"column.toml:2: layer.0.thickness = 0 m; must be > 0 m", "Give for example \"5 m\"."});
+  expect_refused(layer + "permeability = \"-1e-5 m/s\"\n" + dynamic,
+                 {"column.toml:6: layer.0.permeability = -1e-5 m/s; must be >= 0 m/s"});
+  expect_refused(layer + "permeability = \"1e-5 m\"\n" + dynamic, {"but m is the unit of a length"});
+  expect_refused(layer + dynamic, {"column.toml:1: layer.0.permeability; is missing", "1e-5 m/s"});
+  expect_refused(layer + "cell_size = \"1 m\"\n" + dry + dynamic,
+                 {"column.toml:6: layer.0.cell_size = 1 m; excludes layer.0.cells (column.toml:5)"});
+  expect_refused(layer_without_cells + dry + dynamic,
+                 {"column.toml:1: layer.0; must have exactly one of cells, cell_size. Give for example cells = 10."});
+  expect_refused(layer_without_cells + "cells = 0\n" + dry + dynamic, {"layer.0.cells = 0; must be in [1, 1000000]"});
+  expect_refused(layer_without_cells + "cell_size = \"1 um\"\n" + dry + dynamic, {"more than 1000000 cells"});
+  expect_refused(layer + "shear_modulus = \"1 MPa\"\n" + dry + dynamic, {"excludes layer.0.shear_velocity"});
+  expect_refused(layer + "poisson_ratio = 0.5\n" + dry + dynamic, {"must be in [0, 0.5)"});
+  expect_refused(layer + "porosity = 1.0\n" + dry + dynamic, {"column.toml:6: layer.0.porosity", "in (0, 1)"});
+  expect_refused(layer + "density = \"900 kg/m3\"\n" + undrained + dynamic, {"column.toml:6:", "floats away"});
   EXPECT_EQ(complaint(layer + "density = \"900 kg/m3\"\n" + dry + dynamic), "accepted");
 }
 
@@ -70,19 +65,19 @@ TEST(ColumnSceneError, RangesOfTwoSidesHaveReasons)
 TEST(ColumnSceneError, Materials)
 {
   EXPECT_EQ(complaint(sand + undrained + dynamic), "accepted");
-  expect_complaint(
+  expect_refused(
       layer + "strength_ratio = 0.6\n" + dry + dynamic,
       {"column.toml:6: layer.0.strength_ratio = 0.6; does not belong to a layer of material \"elastic\", only "
        "to iwan. Remove it or change the material."});
-  expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
-                   {"must be \"elastic\", \"iwan\", \"mohr_coulomb\", \"grains\" or \"user\""});
-  expect_complaint("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
-  expect_complaint(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
-                   {"layer.1.phase_transformation_ratio=0.6"});
-  expect_complaint(sand + undrained + dynamic, {"must be in [0, 1]", "plastic work"}, {"layer.0.dilation=1.5"});
-  expect_complaint(sand + undrained + dynamic, {"must be in [4, 128]"}, {"layer.0.elements=140"});
-  expect_complaint(sand + "dilatoin = 3\n" + undrained + dynamic,
-                   {"column.toml:6: layer.0.dilatoin", "mean layer.dilation?"});
+  expect_refused("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
+                 {"must be \"elastic\", \"iwan\", \"mohr_coulomb\", \"grains\" or \"user\""});
+  expect_refused("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
+  expect_refused(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
+                 {"layer.1.phase_transformation_ratio=0.6"});
+  expect_refused(sand + undrained + dynamic, {"must be in [0, 1]", "plastic work"}, {"layer.0.dilation=1.5"});
+  expect_refused(sand + undrained + dynamic, {"must be in [4, 128]"}, {"layer.0.elements=140"});
+  expect_refused(sand + "dilatoin = 3\n" + undrained + dynamic,
+                 {"column.toml:6: layer.0.dilatoin", "mean layer.dilation?"});
 }
 
 TEST(ColumnSceneError, MohrCoulomb)
@@ -91,101 +86,100 @@ TEST(ColumnSceneError, MohrCoulomb)
                            "m/s\"\ncells = 5\n";
   const std::string rest = dry + dynamic;
   EXPECT_EQ(complaint(soil + rest), "accepted");
-  expect_complaint(soil + "friction_angle = \"90 deg\"\n" + rest,
-                   {"column.toml:6: layer.0.friction_angle = 90 deg; must be in [0 deg, 90 deg) because tan()"});
-  expect_complaint(soil + "friction_angle = \"30 deg\"\ndilatancy_angle = \"31 deg\"\n" + rest,
-                   {"column.toml:7: layer.0.dilatancy_angle = 31 deg; must not exceed friction_angle", "smaller"});
-  expect_complaint(soil + "cohesion = \"-1 kPa\"\n" + rest, {"layer.0.cohesion = -1 kPa; must be >= 0 kPa"});
-  expect_complaint(soil + "softening_strain = 0.1\n" + rest,
-                   {"column.toml:6: layer.0.softening_strain = 0.1; has no effect", "residual_friction_angle"});
-  expect_complaint(soil + "residual_friction_angle = \"33 deg\"\n" + rest,
-                   {"layer.0.softening_strain; must be above 0", "softening_strain = 0.1"});
-  expect_complaint(soil + rest, {"--set layer.0.residual_friction_angle", "must not exceed friction_angle"},
-                   {"layer.0.softening_strain=0.1", "layer.0.residual_friction_angle=41 deg"});
-  expect_complaint(layer + "cohesion = \"5 kPa\"\n" + rest,
-                   {"does not belong to a layer of material \"elastic\", only to mohr_coulomb."});
+  expect_refused(soil + "friction_angle = \"90 deg\"\n" + rest,
+                 {"column.toml:6: layer.0.friction_angle = 90 deg; must be in [0 deg, 90 deg) because tan()"});
+  expect_refused(soil + "friction_angle = \"30 deg\"\ndilatancy_angle = \"31 deg\"\n" + rest,
+                 {"column.toml:7: layer.0.dilatancy_angle = 31 deg; must not exceed friction_angle", "smaller"});
+  expect_refused(soil + "cohesion = \"-1 kPa\"\n" + rest, {"layer.0.cohesion = -1 kPa; must be >= 0 kPa"});
+  expect_refused(soil + "softening_strain = 0.1\n" + rest,
+                 {"column.toml:6: layer.0.softening_strain = 0.1; has no effect", "residual_friction_angle"});
+  expect_refused(soil + "residual_friction_angle = \"33 deg\"\n" + rest,
+                 {"layer.0.softening_strain; must be above 0", "softening_strain = 0.1"});
+  expect_refused(soil + rest, {"--set layer.0.residual_friction_angle", "must not exceed friction_angle"},
+                 {"layer.0.softening_strain=0.1", "layer.0.residual_friction_angle=41 deg"});
+  expect_refused(layer + "cohesion = \"5 kPa\"\n" + rest,
+                 {"does not belong to a layer of material \"elastic\", only to mohr_coulomb."});
 }
 
 TEST(ColumnSceneError, MeshAndWater)
 {
-  expect_complaint(layer + "permeability = \"0 m/s\"\n" + dynamic + "[output]\nprofile_interval = \"1 s\"\n",
-                   {"column.toml:10: output.profile_interval", "mesh.distributed"},
-                   {"mesh.dimension=2", "mesh.distributed=true"});
-  expect_complaint(consolidation, {"--set mesh.degree: mesh.degree = 1; must be 2", "oscillate"}, {"mesh.degree=1"});
-  expect_complaint(consolidation, {"mesh.degree = 3; must be in [1, 2]"}, {"mesh.degree=3"});
-  expect_complaint(layer + undrained + dynamic + "[mesh]\ndimension = 2\n",
-                   {"column.toml:11: mesh.dimension = 2; must be 1 if water.drainage is \"undrained\""});
-  expect_complaint(smallest, {"mesh.dimension = 4; must be in [1, 3]"}, {"mesh.dimension=4"});
-  expect_complaint(smallest, {"must be a whole number"}, {"mesh.dimension=1.5"});
-  expect_complaint(smallest, {"mesh.distributed = true; must be false in a column"}, {"mesh.distributed=true"});
+  expect_refused(layer + "permeability = \"0 m/s\"\n" + dynamic + "[output]\nprofile_interval = \"1 s\"\n",
+                 {"column.toml:10: output.profile_interval", "mesh.distributed"},
+                 {"mesh.dimension=2", "mesh.distributed=true"});
+  expect_refused(consolidation, {"--set mesh.degree: mesh.degree = 1; must be 2", "oscillate"}, {"mesh.degree=1"});
+  expect_refused(consolidation, {"mesh.degree = 3; must be in [1, 2]"}, {"mesh.degree=3"});
+  expect_refused(layer + undrained + dynamic + "[mesh]\ndimension = 2\n",
+                 {"column.toml:11: mesh.dimension = 2; must be 1 if water.drainage is \"undrained\""});
+  expect_refused(smallest, {"mesh.dimension = 4; must be in [1, 3]"}, {"mesh.dimension=4"});
+  expect_refused(smallest, {"must be a whole number"}, {"mesh.dimension=1.5"});
+  expect_refused(smallest, {"mesh.distributed = true; must be false in a column"}, {"mesh.distributed=true"});
   EXPECT_EQ(complaint(smallest, {"mesh.distributed=true", "mesh.dimension=3"}), "accepted");
-  expect_complaint("[[layer]]\nthickness = \"1 m\"\nmaterial = \"user\"\ndensity = \"2000 kg/m3\"\ncells = 1\n" + dry +
-                       dynamic,
-                   {"column.toml:3: layer.0.material", "must not be \"user\" if mesh.distributed is true"},
-                   {"mesh.distributed=true", "mesh.dimension=2"});
-  expect_complaint(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
+  expect_refused("[[layer]]\nthickness = \"1 m\"\nmaterial = \"user\"\ndensity = \"2000 kg/m3\"\ncells = 1\n" + dry +
+                     dynamic,
+                 {"column.toml:3: layer.0.material", "must not be \"user\" if mesh.distributed is true"},
+                 {"mesh.distributed=true", "mesh.dimension=2"});
+  expect_refused(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
   EXPECT_EQ(complaint(layer + undrained + dynamic, {"water.lagged_compressibility=true"}), "accepted");
-  expect_complaint(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});
-  expect_complaint(smallest + "[water2]\n", {"column.toml:10: water2; is no key of a scene. Did you mean water?"});
+  expect_refused(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});
+  expect_refused(smallest + "[water2]\n", {"column.toml:10: water2; is no key of a scene. Did you mean water?"});
 }
 
 TEST(ColumnSceneError, Base)
 {
-  expect_complaint(smallest + "[base]\nkind = \"compliant\"\n",
-                   {"column.toml:10: base.density; is missing", "Give for example density = \"2300 kg/m3\"."});
-  expect_complaint(smallest + "[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\n",
-                   {"column.toml:10: base.shear_velocity; is missing"});
-  expect_complaint(smallest + "[base]\ndensity = \"2300 kg/m3\"\n",
-                   {"column.toml:11: base.density = 2300 kg/m3; does not belong to a base of kind \"rigid\", only to "
-                    "compliant."});
+  expect_refused(smallest + "[base]\nkind = \"compliant\"\n",
+                 {"column.toml:10: base.density; is missing", "Give for example density = \"2300 kg/m3\"."});
+  expect_refused(smallest + "[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\n",
+                 {"column.toml:10: base.shear_velocity; is missing"});
+  expect_refused(smallest + "[base]\ndensity = \"2300 kg/m3\"\n",
+                 {"column.toml:11: base.density = 2300 kg/m3; does not belong to a base of kind \"rigid\", only to "
+                  "compliant."});
   const std::string rock =
       smallest + "[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n";
   EXPECT_EQ(complaint(rock), "accepted");
-  expect_complaint(rock + "p_velocity = \"900 m/s\"\n", {"column.toml:14: base.p_velocity = 900 m/s; must be more"});
+  expect_refused(rock + "p_velocity = \"900 m/s\"\n", {"column.toml:14: base.p_velocity = 900 m/s; must be more"});
 }
 
 TEST(ColumnSceneError, Motions)
 {
   const std::string ricker = "[[motion]]\nkind = \"ricker\"\namplitude = \"0.1 g\"\nfrequency = \"2 Hz\"\n";
   EXPECT_EQ(complaint(smallest + ricker), "accepted");
-  expect_complaint(smallest + ricker + ricker,
-                   {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
+  expect_refused(smallest + ricker + ricker,
+                 {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
   EXPECT_EQ(complaint(smallest + ricker + ricker + "axis = \"y\"\n"), "accepted");
-  expect_complaint(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
-  expect_complaint(smallest + ricker, {"motion.0.frequency = 0 Hz; must be > 0 Hz"}, {"motion.0.frequency=0 Hz"});
-  expect_complaint(smallest + ricker, {"must be an acceleration with its unit (m/s2, cm/s2 or g)"},
-                   {"motion.0.amplitude=0.1"});
-  expect_complaint(smallest + ricker, {"there is no motion 1; column.toml has 1"}, {"motion.1.amplitude=1 g"});
-  expect_complaint(smallest + ricker, {"motions are addressed by number. Write motion.0"}, {"motion.x.amplitude=1 g"});
+  expect_refused(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
+  expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be > 0 Hz"}, {"motion.0.frequency=0 Hz"});
+  expect_refused(smallest + ricker, {"must be an acceleration with its unit (m/s2, cm/s2 or g)"},
+                 {"motion.0.amplitude=0.1"});
+  expect_refused(smallest + ricker, {"there is no motion 1; column.toml has 1"}, {"motion.1.amplitude=1 g"});
+  expect_refused(smallest + ricker, {"motions are addressed by number. Write motion.0"}, {"motion.x.amplitude=1 g"});
   const std::string record = "[[motion]]\nkind = \"record\"\n";
-  expect_complaint(smallest + record, {"column.toml:10: motion.0.file; is missing"});
-  expect_complaint(smallest + record + "file = \"\"\n", {"motion.0.file", "must name a file"});
-  expect_complaint(smallest + record + "file = \"a\"\nfactor = 2\npeak = \"1 g\"\n", {"excludes motion.0.factor"});
-  expect_complaint(smallest + "[[motion]]\nkind = \"harmonic\"\namplitude = \"1 g\"\nfrequency = \"1 Hz\"\n"
-                              "duration = \"2 s\"\nramp = \"1.5 s\"\n",
-                   {"column.toml:15: motion.0.ramp = 1.5 s; must be at most half of the duration, 2 s"});
+  expect_refused(smallest + record, {"column.toml:10: motion.0.file; is missing"});
+  expect_refused(smallest + record + "file = \"\"\n", {"motion.0.file", "must name a file"});
+  expect_refused(smallest + record + "file = \"a\"\nfactor = 2\npeak = \"1 g\"\n", {"excludes motion.0.factor"});
+  expect_refused(smallest + "[[motion]]\nkind = \"harmonic\"\namplitude = \"1 g\"\nfrequency = \"1 Hz\"\n"
+                            "duration = \"2 s\"\nramp = \"1.5 s\"\n",
+                 {"column.toml:15: motion.0.ramp = 1.5 s; must be at most half of the duration, 2 s"});
 }
 
 TEST(ColumnSceneError, AnalysisAndLoad)
 {
   EXPECT_EQ(complaint(consolidation), "accepted");
-  expect_complaint(layer + dry, {"column.toml: analysis.duration; is missing"});
-  expect_complaint(consolidation, {"does not belong to an analysis of kind \"consolidation\", only to dynamic"},
-                   {"analysis.safety=0.5"});
-  expect_complaint(consolidation, {"water.drainage = dry; must be \"coupled\""}, {"water.drainage=dry"});
-  expect_complaint(consolidation, {"load.kind = none; must be \"step\""}, {"load={ kind = 'none' }"});
-  expect_complaint(consolidation, {"analysis.last_time = 1 s; must be after first_time, 1 s"},
-                   {"analysis.last_time=1 s"});
-  expect_complaint(consolidation + "[[motion]]\nkind = \"ricker\"\namplitude = \"1 g\"\nfrequency = \"1 Hz\"\n",
-                   {"column.toml:14: motion; has no effect in a consolidation"});
-  expect_complaint(smallest, {"must be in (0, 1] because beyond the stable step"}, {"analysis.safety=1.1"});
-  expect_complaint(smallest, {"analysis.mass_damping = -1 1/s; must be >= 0 1/s"}, {"analysis.mass_damping=-1 1/s"});
-  expect_complaint(smallest, {"analysis.viscosity = -1 ms; must be >= 0 ms"}, {"analysis.viscosity=-1 ms"});
-  expect_complaint(smallest, {"analysis.highest_frequency = 0 Hz; must be > 0 Hz"},
-                   {"analysis.highest_frequency=0 Hz"});
-  expect_complaint(smallest, {"analysis.time_step = 0 s; must be > 0 ms"}, {"analysis.time_step=0 s"});
-  expect_complaint(smallest, {"load.amplitude; is missing"}, {"load.kind=step"});
-  expect_complaint(smallest, {"must be key=value. Give for example --set analysis.safety=0.5"}, {"safety"});
+  expect_refused(layer + dry, {"column.toml: analysis.duration; is missing"});
+  expect_refused(consolidation, {"does not belong to an analysis of kind \"consolidation\", only to dynamic"},
+                 {"analysis.safety=0.5"});
+  expect_refused(consolidation, {"water.drainage = dry; must be \"coupled\""}, {"water.drainage=dry"});
+  expect_refused(consolidation, {"load.kind = none; must be \"step\""}, {"load={ kind = 'none' }"});
+  expect_refused(consolidation, {"analysis.last_time = 1 s; must be after first_time, 1 s"},
+                 {"analysis.last_time=1 s"});
+  expect_refused(consolidation + "[[motion]]\nkind = \"ricker\"\namplitude = \"1 g\"\nfrequency = \"1 Hz\"\n",
+                 {"column.toml:14: motion; has no effect in a consolidation"});
+  expect_refused(smallest, {"must be in (0, 1] because beyond the stable step"}, {"analysis.safety=1.1"});
+  expect_refused(smallest, {"analysis.mass_damping = -1 1/s; must be >= 0 1/s"}, {"analysis.mass_damping=-1 1/s"});
+  expect_refused(smallest, {"analysis.viscosity = -1 ms; must be >= 0 ms"}, {"analysis.viscosity=-1 ms"});
+  expect_refused(smallest, {"analysis.highest_frequency = 0 Hz; must be > 0 Hz"}, {"analysis.highest_frequency=0 Hz"});
+  expect_refused(smallest, {"analysis.time_step = 0 s; must be > 0 ms"}, {"analysis.time_step=0 s"});
+  expect_refused(smallest, {"load.amplitude; is missing"}, {"load.kind=step"});
+  expect_refused(smallest, {"must be key=value. Give for example --set analysis.safety=0.5"}, {"safety"});
 }
 
 TEST(ColumnSceneError, Output)
@@ -193,14 +187,14 @@ TEST(ColumnSceneError, Output)
   const std::string head = smallest + "[output]\ndepths = ";
   EXPECT_EQ(complaint(head + "[\"5 m\"]\n"), "accepted");
   EXPECT_EQ(complaint(head + "[]\n"), "accepted");
-  expect_complaint(
+  expect_refused(
       head + "[\"2 m\", \"5.1 m\"]\n",
       {"column.toml:11: output.depths = [\"2 m\", \"5.1 m\"]; must lie in the soil, in [0 m, 5 m], but entry "
        "2 is 5.1 m."});
-  expect_complaint(head + "[\"-1 m\"]\n", {"column.toml:11: output.depths", "must be >= 0 m"});
-  expect_complaint(head + "[2]\n", {"must be a length with its unit (m, cm, mm or um), in quotes"});
-  expect_complaint(head + "\"2 m\"\n", {"must be a list [...] whose entries are a length with its unit"});
-  expect_complaint(head + "[\"2 s\"]\n", {"but s is the unit of a time"});
+  expect_refused(head + "[\"-1 m\"]\n", {"column.toml:11: output.depths", "must be >= 0 m"});
+  expect_refused(head + "[2]\n", {"must be a length with its unit (m, cm, mm or um), in quotes"});
+  expect_refused(head + "\"2 m\"\n", {"must be a list [...] whose entries are a length with its unit"});
+  expect_refused(head + "[\"2 s\"]\n", {"but s is the unit of a time"});
 }
 
 TEST(ColumnSceneError, MotionFiles)

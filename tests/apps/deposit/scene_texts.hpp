@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pieces of column scenes for the tests.
 #pragma once
+#include "apps/deposit/scene.hpp"
+#include "tests/support/refusal.hpp"
+
 #include <string>
 #include <vector>
 
@@ -22,4 +25,11 @@ inline const std::string consolidation =
     layer + "permeability = \"1e-6 m/s\"\n" + // lines 1 to 6
     "[load]\nkind = \"step\"\namplitude = \"100 kPa\"\n"
     "[analysis]\nkind = \"consolidation\"\nfirst_time = \"1 s\"\nlast_time = \"2 h\"\n";
+
+/// The scene is refused, and each of the parts is in the message.
+inline void expect_refused(const std::string &text, const std::vector<std::string> &parts,
+                           const Overrides &overrides = {})
+{
+  test::expect_parts(test::refusal([&] { parse_column_scene(text, "column.toml", overrides); }), parts);
+}
 } // namespace isostat

@@ -11,7 +11,7 @@ namespace isostat
 {
 namespace
 {
-struct Random : test::Random
+struct RandomFrames : test::Random
 {
   using test::Random::Random;
   Mat3 matrix()
@@ -72,7 +72,7 @@ TEST(ImageCode, GivesTheShiftBack)
     for (const int j : {-511, -1, 0, 1, 511})
       for (const int i : {-511, -1, 0, 1, 511})
         EXPECT_EQ(image_shift(image_code({i, j, k})), Eigen::Vector3i(i, j, k));
-  Random random(1);
+  RandomFrames random(1);
   for (int n = 0; n < 10000; ++n)
     {
       const Eigen::Vector3i a = (511 * random.vector()).cast<int>(), b = (511 * random.vector()).cast<int>();
@@ -91,7 +91,7 @@ TEST(PeriodicCell, IsARightAngledOneAtFirst)
 
 TEST(PeriodicCell, VolumeFollowsTheSumOfTheTracesThroughAMillionRandomSteps)
 {
-  Random random(2);
+  RandomFrames random(2);
   PeriodicCell cell = PeriodicCell::with_edges({1e-3, 2e-3, 1.5e-3});
   const double volume = cell.volume();
   long double sum = 0;
@@ -175,7 +175,7 @@ TEST(PeriodicCell, ErrorsOfShearAreOfSecondOrderInTheStep)
 
 TEST(PeriodicCell, ARigidRotationChangesNoBitOfEdgesAndDeformation)
 {
-  Random random(3);
+  RandomFrames random(3);
   for (int run = 0; run < 6; ++run)
     {
       PeriodicCell cell = PeriodicCell::with_edges({1e-3, 1.1e-3, 0.7e-3});
@@ -207,7 +207,7 @@ constexpr test::Tolerance drift{1e-11, "round-off of 20,000 steps, which the she
 TEST(PeriodicCell, TheFrameDoesNotMatterToStretch)
 {
   // the same motion seen in a laboratory that is turned by q: edges of its own frame are the same
-  Random random(4);
+  RandomFrames random(4);
   const Mat3 q = random.rotation();
   PeriodicCell cell = PeriodicCell::with_edges({1, 1.2, 0.9}), turned = cell;
   turned.rotation = q;
@@ -226,7 +226,7 @@ TEST(PeriodicCell, TheFrameDoesNotMatterToStretch)
 TEST(UprightEdges, SpanTheSameLatticeAndLeanLess)
 {
   const char *threshold = "round-off of the quotient that the threshold is compared with";
-  Random random(5);
+  RandomFrames random(5);
   int changed = 0;
   for (int run = 0; run < 10'000; ++run)
     {
@@ -257,7 +257,7 @@ TEST(UprightEdges, KeepTheCellWideThroughShearOfTenIn3D)
 {
   // edges that lean by at most 0.6 of each other: a cube sheared along its edges keeps 1/sqrt(1 + 0.6^2) of its width;
   // in any direction, a cell stays at least 0.6 times as wide as the shortest vector of its lattice
-  Random random(6);
+  RandomFrames random(6);
   double min_of_cube = 1, min_of_shortest = INFINITY;
   for (int run = 0; run < 12; ++run)
     {
@@ -286,7 +286,7 @@ TEST(UprightEdges, KeepTheCellWideThroughShearOfTenIn3D)
 
 TEST(UprightEdges, SmallCyclesAboutTheThresholdFlipOnceOnly)
 {
-  Random random(7);
+  RandomFrames random(7);
   for (int run = 0; run < 20; ++run)
     {
       PeriodicCell cell = PeriodicCell::with_edges(Vec3::Ones() + 0.3 * random.vector());

@@ -34,9 +34,9 @@ double stress_past_peak(double displacement)
   return below;
 }
 
-struct Column
+struct SofteningColumn
 {
-  explicit Column(NewtonSettings newton) : space(mesh(), supports())
+  explicit SofteningColumn(NewtonSettings newton) : space(mesh(), supports())
   {
     std::vector<CompositeMaterial::Part> parts(2);
     for (std::size_t q = 0; q < space.n_points(); ++q)
@@ -78,7 +78,7 @@ TEST(StaticsRelaxation, PassesThePeakInAnyStep)
 {
   for (const int steps : {1, 4, 40})
     {
-      Column column(relaxed);
+      SofteningColumn column(relaxed);
       unsigned iterations = 0;
       for (int k = 1; k <= steps; ++k)
         {
@@ -97,7 +97,7 @@ TEST(StaticsRelaxation, PassesThePeakInAnyStep)
 /// motion.
 TEST(StaticsRelaxation, LeavesAnEquilibriumThatNoSoilKeeps)
 {
-  Column newton({.tolerance = 1e-7}), relaxation(relaxed);
+  SofteningColumn newton({.tolerance = 1e-7}), relaxation(relaxed);
   newton.statics->step(0.01);
   relaxation.statics->step(0.01);
   std::printf("Newton %.5g Pa, relaxation %.5g Pa\n", newton.stress(), relaxation.stress());
@@ -107,7 +107,7 @@ TEST(StaticsRelaxation, LeavesAnEquilibriumThatNoSoilKeeps)
 
 TEST(StaticsRelaxation, TakesOverWhereNewtonGivesUp)
 {
-  Column column({.tolerance = 1e-7, .max_iterations = 1, .relaxation_iterations = 2000, .max_halvings = 0});
+  SofteningColumn column({.tolerance = 1e-7, .max_iterations = 1, .relaxation_iterations = 2000, .max_halvings = 0});
   column.statics->step(0.01);
   EXPECT_GT(column.statics->effort().iterations, 2u);
   EXPECT_CLOSE_BECAUSE(column.stress(), stress_past_peak(0.01), 1e-5, "tolerance of 1e-7");
@@ -191,7 +191,7 @@ TEST(StaticsRelaxation, SaysWhenItDoesNotComeToRest)
 {
   NewtonSettings few = relaxed;
   few.relaxation_iterations = 3, few.max_halvings = 0;
-  Column column(few);
+  SofteningColumn column(few);
   EXPECT_THAT([&] { column.statics->step(0.01); },
               ThrowsMessage<RunFailure>(HasSubstr("relaxation has not come to rest in 3 iterations")));
   EXPECT_EQ(column.statics->time(), 0);
