@@ -14,7 +14,7 @@ namespace isostat
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// The matrix of n x (..).   tested: tests/dem/motion/critical_step_test.cpp, tests/dem/measure/stiffness_test.cpp
+/// The matrix of n x (..).   tested: tests/verification/critical_step_test.cpp, tests/dem/measure/stiffness_test.cpp
 inline Mat3 cross_matrix(const Vec3 &n)
 {
   Mat3 m;

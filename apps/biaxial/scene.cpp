@@ -153,30 +153,6 @@ A scene is one TOML file that says all about a run of `biaxial`. This page is ge
 )";
 // clang-format on
 
-const SceneSchema &schema()
-{
-  static const KeyTable keys{
-      block_keys,
-      splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
-      splice("soil", mohr_coulomb_keys(), mohr_coulomb,
-             [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
-      splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
-      splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
-      test_keys,
-      water_keys,
-      splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),
-      output_keys};
-  static const SceneSchema schema{.keys = keys.keys(),
-                                  .sections = sections,
-                                  .groups = {},
-                                  .dimensions = dimensions,
-                                  .set_example = "test.steps=100",
-                                  .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = "
-                                                   "value\" is a key without default, with an example.",
-                                  .manual_head = manual_head};
-  return schema;
-}
-
 void check_undrained(const SceneDocument &document, const BiaxialMesh &mesh)
 {
   if (mesh.degree != 2)
@@ -221,14 +197,49 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
                                 "up. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_up));
 }
-} // namespace
 
-BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides)
+BiaxialScene checked_scene(const SceneDocument &document)
 {
-  const SceneDocument document(schema(), read_scene_text(path), path, overrides);
   BiaxialScene scene;
   fill_scene(document, &scene);
   check(document, scene);
+  return scene;
+}
+} // namespace
+
+const SceneSchema &biaxial_schema()
+{
+  static const KeyTable keys{
+      block_keys,
+      splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
+      splice("soil", mohr_coulomb_keys(), mohr_coulomb,
+             [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
+      splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
+      splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
+      test_keys,
+      water_keys,
+      splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),
+      output_keys};
+  static const SceneSchema schema{.keys = keys.keys(),
+                                  .sections = sections,
+                                  .groups = {},
+                                  .dimensions = dimensions,
+                                  .set_example = "test.steps=100",
+                                  .defaults_head = "A biaxial block with the defaults of every key. A line \"# key = "
+                                                   "value\" is a key without default, with an example.",
+                                  .manual_head = manual_head};
+  return schema;
+}
+
+BiaxialScene parse_biaxial_scene(const std::string &text, const std::string &name)
+{
+  return checked_scene(SceneDocument(biaxial_schema(), text, name, {}));
+}
+
+BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides)
+{
+  const SceneDocument document(biaxial_schema(), read_scene_text(path), path, overrides);
+  BiaxialScene scene = checked_scene(document);
   if (scene.has_grains())
     scene.grains.library = found_file(document, "soil.library", path, scene.grains.library);
   if (scene.output.folder.empty())
@@ -236,9 +247,9 @@ BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::
   return scene;
 }
 
-std::string to_toml(const BiaxialScene &scene) { return write_scene(schema(), &scene); }
+std::string to_toml(const BiaxialScene &scene) { return write_scene(biaxial_schema(), &scene); }
 
-std::string default_biaxial_scene() { return write_defaults(schema()); }
+std::string default_biaxial_scene() { return write_defaults(biaxial_schema()); }
 
-std::string biaxial_scene_manual() { return write_manual(schema()); }
+std::string biaxial_scene_manual() { return write_manual(biaxial_schema()); }
 } // namespace isostat

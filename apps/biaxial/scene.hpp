@@ -91,6 +91,10 @@ struct BiaxialScene
 /// @throws InputError with file:line, value, allowed range and remedy   tested: tests/apps/biaxial_test.py
 BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
+/// The same from text, without a look at the disk; `name` stands for the file in messages.
+BiaxialScene parse_biaxial_scene(const std::string &text, const std::string &name);
+
+const SceneSchema &biaxial_schema();
 std::string to_toml(const BiaxialScene &scene); ///< complete; reads back to the same scene
 std::string default_biaxial_scene();            ///< commented, with all defaults, units and ranges
 std::string biaxial_scene_manual();             ///< docs/biaxial_scene_reference.md

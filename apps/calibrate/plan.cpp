@@ -169,19 +169,6 @@ constexpr KeyGroup groups[] = {{"preparation"}};
 constexpr Dimension dimensions[] = {Dimension::pressure, Dimension::angle, Dimension::interval};
 // clang-format on
 
-const SceneSchema &schema()
-{
-  static const KeyTable keys{plan_keys, parameter_keys, curve_keys};
-  static const SceneSchema schema{.keys = keys.keys(),
-                                  .sections = sections,
-                                  .groups = groups,
-                                  .dimensions = dimensions,
-                                  .set_example = "budget.trials=100",
-                                  .defaults_head = "A calibration plan with the defaults of every key. A line \"# key "
-                                                   "= value\" is a key without default, with an example."};
-  return schema;
-}
-
 std::string at(const char *section, std::size_t i, const char *key) { return fmt::format("{}.{}.{}", section, i, key); }
 
 /// The names of curves are folders, and differ.
@@ -244,6 +231,19 @@ void check(const SceneDocument &document, CalibrationPlan &plan)
 }
 } // namespace
 
+const SceneSchema &plan_schema()
+{
+  static const KeyTable keys{plan_keys, parameter_keys, curve_keys};
+  static const SceneSchema schema{.keys = keys.keys(),
+                                  .sections = sections,
+                                  .groups = groups,
+                                  .dimensions = dimensions,
+                                  .set_example = "budget.trials=100",
+                                  .defaults_head = "A calibration plan with the defaults of every key. A line \"# key "
+                                                   "= value\" is a key without default, with an example."};
+  return schema;
+}
+
 bool concerns(const PlanParameter &parameter, const PlanCurve &curve)
 {
   return parameter.curve.empty() || parameter.curve == curve.name || parameter.curve == curve.group;
@@ -251,7 +251,7 @@ bool concerns(const PlanParameter &parameter, const PlanCurve &curve)
 
 CalibrationPlan parse_plan(const std::string &text, const std::string &name)
 {
-  const SceneDocument document(schema(), text, name, {});
+  const SceneDocument document(plan_schema(), text, name, {});
   CalibrationPlan plan;
   fill_scene(document, &plan);
   check(document, plan);
@@ -261,7 +261,7 @@ CalibrationPlan parse_plan(const std::string &text, const std::string &name)
 CalibrationPlan read_plan(const std::string &path)
 {
   const std::string text = read_scene_text(path);
-  const SceneDocument document(schema(), text, path, {});
+  const SceneDocument document(plan_schema(), text, path, {});
   CalibrationPlan plan = parse_plan(text, path);
   const std::string shipped = shipped_scene(plan.scene);
   const bool is_beside = fs::is_regular_file(fs::path(path).parent_path() / plan.scene);
@@ -271,7 +271,7 @@ CalibrationPlan read_plan(const std::string &path)
   return plan;
 }
 
-std::string to_toml(const CalibrationPlan &plan) { return write_scene(schema(), &plan); }
+std::string to_toml(const CalibrationPlan &plan) { return write_scene(plan_schema(), &plan); }
 
-std::string default_plan() { return write_defaults(schema()); }
+std::string default_plan() { return write_defaults(plan_schema()); }
 } // namespace isostat

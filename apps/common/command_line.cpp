@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/record/installation.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
@@ -30,6 +31,7 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
 
 int guarded(const std::function<void()> &program)
 {
+  std::signal(SIGXFSZ, SIG_IGN); // a file beyond its limit (ulimit -f) is an error of write(), with a message
   try
     {
       program();

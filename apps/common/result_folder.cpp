@@ -218,6 +218,10 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
     throw Interrupted(fmt::format("interrupted while its figures were drawn; all other results are complete. Draw the "
                                   "figures with: isostat report {}",
                                   quoted(folder)));
+  if (code > 128)
+    return fmt::format("figures were not drawn: the program that draws them was ended by signal {}. Draw them with: "
+                       "isostat report {}",
+                       code - 128, quoted(folder));
   if (code != 0 && code != without_report)
     return fmt::format("figures were not drawn: {} ({})", last_line(log), log.string());
   if (code == without_report)

@@ -10,7 +10,7 @@ import subprocess
 import time
 
 from biaxial_test import FRICTION
-from failures_test import COLUMN, SAVED
+from failing_runs import COLUMN, SAVED
 from support import CYCLIC, PATIENCE, AppTest, main, results, tiny_scene
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole HDF5 file, damaged as the bytes of a fuzzer choose: values, types, shapes, links and attributes; still a valid
-// file of HDF5.
+// A whole HDF5 file, damaged as the bytes of a fuzzer choose: values, types, shapes, links and attributes; it is still
+// one that HDF5 takes.
 #pragma once
 #include "tests/fuzz/choices.hpp"
 

@@ -28,16 +28,26 @@ inline void require(bool holds, const char *property)
   std::abort();
 }
 
+/// Inputs that readers took, and those that they refused.
+struct Tally
+{
+  std::uint64_t taken = 0, refused = 0;
+};
+inline Tally tally;
+
 /// What `read` returns, or nothing where it refuses its input.
 template <typename Read>
 auto accepted(const Read &read) -> std::optional<decltype(read())>
 {
   try
     {
-      return read();
+      std::optional result(read());
+      ++tally.taken;
+      return result;
     }
   catch (const InputError &refusal)
     {
+      ++tally.refused;
       require(std::string_view(refusal.what()).size() > 10, "a refusal says what is wrong");
       return std::nullopt;
     }

@@ -2,6 +2,7 @@
 // Text as a plan of a calibration: what is taken is written and read back to the same text.
 #include "apps/calibrate/plan.hpp"
 #include "tests/fuzz/input.hpp"
+#include "tests/fuzz/scene_mutator.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
 {
@@ -9,4 +10,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   fuzz::round_trip(fuzz::text_of(data, size),
                    [](const std::string &text, const char *name) { return parse_plan(text, name); });
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t *data, std::size_t size, std::size_t most, unsigned seed)
+{
+  return isostat::fuzz::mutate_scene(isostat::plan_schema(), data, size, most, seed);
 }

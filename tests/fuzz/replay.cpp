@@ -1,56 +1,158 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A fuzz target without libFuzzer: runs it on each file of the folders and files that are named, or, for a target that
-// damages something whole, on so many rows of random bytes, the same ones each time: --random NUMBER.
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <filesystem>
+// A fuzz target without libFuzzer: runs it on each file of the folders and files that are named, and then on random
+// changes of these, or, for a target whose bytes choose what is damaged, on random bytes. An input on which the target
+// breaks is left in `found-SEED-NUMBER`.
+//
+//   fuzz_scene FILE...  [--random NUMBER] [--seconds NUMBER] [--seed NUMBER]   until the first of the two is reached
+#include "tests/fuzz/input.hpp"
+
+#include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <random>
-#include <string>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size);
+extern "C" __attribute__((weak)) std::size_t LLVMFuzzerCustomMutator(std::uint8_t *data, std::size_t size,
+                                                                     std::size_t most, unsigned seed);
+extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());
 
 namespace
 {
 namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+constexpr std::size_t most_bytes = 20000;
+constexpr unsigned patience = 60; ///< seconds of one input
 
-void run_on_random(int number)
+std::mt19937_64 draw(1);
+Bytes current; ///< the input at work
+std::string name_if_it_breaks;
+
+void leave_input()
 {
-  std::mt19937_64 draw(1);
-  for (int k = 0; k < number; ++k)
-    {
-      std::vector<std::uint64_t> words(1 + draw() % 6);
-      for (std::uint64_t &word : words)
-        word = draw();
-      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t *>(words.data()), 8 * words.size());
-    }
+  if (current.empty())
+    return;
+  std::ofstream(name_if_it_breaks, std::ios::binary)
+      .write(reinterpret_cast<const char *>(current.data()), static_cast<std::streamsize>(current.size()));
+  std::fprintf(stderr, "fuzz: broke on %s\n", name_if_it_breaks.c_str());
 }
 
-void run_on(const fs::path &path)
+void leave_input_and_end(int signal)
+{
+  leave_input();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void run(Bytes bytes)
+{
+  current = std::move(bytes);
+  alarm(patience);
+  LLVMFuzzerTestOneInput(current.data(), current.size());
+  alarm(0);
+  current.clear();
+}
+
+void change_bytes(Bytes &bytes)
+{
+  if (!LLVMFuzzerCustomMutator)
+    {
+      bytes.resize(8 * (1 + draw() % 6));
+      for (std::uint8_t &byte : bytes)
+        byte = static_cast<std::uint8_t>(draw());
+      return;
+    }
+  std::size_t n = bytes.size();
+  bytes.resize(most_bytes);
+  for (std::size_t changes = 1 + draw() % 3; changes > 0; --changes)
+    n = LLVMFuzzerCustomMutator(bytes.data(), n, most_bytes, static_cast<unsigned>(draw()));
+  bytes.resize(n);
+}
+
+/// How many inputs there were.
+std::uint64_t run_changed(const std::vector<Bytes> &seeds, std::uint64_t number, double seconds, std::uint64_t seed)
+{
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  draw.seed(seed);
+  for (std::uint64_t k = 0; k < number; ++k)
+    {
+      if (std::chrono::steady_clock::now() > end)
+        return k;
+      Bytes bytes = seeds.empty() ? Bytes() : seeds[draw() % seeds.size()];
+      change_bytes(bytes);
+      name_if_it_breaks = "found-" + std::to_string(seed) + "-" + std::to_string(k);
+      run(std::move(bytes));
+    }
+  return number;
+}
+
+Bytes bytes_of(const fs::path &path)
 {
   std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void take(const fs::path &path, std::vector<Bytes> &seeds)
+{
   std::printf("%s\n", path.c_str());
   std::fflush(stdout); // the last line names the file that ended the run
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t *>(bytes.data()), bytes.size());
+  seeds.push_back(bytes_of(path));
+  run(seeds.back());
 }
 } // namespace
 
+/// One of the bytes or some of them changed, removed or added: what libFuzzer has a function for.
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t *data, std::size_t size, std::size_t most)
+{
+  const std::size_t at = size > 0 ? draw() % size : 0;
+  switch (size == 0 ? 2 : draw() % 3)
+    {
+    case 0:
+      data[at] = static_cast<std::uint8_t>(draw());
+      return size;
+    case 1:
+      std::copy(data + at + 1, data + size, data + at);
+      return size - 1;
+    default:
+      if (size == most)
+        return size;
+      std::copy_backward(data + at, data + size, data + size + 1);
+      data[at] = static_cast<std::uint8_t>(draw());
+      return size + 1;
+    }
+}
+
 int main(int argc, char **argv)
 {
-  std::size_t files = 0;
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM})
+    if (!__sanitizer_set_death_callback || signal == SIGABRT || signal == SIGALRM)
+      std::signal(signal, leave_input_and_end);
+  if (__sanitizer_set_death_callback)
+    __sanitizer_set_death_callback(leave_input);
+  std::vector<Bytes> seeds;
+  std::uint64_t number = 0, seed = 1;
+  double seconds = 1e9;
+  bool timed = false;
   for (int i = 1; i < argc; ++i)
     if (i + 1 < argc && argv[i] == std::string("--random"))
-      run_on_random(std::stoi(argv[++i])), ++files;
+      number = std::stoull(argv[++i]);
+    else if (i + 1 < argc && argv[i] == std::string("--seconds"))
+      seconds = std::stod(argv[++i]), timed = true;
+    else if (i + 1 < argc && argv[i] == std::string("--seed"))
+      seed = std::stoull(argv[++i]);
     else if (!fs::is_directory(argv[i]))
-      run_on(argv[i]), ++files;
+      take(argv[i], seeds);
     else
       for (const auto &entry : fs::recursive_directory_iterator(argv[i]))
         if (entry.is_regular_file())
-          run_on(entry.path()), ++files;
-  std::printf("%zu inputs\n", files);
-  return files == 0;
+          take(entry.path(), seeds);
+  if (timed && number == 0)
+    number = ~std::uint64_t{0};
+  const std::uint64_t changed = run_changed(seeds, number, seconds, seed);
+  std::printf("%zu files, %llu random inputs of seed %llu; readers took %llu and refused %llu\n", seeds.size(),
+              static_cast<unsigned long long>(changed), static_cast<unsigned long long>(seed),
+              static_cast<unsigned long long>(isostat::fuzz::tally.taken),
+              static_cast<unsigned long long>(isostat::fuzz::tally.refused));
+  return seeds.empty() && changed == 0;
 }

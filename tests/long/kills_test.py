@@ -19,7 +19,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
 from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (the path comes first)
 from column_support import settings  # noqa: E402
-from failures_test import COLUMN, SAVED  # noqa: E402
+from failing_runs import COLUMN, SAVED  # noqa: E402
 from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
 from support import CYCLIC, AppTest, main, results, tiny_scene  # noqa: E402
 

@@ -2,7 +2,8 @@
 // Preloaded into a program (LD_PRELOAD), makes calls of one kind fail, as a full disk or a folder without permission
 // does:
 //
-//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir, flock; of files below FAILING_UNDER; or malloc
+//   FAILING_KIND    open (for writing), write, fsync, rename, mkdir, flock; of files below FAILING_UNDER; or malloc; or
+//                   clock: the calendar then jumps back by a year, and forth, at each call
 //   FAILING_AT      number of the first call that fails, counted from 1; 0: none
 //   FAILING_CALLS   how many fail from there on; left out: all
 //   FAILING_CODE    errno, ENOSPC if left out
@@ -22,6 +23,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
 // What glibc has beneath its own malloc and the others.
@@ -185,6 +187,22 @@ int posix_memalign(void **result, size_t alignment, size_t n)
 {
   *result = memalign(alignment, n);
   return *result ? 0 : ENOMEM;
+}
+int clock_gettime(clockid_t clock, struct timespec *now)
+{
+  ISOSTAT_NEXT(clock_gettime);
+  const int result = original(clock, now);
+  if (clock == CLOCK_REALTIME && is_meant("clock") && fails())
+    now->tv_sec -= (calls % 2) * 31'557'600;
+  return result;
+}
+time_t time(time_t *out)
+{
+  struct timespec now = {};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (out)
+    *out = now.tv_sec;
+  return now.tv_sec;
 }
 int rename(const char *from, const char *to)
 {

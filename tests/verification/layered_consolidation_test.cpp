@@ -218,7 +218,8 @@ TEST(LayeredConsolidation, WaterThatLeavesTheSandGoesThroughTheCap)
   EXPECT_NEAR_BECAUSE(out_of_cap / left, 1, 2e-3, "second order in elements of 5 cm and in the steps");
 }
 
-/// A surcharge at once: p = q/(1 + D n/K_f), 1/K_f = S/K_w + (1 - S)/p_abs at each depth; settlement q int dz/(D + K_f/n).
+/// A surcharge q at once: p = q/(1 + D n/K_f), 1/K_f = S/K_w + (1 - S)/p_abs at each depth; settlement
+/// q int dz/(D + K_f/n).
 TEST(LayeredConsolidation, AirTakesItsShareOfALoad)
 {
   constexpr double height = 10, modulus = 1e8, s = 0.99;

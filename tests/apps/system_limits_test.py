@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a system may put in the way of a run: quotas, limits of the size of files, folders that cannot be written, a
+calendar that jumps, and a program that draws figures and is killed."""
+import contextlib
+import errno
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import time
+
+from failing_runs import COLUMN, SAVED, SHORT_TEST, FailingRuns
+from support import PATIENCE, contents, main, results
+
+
+class SystemLimits(FailingRuns):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.toml", SHORT_TEST)
+        self.arguments = (self.scene, *SAVED)
+        self.output = ("-o", "out", "--no-figures", "-q")
+
+    def test_every_reason_is_told(self):
+        command = self.command("element_test", *self.arguments, *self.output)
+        _, n = self.run_failing(command, "write")
+        for code in (errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EACCES):
+            with self.subTest(errno.errorcode[code]):
+                self.empty()
+                result, _ = self.run_failing(command, "write", n // 2, code=code)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn(os.strerror(code), result.stderr)
+        for code in (errno.EROFS, errno.EACCES, errno.ENAMETOOLONG):
+            with self.subTest(errno.errorcode[code]):
+                self.empty()
+                result, _ = self.run_failing(command, "mkdir", 1, code=code)
+                self.assert_refused(result, os.strerror(code), "--output")
+
+    def test_largest_file(self):
+        """ulimit -f: whatever the limit is, files are whole, and the run goes on without it to the same results."""
+        for program, arguments in (("element_test", self.arguments),
+                                   ("soil_column", (self.write("column.toml", COLUMN), *SAVED))):
+            self.empty()
+            self.assert_done(self.run_app(program, *arguments, *self.output))
+            whole = results(self.folder / "out")
+            largest = max(path.stat().st_size for path in (self.folder / "out").rglob("*") if path.is_file())
+            for share in (0.02, 0.3, 0.95):
+                with self.subTest(program=program, share=share):
+                    self.empty()
+                    limit = int(share * largest)
+                    result = subprocess.run(
+                        self.command(program, *arguments, *self.output), cwd=self.folder, capture_output=True,
+                        text=True, timeout=120 * PATIENCE, check=False,
+                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+                    self.assertEqual(result.returncode, 1, result.stderr)
+                    self.assertIn(os.strerror(errno.EFBIG), result.stderr)
+                    self.resumed(program, arguments, self.output)
+                    self.assertEqual(results(self.folder / "out"), whole)
+
+    def test_a_calendar_that_jumps(self):
+        self.assert_done(self.run_app("element_test", *self.arguments, *self.output))
+        whole = results(self.folder / "out")
+        self.empty()
+        result, n = self.run_failing(self.command("element_test", *self.arguments, *self.output), "clock", 1)
+        self.assert_done(result)
+        self.assertGreater(n, 0)
+        self.assertEqual(results(self.folder / "out"), whole)
+
+    def test_drawing_is_killed(self):
+        log = self.folder / "out/figures.log"
+        with subprocess.Popen(self.command("element_test", self.scene, "-o", "out"), cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            end = time.time() + 60 * PATIENCE
+            while process.poll() is None and not log.exists() and time.time() < end:
+                time.sleep(0.005)
+            time.sleep(0.2)
+            children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
+            for child in children.split():
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(int(child), signal.SIGKILL)
+            said = process.communicate(timeout=60 * PATIENCE)[0]
+        self.assertEqual(process.returncode, 0, "the run itself has finished")
+        self.assertIn("figures were not drawn: the program that draws them was ended by signal 9. Draw them with: "
+                      "isostat report out", said)
+        self.assertEqual(list((self.folder / "out").rglob("*.tmp")), [])
+        numbers = contents(self.folder / "out")
+        self.assert_done(self.run_app("element_test", self.scene, "-o", "out", "--resume"))
+        self.assertTrue((self.folder / "out/report.html").exists())
+        after = contents(self.folder / "out")
+        self.assertEqual({name: after[name] for name in numbers if not name.startswith("figures")},
+                         {name: data for name, data in numbers.items() if not name.startswith("figures")})
+
+
+if __name__ == "__main__":
+    main()
