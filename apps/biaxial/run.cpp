@@ -70,6 +70,7 @@ std::unique_ptr<ColumnCheckpoint> checkpoint_of(const BiaxialRequest &request)
     return nullptr;
   auto checkpoint = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
   check_same_scene(request.folder, checkpoint->scene, to_toml(request.scene));
+  note_instruction_set(checkpoint->instruction_set);
   return checkpoint;
 }
 

@@ -3,9 +3,11 @@
 
 #include "base/error.hpp"
 #include "base/record/installation.hpp"
+#include "base/record/instruction_set.hpp"
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <new>
@@ -34,6 +36,8 @@ int guarded(const std::function<void()> &program)
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond its limit (ulimit -f) is an error of write(), with a message
   try
     {
+      if (const char *name = std::getenv("ISOSTAT_INSTRUCTION_SET"))
+        use_instruction_set(name);
       program();
       return 0;
     }

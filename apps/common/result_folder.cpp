@@ -7,7 +7,7 @@
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
-#include "dem/contact/loop.hpp"
+#include "base/record/instruction_set.hpp"
 
 #include <algorithm>
 #include <ctime>

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/record/instruction_set.hpp"
 #include "base/scene/reader.hpp"
 
 #include <fmt/format.h>
@@ -97,6 +98,12 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
         "(compare {} with the output of --validate). Resume with the scene and --set values of the first run.",
         folder.string(), first_difference(scene, checkpoint), first_difference(checkpoint, scene),
         (folder / "scene.toml").string()));
+}
+
+void note_instruction_set(const std::string &made_with)
+{
+  if (const std::string note = other_instruction_set(made_with); !note.empty())
+    fmt::print(stderr, "note: {}\n", note);
 }
 
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures)

@@ -62,6 +62,7 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   TestRun run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
   check_same_scene(folder, run.resumed->scene, to_toml(scene));
+  note_instruction_set(run.resumed->instruction_set);
   run.assembly = std::make_shared<Assembly>(run.resumed->state, how);
   restore(*run.resumed, *run.assembly);
   run.state = run.resumed->drive;

@@ -6,6 +6,7 @@
 #include "base/files/hdf5.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
+#include "base/record/instruction_set.hpp"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,8 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   ColumnCheckpoint checkpoint;
   checkpoint.file = path.string();
   checkpoint.scene = root.attribute<std::string>("scene");
+  if (root.has_attribute("instruction_set")) // else it is older
+    checkpoint.instruction_set = root.attribute<std::string>("instruction_set");
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
   checkpoint.state.material = MaterialState::from_bytes(hdf5::read_bytes(root, "material"));
   get(root, "state_", checkpoint.state);
@@ -85,6 +88,7 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
 {
   write_newest(folder, [&](hdf5::Group root) {
     set_format(root, checkpoint_format, checkpoint_schema_version, checkpoint.scene);
+    root.set_attribute("instruction_set", instruction_set());
     root.set_attribute("step", checkpoint.state.step);
     hdf5::write_bytes(root, "material", checkpoint.state.material.bytes());
     put(root, "state_", checkpoint.state);

@@ -14,6 +14,7 @@ struct ColumnCheckpoint
   std::map<std::string, double> numbers;              ///< rows written, largest values ...
   std::map<std::string, std::vector<double>> vectors; ///< largest values over the depth
   std::string scene;                                  ///< the resolved scene; a resumed run must have the same
+  std::string instruction_set = {};                   ///< of the machine that wrote it; set by reading
   std::string file = {};                              ///< where it was read; not stored
 
   /// Stores and takes back what State::for_each(state, visit) visits with name and number.

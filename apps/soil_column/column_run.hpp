@@ -38,6 +38,8 @@ public:
       return;
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
     check_same_scene(request.folder, resumed_->scene, to_toml(scene_));
+    if (ranks().first())
+      note_instruction_set(resumed_->instruction_set);
     run_.restore(resumed_->state);
     resumed_->state = {}; // that of all ranks
     follower_.peaks.restore(*resumed_);

@@ -26,8 +26,6 @@ void add_ghosts(const Ghost *ghosts, std::size_t n, double *action)
         hn::Store(hn::Zero(d), d, ghost);
       }
 }
-
-const char *instruction_set() { return hwy::TargetName(HWY_TARGET); }
 } // namespace HWY_NAMESPACE
 } // namespace isostat
 HWY_AFTER_NAMESPACE();
@@ -36,13 +34,10 @@ HWY_AFTER_NAMESPACE();
 namespace isostat
 {
 HWY_EXPORT(add_ghosts);
-HWY_EXPORT(instruction_set);
 
 void add_ghosts(const ContactList &list, std::size_t chunk, double *action)
 {
   HWY_DYNAMIC_DISPATCH(add_ghosts)(list.ghosts(chunk).data(), list.ghosts(chunk).size(), action);
 }
-
-std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
 } // namespace isostat
 #endif

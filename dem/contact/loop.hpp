@@ -81,7 +81,4 @@ void add_ghosts(const ContactList &list, std::size_t chunk, double *action);
 void add_contact_forces(const ContactLaw &law, const Packing &packing, double dt, ContactList &list, double *action,
                         DissipationPerPair *dissipation = nullptr, const CellMotion *cell = nullptr,
                         double contact_damping = 0);
-
-/// Name of the instruction set that add_contact_forces uses on this machine, e.g. "AVX3".
-std::string instruction_set();
 } // namespace isostat

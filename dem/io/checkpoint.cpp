@@ -4,6 +4,7 @@
 #include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
+#include "base/record/instruction_set.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 namespace isostat
@@ -22,6 +23,8 @@ Checkpoint read_file(const std::filesystem::path &path)
   expect_format(root, checkpoint_format, checkpoint_schema_version);
   Checkpoint checkpoint;
   checkpoint.scene = root.attribute<std::string>("scene");
+  if (root.has_attribute("instruction_set")) // else it is older
+    checkpoint.instruction_set = root.attribute<std::string>("instruction_set");
   checkpoint.state = read_snapshot(root.group("state"));
   hdf5::read_field(root, "drive", checkpoint.drive);
   hdf5::read_field(root, "written", checkpoint.written);
@@ -35,6 +38,7 @@ void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &che
 {
   write_newest(folder, [&](hdf5::Group root) {
     set_format(root, checkpoint_format, checkpoint_schema_version, checkpoint.scene);
+    root.set_attribute("instruction_set", instruction_set());
     write_snapshot(root.create_group("state"), checkpoint.state);
     hdf5::write_field(root, "drive", checkpoint.drive);
     hdf5::write_field(root, "written", checkpoint.written);

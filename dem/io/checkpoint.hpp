@@ -28,6 +28,7 @@ struct Checkpoint
   std::map<std::string, double> assembly; ///< sums of the energy balance, and what they go on from
   std::map<std::string, double> specimen; ///< its figures (Specimen::numbers), for the summary of a resumed run
   std::string scene;                      ///< the resolved scene; a resumed run must have the same
+  std::string instruction_set = {};       ///< of the machine that wrote it, for other_instruction_set(); set by reading
 };
 
 /// Writes folder/last.h5 aside and renames it; what was last becomes folder/previous.h5, so that two are kept and one

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.hpp"
 #include "base/record/installation.hpp"
+#include "base/record/instruction_set.hpp"
 #include "python/binding/binding.hpp"
+
+#include <cstdlib>
 
 namespace isostat::python
 {
@@ -32,6 +35,8 @@ PYBIND11_MODULE(_core, module)
   module.doc() = "The compiled part of isostat; use what the package itself offers.";
   module.attr("__version__") = version();
   python::bind_errors(module);
+  if (const char *name = std::getenv("ISOSTAT_INSTRUCTION_SET"))
+    use_instruction_set(name);
   python::bind_scene(module);
   python::bind_snapshot(module);
   python::bind_measures(module);

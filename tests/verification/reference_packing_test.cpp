@@ -2,6 +2,7 @@
 // Packings of 1,000 grains against YADE (tests/reference/README.md): constant-volume compression at 5/s from the same
 // state with the same contact history, step by step as long as round-off stays small, along the stress path after that.
 #include "base/files/csv_table.hpp"
+#include "base/record/instruction_set.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/io/text_tables.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The SIMD contact loop in a periodic cell against its scalar twin: images of grains, homogeneous strain, virial.
+#include "base/record/instruction_set.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "tests/dem/contact/scalar_twin.hpp"
 #include "tests/support/instruction_sets.hpp"

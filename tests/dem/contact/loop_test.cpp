@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The SIMD contact loop against its scalar twin, for every variant of the law and every instruction set of this
 // machine.
+#include "base/record/instruction_set.hpp"
 #include "dem/contact/loop.hpp"
 #include "tests/dem/contact/scalar_twin.hpp"
 #include "tests/support/instruction_sets.hpp"
