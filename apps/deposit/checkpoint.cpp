@@ -3,11 +3,13 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
-#include "base/files/hdf5.hpp"
+#include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
 #include "base/record/instruction_set.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -32,11 +34,15 @@ void put(hdf5::Group root, const std::string &prefix, const Part &part)
 template <class Part>
 void get(const hdf5::Group &root, const std::string &prefix, Part &part)
 {
-  const hdf5::Group vectors = root.group(prefix + "vectors"), numbers = root.group(prefix + "numbers");
+  const hdf5::Group vectors = root.group(prefix + "vectors");
   for (const std::string &name : vectors.names())
-    part.vectors[name] = vectors.read<double>(name);
-  for (const std::string &name : numbers.attribute_names())
-    part.numbers[name] = numbers.attribute<double>(name);
+    {
+      const std::vector<double> &values = part.vectors[name] = vectors.read<double>(name);
+      if (std::ranges::any_of(values, [](double x) { return std::isnan(x); }))
+        throw InputError(
+            fmt::format("{}/{}: holds a value that is not a number; the file is damaged", vectors.where(), name));
+    }
+  hdf5::read_field(root, prefix + "numbers", part.numbers);
 }
 
 template <class Fields>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "base/error.hpp"
 #include "base/fields.hpp"
 #include "base/files/hdf5.hpp"
 #include "base/types.hpp"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <type_traits>
@@ -14,6 +16,14 @@ namespace isostat::hdf5
 namespace detail
 {
 inline constexpr const char *axis_names[] = {"_x", "_y", "_z"};
+
+inline double number(const Group &group, const std::string &name)
+{
+  const double value = group.attribute<double>(name);
+  if (std::isnan(value))
+    throw InputError(group.where() + "/@" + name + ": is not a number; the file is damaged");
+  return value;
+}
 } // namespace detail
 
 /// Stores a field in a group under its name: numbers as attributes of their own type (truth values and enumerations as
@@ -59,7 +69,7 @@ void write_field(Group &group, const std::string &name, const std::map<std::stri
     below.set_attribute(key, value);
 }
 
-/// The way back.  @throws InputError naming the field that is missing or of another type
+/// The way back.  @throws InputError naming the field that is missing, of another type, or not a number
 template <class T>
 void read_field(const Group &group, const std::string &name, T &value)
 {
@@ -69,10 +79,10 @@ void read_field(const Group &group, const std::string &name, T &value)
       T::for_each(value, [&](const char *field, auto &x) { read_field(below, field, x); });
     }
   else if constexpr (std::is_same_v<T, double>)
-    value = group.attribute<double>(name);
+    value = detail::number(group, name);
   else if constexpr (std::is_same_v<T, Vec3>)
     for (int axis = 0; axis < 3; ++axis)
-      value[axis] = group.attribute<double>(name + detail::axis_names[axis]);
+      value[axis] = detail::number(group, name + detail::axis_names[axis]);
   else
     value = static_cast<T>(group.attribute<std::uint64_t>(name));
 }
@@ -100,6 +110,9 @@ void read_field(const Group &group, const std::string &name, std::map<std::strin
 {
   const Group below = group.group(name);
   for (const std::string &key : below.attribute_names())
-    values[key] = below.attribute<T>(key);
+    if constexpr (std::is_same_v<T, double>)
+      values[key] = detail::number(below, key);
+    else
+      values[key] = below.attribute<T>(key);
 }
 } // namespace isostat::hdf5

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/io/checkpoint.hpp"
 
+#include "base/error.hpp"
 #include "base/files/hdf5_fields.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/file_format.hpp"
 #include "base/record/instruction_set.hpp"
 #include "dem/io/snapshot_file.hpp"
+#include "dem/io/state_fault.hpp"
+
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -26,6 +30,8 @@ Checkpoint read_file(const std::filesystem::path &path)
   if (root.has_attribute("instruction_set")) // else it is older
     checkpoint.instruction_set = root.attribute<std::string>("instruction_set");
   checkpoint.state = read_snapshot(root.group("state"));
+  if (const std::string found = state_fault(checkpoint.state); !found.empty())
+    throw InputError(fmt::format("{}: {}; the file is damaged", path.string(), found));
   hdf5::read_field(root, "drive", checkpoint.drive);
   hdf5::read_field(root, "written", checkpoint.written);
   hdf5::read_field(root, "assembly", checkpoint.assembly);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/io/state_fault.hpp"
+
+#include "dem/contact/history.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+std::string grain_fault(const Packing &grains)
+{
+  if (grains.n_grains() == 0)
+    return "it has no grains; expected at least one";
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    {
+      for (const auto &[name, records] : {std::pair("position", &grains.position),
+                                          std::pair("velocity", &grains.velocity), std::pair("spin", &grains.spin)})
+        for (std::size_t k = 4 * i; k < 4 * i + 4; ++k)
+          if (!std::isfinite((*records)[k]))
+            return fmt::format("grain {} (id {}) has a value of {} in its {}; expected finite numbers", i, grains.id[i],
+                               (*records)[k], name);
+      const double r = grains.radius(i), inverse_mass = grains.velocity[4 * i + 3],
+                   inverse_inertia = grains.spin[4 * i + 3];
+      if (!(r > 0 && inverse_mass > 0 && inverse_inertia > 0))
+        return fmt::format("grain {} (id {}) has radius {} m, 1/mass {} 1/kg, 1/inertia {} 1/(kg m2); expected all > 0",
+                           i, grains.id[i], r, inverse_mass, inverse_inertia);
+    }
+  return {};
+}
+
+std::string contact_fault(const Snapshot &state)
+{
+  for (std::size_t i = 0; i < state.contacts.size(); ++i)
+    {
+      const Contact &c = state.contacts[i];
+      const ContactHistory &h = c.history;
+      bool finite = std::isfinite(c.overlap) && std::isfinite(c.normal_force);
+      for (const HistoryVector &v : history_vectors)
+        finite &= (h.*v.place).allFinite();
+      for (const double number : h.own)
+        finite &= std::isfinite(number);
+      if (!finite)
+        return fmt::format("contact {} (grains {} and {}) holds a value that is not finite", i, c.first, c.second);
+    }
+  for (std::size_t i = 0; i < state.wall_contacts.size(); ++i)
+    if (!(std::isfinite(state.wall_contacts[i].overlap) && std::isfinite(state.wall_contacts[i].normal_force)))
+      return fmt::format("wall contact {} (grain {}) holds a value that is not finite", i,
+                         state.wall_contacts[i].grain);
+  return {};
+}
+} // namespace
+
+std::string state_fault(const Snapshot &state)
+{
+  std::vector<double> values = parameter_values(state.law);
+  values.push_back(state.time);
+  for (const double value : values)
+    if (!std::isfinite(value))
+      return fmt::format("a law parameter or the time is {}; expected finite numbers", value);
+  if (!(std::isfinite(state.grains.density) && state.grains.density > 0))
+    return fmt::format("grain density = {} kg/m3; expected > 0", state.grains.density);
+  if (state.cell)
+    {
+      const PeriodicCell &cell = *state.cell;
+      if (!(cell.edges.allFinite() && cell.deformation.allFinite() && cell.rotation.allFinite() && cell.volume() > 0 &&
+            cell.reference_volume > 0))
+        return fmt::format("the periodic cell has a volume of {} m3; expected finite edges and a volume > 0",
+                           cell.volume());
+    }
+  else if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
+    return fmt::format("the box has edges {} x {} x {} m; expected all > 0", state.box.edges().x(),
+                       state.box.edges().y(), state.box.edges().z());
+  if (!state.strain.allFinite())
+    return "its strain is not finite";
+  const std::string grains = grain_fault(state.grains);
+  return grains.empty() ? contact_fault(state) : grains;
+}
+} // namespace isostat

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Not-a-number in a checkpoint, in each of its numbers in turn: the run does not go on from it, says where it is, and
+takes the checkpoint before where that is whole. An infinite number does no harm unnoticed either."""
+import shutil
+import signal
+
+import h5py
+import numpy as np
+
+from biaxial_test import FRICTION
+from failing_runs import COLUMN, SAVED
+from support import CYCLIC, AppTest, contents, main, results, tiny_scene
+
+QUIET = ("-q", "--no-figures")
+
+
+def numbers_of(path):
+    """Items that hold numbers with a point: (object, attribute or None)."""
+    found = []
+
+    def visit(name, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f" and item.size > 0:
+            found.append((name, None))
+        found.extend((name, key) for key, value in item.attrs.items() if np.asarray(value).dtype.kind == "f")
+
+    with h5py.File(path) as file:
+        file.visititems(visit)
+        visit("/", file)
+    return found
+
+
+def damage(path, item, attribute, value):
+    with h5py.File(path, "r+") as file:
+        if attribute:
+            file[item].attrs.modify(attribute, np.float64(value))
+        else:
+            values = file[item][()]
+            values.flat[values.size // 2] = value
+            file[item][...] = values
+
+
+class DamagedCheckpoints(AppTest):
+    def stopped(self, program, arguments):
+        """What an undisturbed run leaves, and the folder of one that was stopped."""
+        self.assert_done(self.run_app(program, *arguments, "-o", "whole"))
+        code = self.run_and_stop(0.05, signal.SIGTERM, (self.folder / "parts/checkpoint/previous.h5", True), *arguments,
+                                 "-o", "parts", program=program)
+        self.assertEqual(code, 130, "it is still at work")
+        return results(self.folder / "whole"), self.folder / "parts"
+
+    def damage_each(self, program, *arguments):
+        arguments = (*arguments, *SAVED, *QUIET)
+        whole, parts = self.stopped(program, arguments)
+        items = numbers_of(parts / "checkpoint/last.h5")
+        self.assertGreater(len(items), 5)
+        out = self.folder / "out"
+        counts = {}
+        for value in (np.nan, np.inf, -np.inf):
+            for item, attribute in items:
+                with self.subTest(program=program, item=item, attribute=attribute, value=value):
+                    shutil.rmtree(out, ignore_errors=True)
+                    shutil.copytree(parts, out)
+                    (out / "checkpoint/previous.h5").unlink()
+                    damage(out / "checkpoint/last.h5", item, attribute, value)
+                    before = contents(out)
+                    result = self.run_app(program, *arguments, "-o", "out", "--resume")
+                    counts[value, result.returncode] = counts.get((value, result.returncode), 0) + 1
+                    if result.returncode == 0:
+                        self.assertFalse(np.isnan(value), "a run has gone on from it")
+                        self.assertEqual(results(out) == whole, True)
+                    elif result.returncode == 2:
+                        self.assert_refused(result, "last.h5")
+                        self.assertEqual(contents(out), before)
+                    else:
+                        self.assertEqual(result.returncode, 1, result.stderr)
+                        self.assertRegex(result.stderr, "step|grain|checkpoint")
+        print(f"  {program}: {len(items)} items, (value, exit code): {counts}", flush=True)
+        return parts
+
+    def test_element_test(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        parts = self.damage_each("element_test", scene)
+        damage(parts / "checkpoint/last.h5", "state/grains/velocity", None, np.nan)
+        result = self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "parts", "--resume")
+        self.assert_done(result)
+        self.assertRegex(result.stderr, r"warning:\n.*last.h5: grain \d+ \(id \d+\) has a value of nan in its velocity")
+        self.assertIn("goes on from the checkpoint before", result.stderr)
+        self.assertEqual(results(parts), results(self.folder / "whole"))
+
+    def test_soil_column(self):
+        self.damage_each("soil_column", self.write("column.toml", COLUMN))
+
+    def test_biaxial(self):
+        self.damage_each("biaxial", self.write("block.toml", FRICTION))
+
+
+if __name__ == "__main__":
+    main()
