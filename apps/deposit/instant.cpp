@@ -53,4 +53,5 @@ void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant
 ISOSTAT_INSTANTIATE(1)
 ISOSTAT_INSTANTIATE(2)
 ISOSTAT_INSTANTIATE(3)
+#undef ISOSTAT_INSTANTIATE
 } // namespace isostat

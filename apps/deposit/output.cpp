@@ -142,4 +142,5 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 ISOSTAT_INSTANTIATE(1)
 ISOSTAT_INSTANTIATE(2)
 ISOSTAT_INSTANTIATE(3)
+#undef ISOSTAT_INSTANTIATE
 } // namespace isostat

@@ -311,6 +311,7 @@ ISOSTAT_INSTANTIATE(double)
 ISOSTAT_INSTANTIATE(std::uint64_t)
 ISOSTAT_INSTANTIATE(std::uint32_t)
 ISOSTAT_INSTANTIATE(std::string)
+#undef ISOSTAT_INSTANTIATE
 
 void write_bytes(Group group, const std::string &name, std::span<const std::byte> bytes)
 {
