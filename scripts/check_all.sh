@@ -11,6 +11,8 @@
 #   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on what the last thirty commits
 #               have touched: a source takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of
 #               its rules in each of them
+#   fuzz        each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each time: those of the grains
+#               with the sanitizers, those that need the continuum half from the release preset
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
 #               what the sanitizers put in
@@ -27,7 +29,7 @@ if [[ "${1:-}" == --grains ]]; then
   shift
 fi
 gates=("$@")
-((${#gates[@]})) || gates=(format docs tidy sanitizers)
+((${#gates[@]})) || gates=(format docs tidy sanitizers fuzz)
 
 format() {
   git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
@@ -56,6 +58,19 @@ tidy() {
 sanitizers() {
   cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$(nproc)" &&
     ctest --preset "$preset" --parallel "$(nproc)"
+}
+
+# An input on which a target breaks is left in build/.
+fuzz() {
+  local targets=(build/"$preset"/bin/fuzz_*) target name seed=$((SRANDOM % 1000000))
+  for target in build/release/bin/fuzz_*; do
+    [[ -x build/$preset/bin/${target##*/} ]] || targets+=("$target")
+  done
+  for target in "${targets[@]}"; do
+    name=${target##*/fuzz_}
+    printf '%s\0' "cd build && xargs ../$target --seconds 60 --seed $seed <../${target%/bin/*}/fuzz/$name.seeds 2>&1 |
+      tail -n 5 | sed 's/^/$name: /' && exit \${PIPESTATUS[0]}"
+  done | xargs -0 --max-procs="$(nproc)" -I{} bash -c {}
 }
 
 failed=0

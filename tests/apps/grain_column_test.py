@@ -152,8 +152,8 @@ class Bits(GrainColumnTest):
         self.whole()
         moments, killed = random.Random(20240229), 0
         for k, n in enumerate((2, 3, 1, 4, 2)):
-            code, _ = self.stop(n, signal.SIGKILL, moments.uniform(0.02, 0.3), *(["--resume"] if k else []))
-            killed += code == 128 + signal.SIGKILL
+            code, said = self.stop(n, signal.SIGKILL, moments.uniform(0.02, 0.3), *(["--resume"] if k else []))
+            killed += code == 128 + signal.SIGKILL and "exited on signal 9 (Killed)" in said
         self.assertGreaterEqual(killed, 3)
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")

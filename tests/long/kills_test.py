@@ -18,6 +18,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
 from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (the path comes first)
+from calibrate_test import LABORATORY, SCENE, plan_text  # noqa: E402
 from column_support import settings  # noqa: E402
 from failing_runs import COLUMN, SAVED  # noqa: E402
 from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
@@ -101,6 +102,12 @@ class Kills(AppTest):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
         self.kill("liquefaction_resistance", (scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
                   lambda parts: [], others=(("--jobs", (1, 2)),))
+
+    def test_calibrate(self):
+        for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
+            self.write(name, text)
+        self.kill("calibrate", (self.write("plan.toml", plan_text(trials=4)), "-q", "--no-figures"), lambda parts: [],
+                  others=(("--jobs", (1, 2)),))
 
     def test_soil_column(self):
         scene = self.write("column.toml", COLUMN)
