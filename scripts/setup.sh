@@ -6,6 +6,7 @@
 #   scripts/setup.sh            what building, testing and drawing need
 #   scripts/setup.sh --gates    and what scripts/check_all.sh needs
 #   scripts/setup.sh --fuzz     and what scripts/fuzz.sh needs
+#   scripts/setup.sh --coverage and what scripts/coverage.sh needs
 #   scripts/setup.sh --packages and what scripts/package.sh needs
 #   scripts/setup.sh --docs     and what scripts/docs.sh needs
 set -euo pipefail
@@ -21,6 +22,7 @@ packages=(
 case "${1:-}" in
   --gates) packages+=(clang-format clang-tidy chromium) ;;
   --fuzz) packages+=(clang libclang-rt-14-dev libomp-14-dev) ;;
+  --coverage) packages+=(gcovr) ;;
   --packages) packages+=(help2man dpkg-dev fakeroot file) ;;
   --docs) packages+=(python3-sphinx python3-myst-parser furo doxygen libjs-mathjax) ;;
 esac
