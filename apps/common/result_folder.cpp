@@ -140,10 +140,11 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
         fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
-  if (used && !fs::exists(folder / "scene.toml"))
-    throw InputError(fmt::format("{}: not overwritten, because it holds no scene.toml and may not be a results folder. "
-                                 "Choose another --output.",
-                                 folder.string()));
+  for (const char *name : {"scene.toml", "provenance.txt"}) // a folder of one's own may hold a scene
+    if (used && !fs::exists(folder / name))
+      throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
+                                   "Choose another --output.",
+                                   folder.string(), name));
   try_writable_folder(folder);
   expect_free(folder);
 }
@@ -181,8 +182,8 @@ void write_provenance(const fs::path &folder, const std::string &scene_text, con
 {
   const fs::path file = folder / "provenance.txt";
   const std::string before = fs::exists(file) ? read_text(file) + "\n" : "";
-  write_replacing(folder / "scene.toml", scene_text);
   write_replacing(file, before + provenance_text(command_line, more));
+  write_replacing(folder / "scene.toml", scene_text); // last: who finds it finds both
 }
 
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)

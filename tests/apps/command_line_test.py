@@ -249,6 +249,11 @@ class OutputFolder(AppTest):
         self.assert_refused(self.run_test(self.scene, "-o", "thesis", "--overwrite"), "thesis", "not overwritten",
                             "scene.toml")
         self.assertEqual(contents(other), {"chapter.tex": b"precious"})
+        self.write("thesis/scene.toml", tiny_scene())  # of one's own, not of a run
+        before = contents(self.folder)
+        for place, scene in (("thesis", self.scene), (".", "thesis/scene.toml"), ("thesis/.", "thesis/scene.toml")):
+            self.assert_refused(self.run_test(scene, "-o", place, "--overwrite"), "not overwritten", "holds no ")
+        self.assertEqual(contents(self.folder), before)
 
     def test_resume_of_nothing(self):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
