@@ -89,7 +89,8 @@ private:
 class File
 {
 public:
-  /// For reading. InputError if it is missing, not HDF5, or truncated.
+  /// For reading. InputError if it is missing, not HDF5, truncated, or if its bytes are not those that were written
+  /// (seal.hpp).   cost: the file is read once before
   static File open(const std::filesystem::path &path);
   /// For writing, empty. RunFailure if the folder is missing or not writable.
   static File create(const std::filesystem::path &path);

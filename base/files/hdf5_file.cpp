@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/files/seal.hpp"
 
 #include <atomic>
 #include <cassert>
@@ -113,6 +114,7 @@ void fail(const FileState &file, const std::string &item, const std::string &wha
 File File::open(const fs::path &path)
 {
   require_hdf5(path);
+  unsealed(read_text(path), path);
   auto state = std::make_shared<FileState>(path, false);
   open_existing(*state, path, H5F_ACC_RDONLY, H5P_DEFAULT);
   return File(state);
@@ -137,7 +139,7 @@ File File::update(const fs::path &path)
 {
   require_hdf5(path);
   auto state = std::make_shared<FileState>(path, true);
-  std::string bytes = read_text(path);
+  std::string bytes(unsealed(read_text(path), path));
   const Handle access = memory_access(*state);
   if (H5Pset_file_image(access, bytes.data(), bytes.size()) < 0)
     fail(*state, "a copy of it", "no memory");
@@ -151,6 +153,6 @@ void File::commit()
   assert(file.writing && file.id >= 0);
   const std::string bytes = bytes_of(file);
   file.close();
-  write_replacing(file.path, bytes);
+  write_replacing(file.path, sealed(bytes));
 }
 } // namespace isostat::hdf5

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A specimen, a library and a checkpoint of HDF5 with damaged members: what is taken can be written and read again.
+// Bytes that were changed after they were sealed do not come to HDF5 at all.
 #include "base/files/csv_table.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "dem/io/specimen_library.hpp"
@@ -19,13 +20,15 @@ struct Files
 {
   fs::path folder = fs::temp_directory_path() / ("isostat_fuzz_" + std::to_string(getpid()));
   std::optional<fuzz::WholeHdf5> specimen, library, checkpoint;
+  std::string sealed_specimen;
 
   Files()
   {
     fs::create_directories(folder / "checkpoint");
     const Specimen lattice{fuzz::sheared_lattice(), {{"title", "a lattice"}}, {{"void_ratio", 0.9}, {"seed", 1}}};
     write_specimen(folder / "specimen.h5", lattice);
-    specimen.emplace(read_text(folder / "specimen.h5"));
+    sealed_specimen = read_text(folder / "specimen.h5");
+    specimen.emplace(sealed_specimen);
     LibraryWriter writer = LibraryWriter::create(folder / "library.h5");
     writer.add("s0001", lattice), writer.add("s0002", lattice);
     writer.commit();
@@ -52,13 +55,30 @@ void try_specimen(const Files &files, const Specimen &specimen)
                     again.provenance == specimen.provenance,
                 "a specimen that was read is written and read again");
 }
+
+/// Some bytes changed, or the end cut off.
+void try_raw_bytes(const Files &files, fuzz::Choices &choices)
+{
+  std::string bytes = files.sealed_specimen;
+  const std::size_t sealed = bytes.size() - 32;
+  if (choices.below(4) == 0)
+    bytes.resize(choices.below(sealed));
+  else
+    do
+      bytes[choices.below(sealed)] ^= static_cast<char>(1 + choices.below(255));
+    while (!choices.used_up());
+  if (bytes == files.sealed_specimen) // changed twice
+    return;
+  const fs::path path = files.leave("raw.h5", bytes);
+  fuzz::require(!fuzz::accepted([&] { return read_specimen(path); }), "changed bytes are noticed");
+}
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
 {
   static const Files files;
   fuzz::Choices choices(data, size);
-  switch (choices.below(3))
+  switch (choices.below(4))
     {
     case 0:
       {
@@ -76,6 +96,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
               try_specimen(files, *specimen);
         break;
       }
+    case 2:
+      try_raw_bytes(files, choices);
+      break;
     default:
       files.leave("checkpoint/last.h5", files.checkpoint->damaged(choices));
       fs::remove(files.folder / "checkpoint/previous.h5");

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A packing that liquefies and stiffens twice in each cycle, for 1e7 steps or as many as asked for, in pieces that end
-by SIGTERM and go on by --resume: memory, volume, energy, momentum and the size of the files stay what they are. Not
-part of the usual tests: ctest --preset long.
+"""A packing that liquefies and stiffens twice in each cycle, and one that rests, for 1e7 steps each or as many as asked
+for, in pieces that end by SIGTERM and go on by --resume: memory, volume, energy, momentum and the size of the files
+stay what they are. Not part of the usual tests: ctest --preset long.
 
-ISOSTAT_SOAK_STEPS    of time (1e7)       ISOSTAT_SOAK_FOLDER   keeps the run, and goes on with what is there
+ISOSTAT_SOAK_STEPS    of time (1e7)       ISOSTAT_SOAK_FOLDER   keeps the runs, and goes on with what is there
 ISOSTAT_SOAK_MINUTES  of a piece (1)
 """
 import json
@@ -24,7 +24,8 @@ from support import AppTest, main  # noqa: E402  (the path comes first)
 STEPS = int(float(os.environ.get("ISOSTAT_SOAK_STEPS", "1e7")))
 MINUTES = float(os.environ.get("ISOSTAT_SOAK_MINUTES", "1"))
 KEPT = os.environ.get("ISOSTAT_SOAK_FOLDER")
-SCENE = pathlib.Path(__file__).resolve().with_name("soak.toml")
+SCENE = pathlib.Path(__file__).resolve().with_name("soak.toml").read_text(encoding="utf-8")
+AT_REST = '[[stage]]\nkind = "hold"\nbalance = 1e-300\n'  # which no packing meets
 
 
 def memory(pid):
@@ -37,16 +38,33 @@ def memory(pid):
 
 
 class Soak(AppTest):
-    def setUp(self):
-        super().setUp()
-        self.results = pathlib.Path(KEPT) if KEPT else self.folder / "out"
-        self.table = self.results.with_name(self.results.name + "_memory.csv")  # largest of each piece, MB
+    def run_all(self, name, text):
+        """In pieces. Prints what they take."""
+        place = pathlib.Path(KEPT) if KEPT else self.folder
+        place.mkdir(exist_ok=True)
+        self.scene, self.results = self.write("soak.toml", text), place / name
+        self.table = place / f"{name}_memory.csv"  # largest of each piece, MB
+        while not self.piece():
+            pass
+        pieces = np.loadtxt(self.table, ndmin=1)
+        size = sum(path.stat().st_size for path in self.results.rglob("*") if path.is_file()) / 1e6
+        print(f"  {name}: {len(pieces)} pieces, {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files "
+              f"{size:.1f} MB", flush=True)
+        self.assert_below(pieces.max() / pieces[0], 1.15, "lists of pairs are longer at times")
+        summary = json.loads((self.results / "summary.json").read_text(encoding="utf-8"))
+        self.assertGreaterEqual(summary["steps"], STEPS)
+        with h5py.File(self.results / "history.h5") as file:
+            rows = {column: np.asarray(values) for column, values in file["history"].items()}
+        self.assertTrue((np.diff(rows["step"]) > 0).all())
+        self.assertEqual(summary["steps"], rows["step"][-1] + 1)
+        self.assertLess(1e6 * size, 1e7 + 8 * 60 * len(rows["step"]))
+        return rows
 
     def piece(self):
         """Runs on for some minutes. Returns whether it has finished."""
         begun = (self.results / "checkpoint").is_dir()
-        command = self.command("element_test", SCENE, "-o", self.results, "-q", "--no-figures", "--threads", 1, "--set",
-                               f"stage.0.max_steps={STEPS}", *(["--resume"] if begun else []))
+        command = self.command("element_test", self.scene, "-o", self.results, "-q", "--no-figures", "--threads", 1,
+                               "--set", f"stage.0.max_steps={STEPS}", *(["--resume"] if begun else []))
         end, largest = time.monotonic() + 60 * MINUTES, 0
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True,
                               stdout=subprocess.DEVNULL) as process:
@@ -60,37 +78,37 @@ class Soak(AppTest):
             table.write(f"{largest:.1f}\n")
         return process.returncode == 0
 
-    def test_nothing_grows(self):
-        while not self.piece():
-            pass
-        with h5py.File(self.results / "history.h5") as file:
-            rows = {name: np.asarray(values) for name, values in file["history"].items()}
+    def test_liquefied_again_and_again(self):
+        rows = self.run_all("run", SCENE)
         sheared = rows["stage"] == 0
         step, p, e, residual, work = (rows[name][sheared] for name in ("step", "p", "e", "residual", "W_boundary"))
-        pieces = np.loadtxt(self.table, ndmin=1)
-        size = sum(path.stat().st_size for path in self.results.rglob("*") if path.is_file()) / 1e6
         with h5py.File(self.results / "checkpoint/last.h5") as file:
             velocity = np.asarray(file["state/grains/velocity"])
         mass = 1 / velocity[:, 3:]
         momentum = np.linalg.norm((mass * velocity[:, :3]).sum(axis=0)) / np.abs(mass * velocity[:, :3]).sum()
         volume = np.ptp(e) / (1 + e[0])
-        summary = json.loads((self.results / "summary.json").read_text(encoding="utf-8"))
-        print(f"  {step[-1]:.0f} steps in {len(pieces)} pieces, {rows['reversals'][-1]:.0f} reversals, "
-              f"p' {p.min():.1f} to {p.max():.0f} Pa\n"
+        print(f"  {step[-1]:.0f} steps, {rows['reversals'][-1]:.0f} reversals, p' {p.min():.1f} to {p.max():.0f} Pa\n"
               f"  volume within {volume:.1e}, residual {np.abs(residual).max():.2e} J of {np.abs(work).max():.2e} J of "
-              f"work, momentum {momentum:.1e} of the sum of all\n"
-              f"  memory {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files {size:.1f} MB", flush=True)
-        self.assertEqual(summary["steps"], step[-1] + 1)
-        self.assertGreaterEqual(summary["steps"], STEPS)
-        self.assertTrue((np.diff(step) > 0).all())
+              f"work, momentum {momentum:.1e} of the sum of all", flush=True)
         self.assertLess(p.min(), 1e3)
         self.assertGreater(p.max(), 1e5)
         self.assert_below(volume, 1e-12, "it is set from the sum of strains, which is zero to round-off")
         self.assert_below(np.abs(residual).max() / np.abs(work).max(), 0.02, "first order where contacts slide")
         self.assert_below(momentum, 0.5, "local damping takes from each grain by itself; it does not add up to a drift")
-        self.assert_below(pieces.max() / pieces[0], 1.05, "lists of pairs are a little longer at times")
-        self.assertLess(1e6 * size, 1e7 + 8 * 60 * len(rows["step"]))
-        self.assertLess(len(rows["step"]), STEPS / 20000 + 10 * rows["reversals"][-1] + 100)
+        self.assertLess(len(step), STEPS / 20000 + 10 * rows["reversals"][-1] + 100)
+
+    def test_at_rest(self):
+        """Nothing moves but by round-off, no number becomes so small that the processor slows down."""
+        rows = self.run_all("rest", SCENE[:SCENE.index("[[stage]]")] + AT_REST)
+        with h5py.File(self.results / "checkpoint/last.h5") as file:
+            numbers = {name: np.abs(np.asarray(file["state/" + name])) for name in (
+                "grains/velocity", "grains/spin", "contacts/shear_force", "contacts/bending_moment")}
+        print(f"  p' {rows['p'].min():.6g} to {rows['p'].max():.6g} Pa, fastest grain "
+              f"{numbers['grains/velocity'][:, :3].max():.1e} m/s", flush=True)
+        self.assert_below(np.ptp(rows["p"]) / rows["p"][0], 1e-6, "the servo and round-off")
+        self.assert_below(np.ptp(rows["e"]), 1e-9, "the servo and round-off")
+        for name, values in numbers.items():
+            self.assertEqual(np.count_nonzero((values > 0) & (values < 1e-300)), 0, name)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace isostat
+{
+/// Bytes of a file with a seal at their end: a word by which it is known, their number, and their check sum (hash.hpp),
+/// 32 bytes in all. HDF5, and what reads it, takes no notice of what stands behind the end that the file itself names;
+/// so the library, which crashes on some wrong bytes, is not asked to open them.
+/// tested: tests/base/files/seal_test.cpp, fuzz_stored_packing
+std::string sealed(std::string bytes);
+
+/// The bytes without their seal; all of them if there is none, as in files of other programs, or changed by one.
+/// @param path  for the message   @throws InputError  they are not those that were sealed
+std::string_view unsealed(std::string_view bytes, const std::filesystem::path &path);
+} // namespace isostat

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files/seal.hpp"
+
+#include "base/files/csv_table.hpp"
+#include "base/files/hdf5.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace isostat
+{
+namespace
+{
+class Sealed : public TemporaryFolder
+{
+protected:
+  std::string opened(const std::string &bytes) const
+  {
+    put("file.h5", bytes);
+    return test::refusal([&] { hdf5::File::open(folder / "file.h5").root().read<double>("row"); });
+  }
+};
+
+TEST_F(Sealed, EveryByteCounts)
+{
+  const std::string bytes = "some bytes of a file, whatever they are", whole = sealed(bytes);
+  EXPECT_EQ(unsealed(whole, "file"), bytes);
+  EXPECT_EQ(unsealed(bytes, "file"), bytes);
+  EXPECT_EQ(unsealed("", "file"), "");
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    {
+      std::string damaged = whole;
+      damaged[at] ^= 1;
+      const bool is_mark = at >= bytes.size() && at < bytes.size() + 16; // then it has no seal
+      EXPECT_EQ(test::refusal([&] { unsealed(damaged, "file"); }) != "accepted", !is_mark) << at;
+    }
+  test::expect_parts(test::refusal([&] { unsealed(whole.substr(1), "file"); }),
+                     {"file: damaged: its 38 bytes are not the 39 that were written", "write or copy it again"});
+}
+
+TEST_F(Sealed, FilesOfHdf5AreAndStayReadable)
+{
+  hdf5::File file = hdf5::File::create(folder / "file.h5");
+  file.root().write("row", std::vector<double>{1, 2, 3}, "-");
+  file.commit();
+  hdf5::File more = hdf5::File::update(folder / "file.h5");
+  more.root().write("another", std::vector<double>{4}, "-");
+  more.commit();
+  const std::string bytes = read_text(folder / "file.h5");
+  EXPECT_EQ(bytes.size(), unsealed(bytes, "file").size() + 32) << "one seal";
+  EXPECT_EQ(opened(bytes), "accepted");
+  EXPECT_EQ(opened(std::string(unsealed(bytes, "file"))), "accepted") << "as files before there were seals";
+  for (std::size_t at = 8; at < bytes.size() - 32; at += 7)
+    {
+      std::string damaged = bytes;
+      damaged[at] ^= 0x10;
+      EXPECT_NE(opened(damaged).find("are not the"), std::string::npos) << at;
+    }
+  for (std::size_t n = 0; n < bytes.size() - 32; n += 101)
+    EXPECT_NE(opened(bytes.substr(0, n)), "accepted") << n;
+}
+} // namespace
+} // namespace isostat
