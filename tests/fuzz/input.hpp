@@ -39,18 +39,18 @@ inline Tally tally;
 template <typename Read>
 auto accepted(const Read &read) -> std::optional<decltype(read())>
 {
+  std::optional<decltype(read())> result;
   try
     {
-      std::optional result(read());
+      result.emplace(read());
       ++tally.taken;
-      return result;
     }
   catch (const InputError &refusal)
     {
       ++tally.refused;
       require(std::string_view(refusal.what()).size() > 10, "a refusal says what is wrong");
-      return std::nullopt;
     }
+  return result;
 }
 
 /// The same where what can be read may still not be run.
