@@ -10,6 +10,7 @@
 #include "apps/common/command_line.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/instruction_set.hpp"
 #include "base/stopwatch.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
