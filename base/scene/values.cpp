@@ -3,6 +3,8 @@
 #include "base/error.hpp"
 #include "base/scene/reader.hpp"
 
+#include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -137,7 +139,13 @@ struct Reading
   std::string plain(const toml::node &node) const
   {
     if (const auto *text = node.as_string())
-      return text->get();
+      {
+        double number = 0; // in quotes or without, it is the same
+        const char *end = text->get().data() + text->get().size();
+        const auto read = std::from_chars(text->get().data(), end, number);
+        const bool is_number = read.ptr == end && read.ec == std::errc() && std::isfinite(number);
+        return is_number ? number_text(number) : text->get();
+      }
     if (node.is_number())
       return number_text(*node.value<double>());
     refuse("must be a number, or a quantity with its unit in quotes");

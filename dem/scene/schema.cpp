@@ -219,7 +219,8 @@ bool is_implied(const Key &key, const void *scene)
   const Scene &s = *static_cast<const Scene *>(scene);
   const std::string_view path = key.path;
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
-         (path == "contact.law" && is_default(s.contact)) || (path.starts_with("control.") && s.stages.empty());
+         (path == "contact.law" && is_default(s.contact)) ||
+         (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{});
 }
 
 /// The word of contact.law is a number of registered_laws().
