@@ -177,9 +177,11 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
                        const std::string &file, bool or_folder)
 {
   namespace fs = std::filesystem;
-  const auto absolute = [](const fs::path &path) { return fs::absolute(path).lexically_normal(); };
-  const fs::path beside_scene = absolute(fs::path(scene_path).parent_path() / file), here = absolute(file);
+  if (file.empty())
+    document.refuse(key, "names no file. Give the path of one, or leave the key out.");
   std::error_code ignored;
+  const auto absolute = [&](const fs::path &path) { return fs::absolute(path, ignored).lexically_normal(); };
+  const fs::path beside_scene = absolute(fs::path(scene_path).parent_path() / file), here = absolute(file);
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored)))
       return path.string();

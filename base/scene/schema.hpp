@@ -131,6 +131,7 @@ struct SceneSchema
 };
 
 std::string heading(const Section &section);                   ///< "[motion]", "[[stage]]"
+std::string toml_text(std::string_view text);                  ///< in quotes, with what TOML needs escaped
 std::string file_text(const Key &key, std::string_view value); ///< with quotes where TOML needs them: "10 mm"
 std::string example(const Key &key);                           ///< file_text of its default or example
 std::string range_text(const Key &key);   ///< "in [0 deg, 90 deg)", "> 0 Pa", the words of a choice, or ""

@@ -18,22 +18,6 @@ std::string bound_text(const Key &key, double bound)
   return has_unit ? format_bound(bound, key.dimension, key.unit) : number_text(bound);
 }
 
-std::string quoted(std::string_view text)
-{
-  std::string result = "\"";
-  for (const char c : text)
-    {
-      const auto code = static_cast<unsigned char>(c);
-      if (c == '"' || c == '\\')
-        result += fmt::format("\\{}", c);
-      else if (code < 0x20 || code == 0x7f)
-        result += fmt::format("\\u{:04X}", code);
-      else
-        result += c;
-    }
-  return result + "\"";
-}
-
 std::string enumerate(const std::vector<std::string> &words)
 {
   std::string text;
@@ -158,6 +142,22 @@ std::string SceneSchema::nearest_path(std::string_view unknown) const
   return fewest <= std::max<std::size_t>(4, word.size()) ? best : "";
 }
 
+std::string toml_text(std::string_view text)
+{
+  std::string result = "\"";
+  for (const char c : text)
+    {
+      const auto code = static_cast<unsigned char>(c);
+      if (c == '"' || c == '\\')
+        result += fmt::format("\\{}", c);
+      else if (code < 0x20 || code == 0x7f)
+        result += fmt::format("\\u{:04X}", code);
+      else
+        result += c;
+    }
+  return result + "\"";
+}
+
 std::string heading(const Section &section)
 {
   return section.items ? fmt::format("[[{}]]", section.name) : fmt::format("[{}]", section.name);
@@ -166,7 +166,7 @@ std::string heading(const Section &section)
 std::string file_text(const Key &key, std::string_view value)
 {
   const bool words = key.kind == Kind::quantity || key.kind == Kind::choice || key.kind == Kind::text;
-  return words ? quoted(value) : std::string(value);
+  return words ? toml_text(value) : std::string(value);
 }
 
 std::string example(const Key &key) { return file_text(key, key.value); }
@@ -191,7 +191,7 @@ std::string choices_text(const Key &key)
 {
   std::vector<std::string> words;
   for (const char *choice : key.choices)
-    words.emplace_back(quoted(choice));
+    words.emplace_back(toml_text(choice));
   return enumerate(words);
 }
 

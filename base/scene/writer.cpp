@@ -69,7 +69,7 @@ struct WriteValue
   {
     double ignored = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), ignored);
-    return text.empty() || read.ptr == text.data() + text.size() ? text : "\"" + text + "\"";
+    return text.empty() || read.ptr == text.data() + text.size() ? text : toml_text(text);
   }
   std::string operator()(const ValueText &value) const { return plain(*value.text); }
   std::string operator()(const ValuePair &pair) const

@@ -65,7 +65,7 @@ void change_bytes(Bytes &bytes)
     }
   std::size_t n = bytes.size();
   bytes.resize(most_bytes);
-  for (std::size_t changes = 1 + draw() % 3; changes > 0; --changes)
+  for (std::size_t changes = 1 + draw() % 4 / 3; changes > 0; --changes)
     n = LLVMFuzzerCustomMutator(bytes.data(), n, most_bytes, static_cast<unsigned>(draw()));
   bytes.resize(n);
 }
