@@ -5,6 +5,7 @@
 #include "base/units.hpp"
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -132,6 +133,7 @@ struct SceneSchema
 
 std::string heading(const Section &section);                   ///< "[motion]", "[[stage]]"
 std::string toml_text(std::string_view text);                  ///< in quotes, with what TOML needs escaped
+std::optional<double> plain_number(std::string_view text);     ///< all of it a number, and a finite one
 std::string file_text(const Key &key, std::string_view value); ///< with quotes where TOML needs them: "10 mm"
 std::string example(const Key &key);                           ///< file_text of its default or example
 std::string range_text(const Key &key);   ///< "in [0 deg, 90 deg)", "> 0 Pa", the words of a choice, or ""

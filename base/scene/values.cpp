@@ -3,8 +3,6 @@
 #include "base/error.hpp"
 #include "base/scene/reader.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -140,14 +138,11 @@ struct Reading
   {
     if (const auto *text = node.as_string())
       {
-        double number = 0; // in quotes or without, it is the same
-        const char *end = text->get().data() + text->get().size();
-        const auto read = std::from_chars(text->get().data(), end, number);
-        const bool is_number = read.ptr == end && read.ec == std::errc() && std::isfinite(number);
-        return is_number ? number_text(number) : text->get();
+        const auto number = plain_number(text->get());            // in quotes or without, it is the same
+        return number ? number_text(*number + 0.0) : text->get(); // -0 is 0
       }
     if (node.is_number())
-      return number_text(*node.value<double>());
+      return number_text(*node.value<double>() + 0.0);
     refuse("must be a number, or a quantity with its unit in quotes");
   }
 

@@ -4,7 +4,6 @@
 
 #include "base/scene/reader.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -67,9 +66,7 @@ struct WriteValue
   /// A number without quotes, all else with them.
   static std::string plain(const std::string &text)
   {
-    double ignored = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), ignored);
-    return text.empty() || read.ptr == text.data() + text.size() ? text : toml_text(text);
+    return text.empty() || plain_number(text) ? text : toml_text(text);
   }
   std::string operator()(const ValueText &value) const { return plain(*value.text); }
   std::string operator()(const ValuePair &pair) const
