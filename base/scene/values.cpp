@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/scene/reader.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -141,9 +142,9 @@ struct Reading
         const auto number = plain_number(text->get());            // in quotes or without, it is the same
         return number ? number_text(*number + 0.0) : text->get(); // -0 is 0
       }
-    if (node.is_number())
-      return number_text(*node.value<double>() + 0.0);
-    refuse("must be a number, or a quantity with its unit in quotes");
+    if (const auto number = node.value<double>(); node.is_number() && std::isfinite(*number))
+      return number_text(*number + 0.0);
+    refuse("must be a finite number, or a quantity with its unit in quotes");
   }
 
   std::uint64_t integer() const

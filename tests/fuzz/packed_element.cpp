@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bytes of a volume element with some words changed and their checksum mended: what is taken is an element that
+// The bytes of a volume element with some of them changed and their checksum mended: what is taken is an element that
 // packs to bytes again, and either takes a small strain or rejects it.
 #include "base/files/hash.hpp"
 #include "dem/rve/rve.hpp"
@@ -13,25 +13,31 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
 {
   using namespace isostat;
-  constexpr std::size_t head = 3; // magic, version, checksum
+  constexpr std::size_t head = 24; // bytes of magic, version, check sum
   RveSettings settings;
   settings.max_steps = 20;
   static const std::vector<std::byte> whole = Rve(fuzz::sheared_lattice(), settings).pack();
-  std::vector<std::uint64_t> words(whole.size() / 8);
-  std::memcpy(words.data(), whole.data(), 8 * words.size());
+  std::vector<std::byte> bytes = whole;
   fuzz::Choices choices(data, size);
-  do
+  while (!choices.used_up())
     {
-      const std::size_t at = head + choices.below(words.size() - head);
-      const double number = choices.number();
-      words[at] = choices.count();
+      const std::size_t at = head + choices.below(bytes.size() - head - 8);
       if (choices.below(2) == 0)
-        std::memcpy(&words[at], &number, sizeof number);
+        {
+          const double number = choices.number();
+          std::memcpy(&bytes[at / 8 * 8], &number, sizeof number);
+        }
+      else if (const std::uint64_t count = choices.count(); choices.below(2) == 0)
+        std::memcpy(&bytes[at / 8 * 8], &count, sizeof count);
+      else
+        bytes[at] = static_cast<std::byte>(count);
     }
-  while (!choices.used_up());
-  words.resize(words.size() - std::min(words.size() - head, choices.below(8)));
-  words[2] = Hash().words(std::as_bytes(std::span(words).subspan(head))).value();
-  auto rve = fuzz::possible([&] { return Rve::unpack(std::as_bytes(std::span(words)), settings); });
+  if (size % 8 == 1)
+    bytes.resize(bytes.size() - std::min(bytes.size() - head, size));
+  const std::uint64_t check_sum = Hash().words(std::span(bytes).subspan(head)).value();
+  std::memcpy(&bytes[head - 8], &check_sum, sizeof check_sum);
+  auto rve = fuzz::possible([&] { return Rve::unpack(bytes, settings); });
+  fuzz::require(rve || size > 0, "what was not damaged is taken");
   if (!rve)
     return 0;
   rve->pack();

@@ -6,14 +6,18 @@
 //   fuzz_scene FILE...  [--random NUMBER] [--seconds NUMBER] [--seed NUMBER]   until the first of the two is reached
 #include "tests/fuzz/input.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size);
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t *data, std::size_t size, std::size_t most);
 extern "C" __attribute__((weak)) std::size_t LLVMFuzzerCustomMutator(std::uint8_t *data, std::size_t size,
                                                                      std::size_t most, unsigned seed);
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());
@@ -54,20 +58,50 @@ void run(Bytes bytes)
   current.clear();
 }
 
+/// Another text that programs get wrong in place of a number, or a line once more.
+void change_text(Bytes &bytes)
+{
+  const auto is_number = [](std::uint8_t c) { return std::strchr("0123456789.+-eE", c) && c; };
+  const std::size_t n = bytes.size(), at = draw() % n;
+  auto begin = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), is_number);
+  auto end = std::find_if_not(begin, bytes.end(), is_number);
+  if (draw() % 4 == 0) // the line
+    {
+      begin = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), '\n');
+      end = std::find(begin == bytes.end() ? begin : begin + 1, bytes.end(), '\n');
+      const Bytes line(begin, end);
+      bytes.insert(end, line.begin(), line.end());
+      return;
+    }
+  constexpr std::array<std::string_view, 14> hard = {"0",   "-0", "1",   "-1",    "1e300",      "1e-300", "nan",
+                                                     "inf", "",   "1e5", "1e400", "4294967297", "0.5",    "-1e-3"};
+  const std::string_view other = hard[draw() % hard.size()];
+  const auto place = bytes.erase(begin, end);
+  bytes.insert(place, other.begin(), other.end());
+}
+
 void change_bytes(Bytes &bytes)
 {
-  if (!LLVMFuzzerCustomMutator)
+  if (!LLVMFuzzerCustomMutator && (bytes.empty() || draw() % 4 == 0))
     {
       bytes.resize(8 * (1 + draw() % 6));
       for (std::uint8_t &byte : bytes)
         byte = static_cast<std::uint8_t>(draw());
       return;
     }
-  std::size_t n = bytes.size();
-  bytes.resize(most_bytes);
+  const auto change = LLVMFuzzerCustomMutator ? LLVMFuzzerCustomMutator
+                                              : [](std::uint8_t *data, std::size_t size, std::size_t most, unsigned) {
+                                                  return LLVMFuzzerMutate(data, size, most);
+                                                };
   for (std::size_t changes = 1 + draw() % 4 / 3; changes > 0; --changes)
-    n = LLVMFuzzerCustomMutator(bytes.data(), n, most_bytes, static_cast<unsigned>(draw()));
-  bytes.resize(n);
+    if (!LLVMFuzzerCustomMutator && !bytes.empty() && draw() % 2 == 0)
+      change_text(bytes);
+    else
+      {
+        const std::size_t n = bytes.size(), most = std::max(n + 1, most_bytes);
+        bytes.resize(most);
+        bytes.resize(change(bytes.data(), n, most, static_cast<unsigned>(draw())));
+      }
 }
 
 /// How many inputs there were.
