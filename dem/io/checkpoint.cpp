@@ -7,7 +7,7 @@
 #include "base/record/file_format.hpp"
 #include "base/record/instruction_set.hpp"
 #include "dem/io/snapshot_file.hpp"
-#include "dem/io/state_fault.hpp"
+#include "dem/state/state_fault.hpp"
 
 #include <fmt/format.h>
 

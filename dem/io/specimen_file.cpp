@@ -5,7 +5,7 @@
 #include "base/files/hdf5_fields.hpp"
 #include "base/record/file_format.hpp"
 #include "dem/io/snapshot_file.hpp"
-#include "dem/io/state_fault.hpp"
+#include "dem/state/state_fault.hpp"
 
 #include <fmt/format.h>
 

@@ -10,8 +10,12 @@
 #include "base/files/hash.hpp"
 #include "dem/contact/law_parameters.hpp"
 #include "dem/drive/rate_control.hpp"
+#include "dem/state/state_fault.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <type_traits>
 
 namespace isostat
@@ -61,6 +65,33 @@ void fixed_part(Visitor &archive, Law &law, Grains &grains)
   archive(grains.density), archive(grains.id);
   archive(grains.position), archive(grains.velocity), archive(grains.spin);
 }
+
+bool all_finite(std::span<const double> numbers)
+{
+  return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+}
+
+/// What makes this no state of an element that could have been packed; empty if nothing does.
+std::string fault_of(const Snapshot &start, const AssemblyState &state)
+{
+  const std::size_t n = start.grains.n_grains(), numbers = 4 * (n + Packing::n_padding);
+  for (const AlignedVector<double> *records : {&start.grains.position, &start.grains.velocity, &start.grains.spin})
+    if (records->size() != numbers)
+      return fmt::format("they have {} numbers where {} grains have {}", records->size(), n, numbers);
+  if (const std::string found = state_fault(start); !found.empty())
+    return found;
+  const auto joins = [&](const ContactList::Pair &pair) { return pair.first < pair.second && pair.second < n; };
+  if (!std::ranges::all_of(state.pairs, joins) ||
+      std::ranges::adjacent_find(state.pairs, std::greater_equal()) != state.pairs.end())
+    return "their contacts join grains that there are not, or are in no order";
+  if (state.grains.size() != 15 * n || state.history.size() != state.pairs.size() * start.law->history().n_components())
+    return "their rows are not as long as grains and contacts are many";
+  if (!all_finite(state.grains) || !all_finite(state.history) || !state.virial.allFinite())
+    return "they hold a number that is not finite";
+  if (!(state.time_step > 0 && std::isfinite(state.time_step) && std::isfinite(state.time)))
+    return fmt::format("they have a time step of {} s", state.time_step);
+  return {};
+}
 } // namespace
 
 std::vector<std::byte> Rve::pack() const
@@ -107,6 +138,8 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   for_each_leaf(state.grains, body), for_each_leaf(state.drive, body);
   body(cost);
   start.cell = state.grains.cell;
+  if (const std::string found = fault_of(start, state.grains); !found.empty())
+    bytes.fail(found);
   Rve rve(start, settings);
   state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
   state.specimen = rve.specimen_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/state/contact_list.hpp"
 
+#include "base/error.hpp"
 #include "base/threads/team.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -192,8 +194,12 @@ void ContactList::restore_history(const std::vector<Pair> &pairs, const std::vec
   std::size_t lane = 0, from = 0;
   for (const Pair &pair : pairs)
     {
-      while (first_[lane] == partition_.n_grains || Pair(first_[lane], second_[lane]) < pair)
+      while (lane < n_lanes() && (first_[lane] == partition_.n_grains || Pair(first_[lane], second_[lane]) < pair))
         ++lane;
+      if (lane == n_lanes() || Pair(first_[lane], second_[lane]) != pair)
+        throw InputError(fmt::format("the state has a contact of grains {} and {}, which are apart. Give one that was "
+                                     "saved, and is whole.",
+                                     pair.first, pair.second));
       for (std::size_t c = 0; c < n_components(); ++c)
         *component(lane, c) = numbers[from++];
       occupied_[lane / lanes] = 1;

@@ -79,7 +79,8 @@ public:
   void set_history(std::size_t pair, const ContactHistory &history);
 
   /// Pairs that hold history and its n_components() numbers each, in order; and back: all other pairs forget.
-  /// @pre restore: layout as when saved, every pair in the list
+  /// @pre restore: layout as when saved, pairs in their order
+  /// @throws InputError  restore: a pair is not in the list
   void save_history(std::vector<Pair> &pairs, std::vector<double> &numbers) const;
   void restore_history(const std::vector<Pair> &pairs, const std::vector<double> &numbers);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/io/state_fault.hpp"
+#include "dem/state/state_fault.hpp"
 
 #include "dem/contact/history.hpp"
 
