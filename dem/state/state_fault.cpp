@@ -10,6 +10,8 @@ namespace isostat
 {
 namespace
 {
+constexpr double most_slender = 1000; ///< edge of a cell, over the cube root of its volume
+
 std::string grain_fault(const Packing &grains)
 {
   if (grains.n_grains() == 0)
@@ -51,6 +53,23 @@ std::string contact_fault(const Snapshot &state)
                          state.wall_contacts[i].grain);
   return {};
 }
+
+std::string cell_fault(const PeriodicCell &cell)
+{
+  const double size = std::cbrt(cell.volume());
+  if (!(cell.edges.allFinite() && cell.deformation.allFinite() && cell.strain_step.allFinite() &&
+        std::isfinite(cell.volume_strain) && std::isfinite(size) && size > 0 && std::isfinite(cell.reference_volume) &&
+        cell.reference_volume > 0))
+    return fmt::format("the periodic cell has a volume of {} m3; expected finite edges and a volume > 0",
+                       cell.volume());
+  if (const double longest = cell.edges.colwise().norm().maxCoeff(); longest > most_slender * size)
+    return fmt::format("the periodic cell has an edge of {} m and a volume of {} m3; expected edges up to {} times the "
+                       "cube root of the volume",
+                       longest, cell.volume(), most_slender);
+  if (!((cell.rotation.transpose() * cell.rotation - Mat3::Identity()).norm() < 1e-6))
+    return "the periodic cell's rotation is none";
+  return {};
+}
 } // namespace
 
 std::string state_fault(const Snapshot &state)
@@ -64,11 +83,8 @@ std::string state_fault(const Snapshot &state)
     return fmt::format("grain density = {} kg/m3; expected > 0", state.grains.density);
   if (state.cell)
     {
-      const PeriodicCell &cell = *state.cell;
-      if (!(cell.edges.allFinite() && cell.deformation.allFinite() && cell.rotation.allFinite() && cell.volume() > 0 &&
-            cell.reference_volume > 0))
-        return fmt::format("the periodic cell has a volume of {} m3; expected finite edges and a volume > 0",
-                           cell.volume());
+      if (const std::string found = cell_fault(*state.cell); !found.empty())
+        return found;
     }
   else if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
     return fmt::format("the box has edges {} x {} x {} m; expected all > 0", state.box.edges().x(),
