@@ -72,8 +72,9 @@ bool all_finite(std::span<const double> numbers)
 }
 
 /// What makes this no state of an element that could have been packed; empty if nothing does.
-std::string fault_of(const Snapshot &start, const AssemblyState &state)
+std::string fault_of(const Snapshot &start, const RveState &whole)
 {
+  const AssemblyState &state = whole.grains;
   const std::size_t n = start.grains.n_grains(), numbers = 4 * (n + Packing::n_padding);
   for (const AlignedVector<double> *records : {&start.grains.position, &start.grains.velocity, &start.grains.spin})
     if (records->size() != numbers)
@@ -90,7 +91,14 @@ std::string fault_of(const Snapshot &start, const AssemblyState &state)
     return "they hold a number that is not finite";
   if (!(state.time_step > 0 && std::isfinite(state.time_step) && std::isfinite(state.time)))
     return fmt::format("they have a time step of {} s", state.time_step);
-  return {};
+  bool numbers_are = true;
+  for_each_leaf(whole.drive, [&]<class T>(const T &value) {
+    if constexpr (std::is_same_v<T, double>)
+      numbers_are &= !std::isnan(value);
+    else if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>)
+      numbers_are &= !value.hasNaN();
+  });
+  return numbers_are ? "" : "what its driver keeps is not a number";
 }
 } // namespace
 
@@ -138,7 +146,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   for_each_leaf(state.grains, body), for_each_leaf(state.drive, body);
   body(cost);
   start.cell = state.grains.cell;
-  if (const std::string found = fault_of(start, state.grains); !found.empty())
+  if (const std::string found = fault_of(start, state); !found.empty())
     bytes.fail(found);
   Rve rve(start, settings);
   state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
