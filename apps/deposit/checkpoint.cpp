@@ -38,9 +38,9 @@ void get(const hdf5::Group &root, const std::string &prefix, Part &part)
   for (const std::string &name : vectors.names())
     {
       const std::vector<double> &values = part.vectors[name] = vectors.read<double>(name);
-      if (std::ranges::any_of(values, [](double x) { return std::isnan(x); }))
-        throw InputError(
-            fmt::format("{}/{}: holds a value that is not a number; the file is damaged", vectors.where(), name));
+      if (std::ranges::any_of(values, [](double x) { return !std::isfinite(x); }))
+        throw InputError(fmt::format("{}/{}: holds a value that is not a finite number; the file is damaged",
+                                     vectors.where(), name));
     }
   hdf5::read_field(root, prefix + "numbers", part.numbers);
 }

@@ -20,8 +20,8 @@ inline constexpr const char *axis_names[] = {"_x", "_y", "_z"};
 inline double number(const Group &group, const std::string &name)
 {
   const double value = group.attribute<double>(name);
-  if (std::isnan(value))
-    throw InputError(group.where() + "/@" + name + ": is not a number; the file is damaged");
+  if (!std::isfinite(value))
+    throw InputError(group.where() + "/@" + name + ": is not a finite number; the file is damaged");
   return value;
 }
 } // namespace detail
@@ -69,7 +69,7 @@ void write_field(Group &group, const std::string &name, const std::map<std::stri
     below.set_attribute(key, value);
 }
 
-/// The way back.  @throws InputError naming the field that is missing, of another type, or not a number
+/// The way back.  @throws InputError naming the field that is missing, of another type, or not a finite number
 template <class T>
 void read_field(const Group &group, const std::string &name, T &value)
 {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Not-a-number in a checkpoint, in each of its numbers in turn: the run does not go on from it, says where it is, and
-takes the checkpoint before where that is whole. An infinite number does no harm unnoticed either."""
+"""A number in a checkpoint that is none, or infinite, each of them in turn: the run does not go on from it, says where
+it is, and takes the checkpoint before where that is whole."""
 import shutil
 import signal
 
@@ -42,21 +42,20 @@ def damage(path, item, attribute, value):
 
 class DamagedCheckpoints(AppTest):
     def stopped(self, program, arguments):
-        """What an undisturbed run leaves, and the folder of one that was stopped."""
-        self.assert_done(self.run_app(program, *arguments, "-o", "whole"))
+        """The folder of a run that was stopped."""
         code = self.run_and_stop(0.05, signal.SIGTERM, (self.folder / "parts/checkpoint/previous.h5", True), *arguments,
                                  "-o", "parts", program=program)
         self.assertEqual(code, 130, "it is still at work")
-        return results(self.folder / "whole"), self.folder / "parts"
+        return self.folder / "parts"
 
     def damage_each(self, program, *arguments):
         arguments = (*arguments, *SAVED, *QUIET)
-        whole, parts = self.stopped(program, arguments)
+        parts = self.stopped(program, arguments)
         items = numbers_of(parts / "checkpoint/last.h5")
         self.assertGreater(len(items), 5)
         out = self.folder / "out"
         counts = {}
-        for value in (np.nan, np.inf, -np.inf):
+        for value in (np.nan, np.inf):
             for item, attribute in items:
                 with self.subTest(program=program, item=item, attribute=attribute, value=value):
                     shutil.rmtree(out, ignore_errors=True)
@@ -66,15 +65,8 @@ class DamagedCheckpoints(AppTest):
                     before = contents(out)
                     result = self.run_app(program, *arguments, "-o", "out", "--resume")
                     counts[value, result.returncode] = counts.get((value, result.returncode), 0) + 1
-                    if result.returncode == 0:
-                        self.assertFalse(np.isnan(value), "a run has gone on from it")
-                        self.assertEqual(results(out) == whole, True)
-                    elif result.returncode == 2:
-                        self.assert_refused(result, "last.h5")
-                        self.assertEqual(contents(out), before)
-                    else:
-                        self.assertEqual(result.returncode, 1, result.stderr)
-                        self.assertRegex(result.stderr, "step|grain|checkpoint")
+                    self.assert_refused(result, "last.h5")
+                    self.assertEqual(contents(out), before)
         print(f"  {program}: {len(items)} items, (value, exit code): {counts}", flush=True)
         return parts
 
@@ -86,10 +78,11 @@ class DamagedCheckpoints(AppTest):
         self.assert_done(result)
         self.assertRegex(result.stderr, r"warning:\n.*last.h5: grain \d+ \(id \d+\) has a value of nan in its velocity")
         self.assertIn("goes on from the checkpoint before", result.stderr)
+        self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
         self.assertEqual(results(parts), results(self.folder / "whole"))
 
     def test_soil_column(self):
-        self.damage_each("soil_column", self.write("column.toml", COLUMN))
+        self.damage_each("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")))
 
     def test_biaxial(self):
         self.damage_each("biaxial", self.write("block.toml", FRICTION))
