@@ -23,9 +23,8 @@ void use_instruction_set(const std::string &name)
   std::string names;
   for (std::int64_t left = usable(); left; left &= left - 1)
     {
-      const std::int64_t widest = left & -left;
       if (name == name_of(left))
-        return hwy::DisableTargets(widest - 1);
+        return hwy::SetSupportedTargetsForTest(left); // DisableTargets() comes too late once anyone has asked
       names += (names.empty() ? "" : ", ") + name_of(left);
     }
   throw InputError(

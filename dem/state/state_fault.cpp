@@ -89,8 +89,10 @@ std::string state_fault(const Snapshot &state)
   else if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
     return fmt::format("the box has edges {} x {} x {} m; expected all > 0", state.box.edges().x(),
                        state.box.edges().y(), state.box.edges().z());
-  if (!state.strain.allFinite())
-    return "its strain is not finite";
+  const HomogeneousMotion &walls = state.wall_motion;
+  if (!state.strain.allFinite() || !Eigen::Map<const Vec3>(walls.rate).allFinite() ||
+      !Eigen::Map<const Vec3>(walls.shift).allFinite())
+    return "its strain or the motion of its walls is not finite";
   const std::string grains = grain_fault(state.grains);
   return grains.empty() ? contact_fault(state) : grains;
 }

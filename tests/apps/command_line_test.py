@@ -79,6 +79,7 @@ class SpecimenMistakes(AppTest):
         old = self.folder / "out"
         old.mkdir()
         (old / "scene.toml").write_text("# old", encoding="utf-8")
+        (old / "provenance.txt").write_text("old", encoding="utf-8")
         (old / "history.csv").write_text("old", encoding="utf-8")
         before = contents(old)
         scene = self.write("scene.toml", tiny_scene(specimen='file = "specimen.h5"'))
@@ -150,6 +151,7 @@ class SpecimenMistakes(AppTest):
         old = self.folder / "out"
         old.mkdir()
         (old / "scene.toml").write_text("# old", encoding="utf-8")
+        (old / "provenance.txt").write_text("old", encoding="utf-8")
         scene = self.write("scene.toml", tiny_scene(specimen="void_ratio = 0.3"))
         stiff = ("--set", "contact.young=10 GPa")
         self.assert_refused(self.run_test(scene, "-o", "out", "--overwrite", *stiff), "cannot be reached", "0.3000",

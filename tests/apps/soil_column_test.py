@@ -116,6 +116,7 @@ class Mistakes(ColumnTest):
         if not old.exists():
             old.mkdir()
             (old / "scene.toml").write_text("# old", encoding="utf-8")
+            (old / "provenance.txt").write_text("old", encoding="utf-8")
             (old / "history.csv").write_text("precious", encoding="utf-8")
         before = contents(old)
         scene = self.write("changed.toml", text) if text else self.scene

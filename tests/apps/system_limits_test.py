@@ -80,7 +80,7 @@ class SystemLimits(FailingRuns):
             said = process.communicate(timeout=60 * PATIENCE)[0]
         self.assertEqual(process.returncode, 0, "the run itself has finished")
         self.assertIn("figures were not drawn: the program that draws them was ended by signal 9. Draw them with: "
-                      "isostat report out", said)
+                      "isostat report 'out'", said)
         self.assertEqual(list((self.folder / "out").rglob("*.tmp")), [])
         numbers = contents(self.folder / "out")
         self.assert_done(self.run_app("element_test", self.scene, "-o", "out", "--resume"))
