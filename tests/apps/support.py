@@ -190,7 +190,8 @@ def results(path):
         return {"": path.read_bytes()}
     left_out = TIMED | {"checkpoint", "queue", "logs"}
     return {name: table(path / name) if name.endswith("resistance.csv") else data
-            for name, data in contents(path).items() if not left_out & set(pathlib.PurePath(name).parts)}
+            for name, data in contents(path).items()
+            if not name.endswith(".log") and not left_out & set(pathlib.PurePath(name).parts)}
 
 
 def main():

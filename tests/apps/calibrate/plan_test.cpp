@@ -70,7 +70,7 @@ TEST(CalibrationPlan, RefusesWhatItDoesNotKnow)
 TEST(CalibrationPlan, RefusesValuesThatAreNone)
 {
   expect_plan_refused(plan_text("start = [1, 2]\n"),
-                      {"plan.toml:9: parameter.1.start = [1, 2]", "must be a number, or a"});
+                      {"plan.toml:9: parameter.1.start = [1, 2]", "must be a finite number, or a"});
   expect_plan_refused("scene = \"s.toml\"\n[[parameter]]\nkey = \"contact.young\"\nbounds = \"1 GPa\"\n" +
                           test::curve_text,
                       {"plan.toml:4: parameter.0.bounds = 1 GPa", "two values, [low, high]"});
