@@ -30,7 +30,7 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
   if (errno != EWOULDBLOCK)
     throw NoLocks(fmt::format("{}: cannot be locked: {}. Work on a file system that has locks (flock).", file.string(),
                               std::strerror(errno)));
-  return FileLock();
+  return {};
 }
 
 bool within_patience(const std::function<bool()> &condition)

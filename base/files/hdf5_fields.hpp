@@ -19,7 +19,7 @@ inline constexpr const char *axis_names[] = {"_x", "_y", "_z"};
 
 inline double number(const Group &group, const std::string &name)
 {
-  const double value = group.attribute<double>(name);
+  const auto value = group.attribute<double>(name);
   if (!std::isfinite(value))
     throw InputError(group.where() + "/@" + name + ": is not a finite number; the file is damaged");
   return value;

@@ -79,7 +79,7 @@ std::string fault_of(const Snapshot &start, const RveState &whole)
   for (const AlignedVector<double> *records : {&start.grains.position, &start.grains.velocity, &start.grains.spin})
     if (records->size() != numbers)
       return fmt::format("they have {} numbers where {} grains have {}", records->size(), n, numbers);
-  if (const std::string found = state_fault(start); !found.empty())
+  if (std::string found = state_fault(start); !found.empty())
     return found;
   const auto joins = [&](const ContactList::Pair &pair) { return pair.first < pair.second && pair.second < n; };
   if (!std::ranges::all_of(state.pairs, joins) ||

@@ -83,7 +83,7 @@ std::string state_fault(const Snapshot &state)
     return fmt::format("grain density = {} kg/m3; expected > 0", state.grains.density);
   if (state.cell)
     {
-      if (const std::string found = cell_fault(*state.cell); !found.empty())
+      if (std::string found = cell_fault(*state.cell); !found.empty())
         return found;
     }
   else if (!(state.box.lower.allFinite() && state.box.upper.allFinite() && (state.box.edges().array() > 0).all()))
@@ -93,7 +93,7 @@ std::string state_fault(const Snapshot &state)
   if (!state.strain.allFinite() || !Eigen::Map<const Vec3>(walls.rate).allFinite() ||
       !Eigen::Map<const Vec3>(walls.shift).allFinite())
     return "its strain or the motion of its walls is not finite";
-  const std::string grains = grain_fault(state.grains);
+  std::string grains = grain_fault(state.grains);
   return grains.empty() ? contact_fault(state) : grains;
 }
 } // namespace isostat
