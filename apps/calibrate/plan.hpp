@@ -121,5 +121,5 @@ CalibrationPlan parse_plan(const std::string &text, const std::string &name);
 
 std::string to_toml(const CalibrationPlan &plan); ///< complete; reads back to the same plan
 const SceneSchema &plan_schema();
-std::string default_plan();                       ///< commented, with all defaults, units and ranges
+std::string default_plan(); ///< commented, with all defaults, units and ranges
 } // namespace isostat
