@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <new>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -20,15 +21,20 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
 {
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   line.set_version_flag("--version", fmt::format("{} (Isostat) {}", name, version()), "print the version and stop");
-  try
-    {
-      line.parse(argc, argv);
-    }
-  catch (const CLI::ParseError &error)
-    {
-      return line.exit(error) == 0 ? 0 : 2;
-    }
-  return guarded(program);
+  std::optional<int> told; // what is wrong with the line, or its help
+  const int code = guarded([&] {
+    try
+      {
+        line.parse(argc, argv);
+      }
+    catch (const CLI::ParseError &error)
+      {
+        told = line.exit(error) == 0 ? 0 : 2;
+        return;
+      }
+    program();
+  });
+  return told.value_or(code);
 }
 
 int guarded(const std::function<void()> &program)
@@ -85,7 +91,9 @@ std::string command_text(int argc, char **argv)
 std::string shipped_file(const std::filesystem::path &folder, const std::string &file)
 {
   const std::filesystem::path shipped = shared_folder() / folder / file;
-  return !std::filesystem::exists(file) && std::filesystem::is_regular_file(shipped) ? shipped.string() : file;
+  std::error_code ignored; // a name that is too long is the name of no file
+  const bool is_there = std::filesystem::exists(file, ignored);
+  return !is_there && std::filesystem::is_regular_file(shipped, ignored) ? shipped.string() : file;
 }
 
 std::string shipped_scene(const std::string &file) { return shipped_file("scenes", file); }
