@@ -7,7 +7,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <new>
@@ -42,8 +41,7 @@ int guarded(const std::function<void()> &program)
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond its limit (ulimit -f) is an error of write(), with a message
   try
     {
-      if (const char *name = std::getenv("ISOSTAT_INSTRUCTION_SET"))
-        use_instruction_set(name);
+      use_instruction_set_of_environment();
       program();
       return 0;
     }

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 
+#include <cstdlib>
 #include <fmt/format.h>
 #include <hwy/highway.h>
 
@@ -29,6 +30,12 @@ void use_instruction_set(const std::string &name)
     }
   throw InputError(
       fmt::format("ISOSTAT_INSTRUCTION_SET = {}; this machine has {}. Give one of these, or unset it.", name, names));
+}
+
+void use_instruction_set_of_environment()
+{
+  if (const char *name = std::getenv("ISOSTAT_INSTRUCTION_SET"))
+    use_instruction_set(name);
 }
 
 std::string other_instruction_set(const std::string &made_with)

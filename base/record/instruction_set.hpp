@@ -8,11 +8,12 @@ namespace isostat
 std::string instruction_set();
 
 /// Lets the contact loops use no wider one than this, as on a machine that has no wider one: to the same bits as there.
-/// Programs and the Python package call it with the environment's ISOSTAT_INSTRUCTION_SET, if it is set.
+/// Programs and the Python package take it from the environment, ISOSTAT_INSTRUCTION_SET, if it is set there.
 /// @pre no loop has run yet
 /// @throws InputError  this machine does not have it, or no loop was compiled for it: the names that there are
 /// tested: tests/apps/instruction_sets_test.py
 void use_instruction_set(const std::string &name);
+void use_instruction_set_of_environment();
 
 /// What to tell who goes on from a checkpoint made with another instruction set; empty if it is the same, or unknown.
 std::string other_instruction_set(const std::string &made_with);

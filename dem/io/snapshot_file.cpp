@@ -17,7 +17,6 @@ namespace
 {
 using hdf5::Group;
 
-const std::string snapshot_file_format = "isostat-snapshot";
 constexpr std::uint64_t snapshot_file_schema_version = 1;
 
 /// One field of all rows as a column, whole numbers with 32 bits, and back.
@@ -258,7 +257,7 @@ Snapshot read_snapshot(const Group &group)
 void write_snapshot_file(const std::filesystem::path &path, const Snapshot &snapshot)
 {
   hdf5::File file = hdf5::File::create(path);
-  set_format(file.root(), snapshot_file_format, snapshot_file_schema_version);
+  set_format(file.root(), snapshot_format, snapshot_file_schema_version);
   write_snapshot(file.root().create_group("snapshot"), snapshot);
   file.commit();
 }

@@ -7,6 +7,8 @@
 
 namespace isostat
 {
+inline constexpr const char *snapshot_format = "isostat-snapshot"; ///< of a file of one, its attribute `format`
+
 /// Stores a snapshot, bit by bit, in an empty group. N grains, C contacts, W wall contacts; every dataset carries
 /// `unit`:
 ///

@@ -14,7 +14,6 @@ namespace isostat
 namespace
 {
 const std::string specimen_format = "isostat-specimen";
-const std::string snapshot_format = "isostat-snapshot"; // of a run, without a story
 } // namespace
 
 void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
@@ -56,7 +55,7 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 Specimen read_specimen_description(const hdf5::Group &group)
 {
   Specimen specimen;
-  if (!group.has("provenance") && format_of(group) == snapshot_format)
+  if (!group.has("provenance") && format_of(group) == snapshot_format) // of a run, without a story
     return specimen;
   hdf5::read_field(group, "provenance", specimen.provenance);
   hdf5::read_field(group, "numbers", specimen.numbers);

@@ -4,8 +4,6 @@
 #include "base/record/instruction_set.hpp"
 #include "python/binding/binding.hpp"
 
-#include <cstdlib>
-
 namespace isostat::python
 {
 std::vector<Vec3> points(const py::array_t<double, py::array::c_style | py::array::forcecast> &array, const char *name)
@@ -35,8 +33,7 @@ PYBIND11_MODULE(_core, module)
   module.doc() = "The compiled part of isostat; use what the package itself offers.";
   module.attr("__version__") = version();
   python::bind_errors(module);
-  if (const char *name = std::getenv("ISOSTAT_INSTRUCTION_SET"))
-    use_instruction_set(name);
+  use_instruction_set_of_environment();
   python::bind_scene(module);
   python::bind_snapshot(module);
   python::bind_measures(module);

@@ -93,6 +93,8 @@ class Resume(ColumnTest):
         for wrong in (-1.0, 0.5, 1e300):
             self.refuse(lambda file, wrong=wrong: file["numbers"].attrs.modify("rows", wrong),
                         f"last.h5: rows = {wrong:g}, expected a whole number", "--overwrite")
+        self.refuse(lambda file: file["numbers"].attrs.modify("rows", float("nan")),
+                    "last.h5:/numbers/@rows: is not a finite number", "--overwrite")
 
     def test_consolidation(self):
         options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import time
 
-from failing_runs import SAVED, SHORT_TEST, FailingRuns
+from failing_runs import OUTPUT, SAVED, SHORT_TEST, FailingRuns
 from support import PATIENCE, contents, main, results
 
 
@@ -20,10 +20,9 @@ class SystemLimits(FailingRuns):
         super().setUp()
         self.scene = self.write("scene.toml", SHORT_TEST)
         self.arguments = (self.scene, *SAVED)
-        self.output = ("-o", "out", "--no-figures", "-q")
 
     def test_every_reason_is_told(self):
-        command = self.command("element_test", *self.arguments, *self.output)
+        command = self.command("element_test", *self.arguments, *OUTPUT)
         _, n = self.run_failing(command, "write")
         for code in (errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EACCES):
             with self.subTest(errno.errorcode[code]):
@@ -40,7 +39,7 @@ class SystemLimits(FailingRuns):
     def test_largest_file(self):
         """ulimit -f: whatever the limit is, files are whole, and the run goes on without it to the same results. (Open
         MPI has files of its own, and ends a column by itself.)"""
-        self.assert_done(self.run_app("element_test", *self.arguments, *self.output))
+        self.assert_done(self.run_app("element_test", *self.arguments, *OUTPUT))
         whole = results(self.folder / "out")
         largest = max(path.stat().st_size for path in (self.folder / "out").rglob("*") if path.is_file())
         for share in (0.02, 0.3, 0.95):
@@ -48,19 +47,19 @@ class SystemLimits(FailingRuns):
                 self.empty()
                 limit = int(share * largest)
                 result = subprocess.run(
-                    self.command("element_test", *self.arguments, *self.output), cwd=self.folder, capture_output=True,
+                    self.command("element_test", *self.arguments, *OUTPUT), cwd=self.folder, capture_output=True,
                     text=True, timeout=120 * PATIENCE, check=False,
                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
                 self.assertIn(result.returncode, (1, 2), result.stderr)
                 self.assertIn(os.strerror(errno.EFBIG), result.stderr)
-                self.resumed("element_test", self.arguments, self.output)
+                self.resumed("element_test", self.arguments, OUTPUT)
                 self.assertEqual(results(self.folder / "out"), whole)
 
     def test_a_calendar_that_jumps(self):
-        self.assert_done(self.run_app("element_test", *self.arguments, *self.output))
+        self.assert_done(self.run_app("element_test", *self.arguments, *OUTPUT))
         whole = results(self.folder / "out")
         self.empty()
-        result, n = self.run_failing(self.command("element_test", *self.arguments, *self.output), "clock", 1)
+        result, n = self.run_failing(self.command("element_test", *self.arguments, *OUTPUT), "clock", 1)
         self.assert_done(result)
         self.assertGreater(n, 0)
         self.assertEqual(results(self.folder / "out"), whole)

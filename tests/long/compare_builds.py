@@ -12,11 +12,11 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
 from support import BIN, CYCLIC, MONOTONIC, tiny_scene  # noqa: E402  (the path comes first)
+from column_support import history  # noqa: E402
 from failing_runs import COLUMN  # noqa: E402
 
 CELL = 'domain = "periodic-cell"\npreparation_friction = "10 deg"'
@@ -37,19 +37,12 @@ def instruction_sets(bins):
     return [name for name in sets[0] if all(name in other for other in sets)]
 
 
-def history(folder):
-    with h5py.File(folder / "history.h5") as file:
-        return {name: np.asarray(values) for name, values in file["history"].items()}
-
-
 def compare(one, other):
     """Rows of equal bits, and the largest distance of a column."""
     same = {name: one[name].view(np.uint64) == other[name].view(np.uint64) for name in one}
     rows = int(np.argmin(np.append(np.all(list(same.values()), axis=0), False)))
-    apart = {name: np.abs(one[name] - other[name]).max() / np.abs(one[name]).max() for name in ("p", "q", "e")
-             if name in one} if "q" in one else {
-             name: np.abs(one[name] - other[name]).max() / np.abs(one[name]).max() for name in one
-             if np.abs(one[name]).max() > 0}
+    columns = ("p", "q", "e") if "q" in one else [name for name in one if one[name].any()]
+    apart = {name: np.abs(one[name] - other[name]).max() / np.abs(one[name]).max() for name in columns}
     worst = max(apart, key=apart.get)
     return rows, len(one["step"]), worst, apart[worst]
 

@@ -75,7 +75,7 @@ class Builds:
         for name in tests:
             try:
                 run = subprocess.run([str(self.folder / "bin" / name), "--gtest_brief=1", "--gtest_fail_fast"],
-                                     capture_output=True, text=True, timeout=180, check=False)
+                                     capture_output=True, text=True, timeout=300, check=False)
             except subprocess.TimeoutExpired:
                 return name + " (does not end)"
             if run.returncode != 0:

@@ -169,8 +169,7 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
                    u = column.down(middle) / exact.settlement_of_sand(t) - 1,
                    all = column.down(top) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
       std::printf("  t = %6.0f s: p under the cap %.3f of the surcharge (%+.1e), base (%+.1e), settlement of the sand "
-                  "(%+.1e), of "
-                  "the surface (%+.1e)\n",
+                  "(%+.1e), of the surface (%+.1e)\n",
                   t, column.pressure(middle) / surcharge, p, base, u, all);
       for (double error : {p, base, u, all})
         EXPECT_NEAR_BECAUSE(error, 0, 1e-3, "steps that grow by a twentieth each, 40 elements a layer");
