@@ -114,7 +114,7 @@ void fail(const FileState &file, const std::string &item, const std::string &wha
 File File::open(const fs::path &path)
 {
   require_hdf5(path);
-  unsealed(read_text(path), path);
+  check_seal(path);
   auto state = std::make_shared<FileState>(path, false);
   open_existing(*state, path, H5F_ACC_RDONLY, H5P_DEFAULT);
   return File(state);

@@ -71,22 +71,24 @@ void Recorder::start_anew(const std::string &scene)
 
 std::uintmax_t Recorder::bytes_of_lines() const
 {
-  std::ifstream in(csv_, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || text.substr(0, header().size()) != header())
+  std::ifstream in(csv_,
+                   std::ios::binary); // line by line: a history of days is larger than the run that goes on with it
+  std::string line;
+  std::getline(in, line);
+  if (in.eof() || line + "\n" != header())
     throw InputError(
         fmt::format("{}: found the header \"{}\", expected \"{}\"; resume with the columns of the first run, or "
                     "start anew in another folder",
-                    csv_.string(), text.substr(0, text.find('\n')), header().substr(0, header().size() - 1)));
-  std::size_t end = header().size();
+                    csv_.string(), line, header().substr(0, header().size() - 1)));
+  std::uintmax_t end = header().size();
   for (std::size_t row = 0; row < n_rows_; ++row)
     {
-      const std::size_t next = text.find('\n', end);
-      if (next == std::string::npos)
+      std::getline(in, line);
+      if (in.eof() || !in)
         throw InputError(fmt::format("{}: {} whole rows, the checkpoint expects {}; restore the file or resume from an "
                                      "earlier checkpoint",
                                      csv_.string(), row, n_rows_));
-      end = next + 1;
+      end += line.size() + 1;
     }
   return end;
 }

@@ -6,6 +6,9 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+#include <chrono>
+#include <thread>
+
 namespace isostat
 {
 namespace
@@ -35,6 +38,23 @@ TEST_F(Sealed, EveryByteCounts)
     }
   test::expect_parts(test::refusal([&] { unsealed(whole.substr(1), "file"); }),
                      {"file: damaged: its 38 bytes are not the 39 that were written", "write or copy it again"});
+}
+
+TEST_F(Sealed, AFileOfManyBlocksIsJudgedAsItsBytesAre)
+{
+  std::string whole = sealed(std::string(3'000'001, 'x'));
+  put("large", whole);
+  check_seal(folder / "large");
+  std::this_thread::sleep_for(std::chrono::seconds(4)); // old enough to be remembered as whole
+  check_seal(folder / "large");
+  check_seal(folder / "large");
+  for (const std::size_t at : {0ul, 1'048'576ul, 3'000'000ul, whole.size() - 1})
+    {
+      std::string damaged = whole;
+      damaged[at] ^= 1;
+      put("large", damaged);
+      test::expect_parts(test::refusal([&] { check_seal(folder / "large"); }), {"large: damaged"});
+    }
 }
 
 TEST_F(Sealed, FilesOfHdf5AreAndStayReadable)
