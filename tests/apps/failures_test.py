@@ -10,6 +10,7 @@ import signal
 from biaxial_test import CELL, FEW, FRICTION
 from calibrate_test import LABORATORY, SCENE, plan_text
 from failing_runs import COLUMN, EVERY, OUTPUT, SAVED, SHORT_TEST, FailingRuns
+from grain_column_test import GrainColumnTest
 from support import main, results, tiny_scene
 from void_ratio_limits_test import LIMITS, QUICK
 
@@ -86,6 +87,12 @@ class Failures(FailingRuns):
         result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("cannot be locked: No locks available. Work on a file system that has locks", result.stderr)
+
+
+class Replays(FailingRuns, GrainColumnTest):
+    def test_rve_replay(self):
+        self.whole()
+        self.every_call("rve_replay", "whole/paths/d0", goes_on=FailingRuns.anew, most=1)
 
 
 if __name__ == "__main__":

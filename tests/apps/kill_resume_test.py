@@ -12,7 +12,7 @@ import numpy as np
 
 from support import AppTest, CYCLIC, MONOTONIC, REBALANCE, contents, main, tiny_scene
 
-STAGES = REBALANCE.format(steps=2500) + MONOTONIC.format(steps=6000) + CYCLIC.format(steps=20000)
+STAGES = REBALANCE.format(steps=2500) + MONOTONIC.format(steps=6000) + CYCLIC.format(steps=8000)
 EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
 
 
