@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One grain or two, against closed forms: the cases DEM-01 to DEM-05 of the verification manual of MFiX (R. Garg, J.
 // Galvin, T. Li, S. Pannala, Documentation of open-source MFIX-DEM software for gas-solids flows, 2012), which LAMMPS
-// has as well. DEM-06, the terminal velocity in a fluid, needs a drag that there is none of. Walls are frictionless and
-// elastic, so what a case has as a plate with friction or a dashpot is a sphere a thousand times as large.
-#include "dem/assembly/assembly.hpp"
+// has as well. DEM-06, the terminal velocity in a fluid, needs a drag that there is none of.
 #include "dem/contact/linear_rolling/law.hpp"
+#include "tests/support/ball_on_plate.hpp"
 #include "tests/support/near.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -14,11 +13,10 @@ namespace isostat
 {
 namespace
 {
-constexpr double radius = 1e-4, plate_radius = 0.1, density = 2650, young = 1e7, g = 9.81;
+using test::BallOnPlate, test::Ball, test::plate_radius, test::mass_of;
+constexpr double radius = test::ball_radius, density = test::ball_density, young = 1e7, g = 9.81;
 constexpr double kn = 2 * young * radius / (1 + radius / plate_radius); // of ball and plate, N/m
-
-double mass_of(double r) { return 4. / 3 * M_PI * r * r * r * density; }
-const double mass = mass_of(radius), natural = std::sqrt(kn / mass); // rad/s
+const double mass = mass_of(radius), natural = std::sqrt(kn / mass);    // kg, rad/s
 const double step = 0.01 / natural;
 
 LinearRolling sliding_law(double friction)
@@ -28,57 +26,16 @@ LinearRolling sliding_law(double friction)
   return law.with({friction > 0, false, false});
 }
 
-struct Ball
+Ball at(double height, const Vec3 &velocity = Vec3::Zero())
 {
-  Vec3 centre, velocity, spin; ///< velocity and spin of the half step before
-};
-
-/// A ball above a plate at the origin, which lies on the floor where there is gravity. Velocities are those at the time
-/// of the start.
-class BallOnPlate
-{
-public:
-  BallOnPlate(const Vec3 &ball, const Vec3 &velocity, double friction, double damping, double gravity)
-      : assembly_(start(ball, velocity + 0.5 * step * Vec3(0, 0, gravity), friction, gravity),
-                  {.time_step = step, .contact_damping = damping, .damping = 0, .gravity = Vec3(0, 0, -gravity)})
-  {}
-
-  Ball after_step()
-  {
-    assembly_.compute_forces();
-    assembly_.move(assembly_.box());
-    const Packing &grains = assembly_.packing();
-    return {grains.centre(1) - grains.centre(0), grains.linear_velocity(1), grains.angular_velocity(1)};
-  }
-  /// After `least` steps more, the first in which they do not touch.
-  Ball after_contact(int least)
-  {
-    Ball ball = after_step();
-    for (int k = 0; k < least || gap(ball) < 0; ++k)
-      ball = after_step();
-    return ball;
-  }
-  static double gap(const Ball &ball) { return ball.centre.norm() - radius - plate_radius; }
-
-private:
-  static Snapshot start(const Vec3 &ball, const Vec3 &velocity, double friction, double gravity)
-  {
-    Snapshot s;
-    s.law = sliding_law(friction);
-    s.grains = make_packing({Vec3::Zero(), ball}, {plate_radius, radius}, density);
-    s.grains.set_linear_velocity(1, velocity);
-    const double sag = mass_of(plate_radius) * gravity / (young * plate_radius);
-    s.box = {Vec3(-1, -1, gravity > 0 ? sag - plate_radius : -1), Vec3::Constant(1)};
-    return s;
-  }
-  Assembly assembly_;
-};
+  return {Vec3(0, 0, plate_radius + radius + height), velocity, Vec3::Zero()};
+}
 
 /// Fall from rest, then half a period of contact, and the way back up: a spring with a dashpot (DEM-01).
 TEST(SingleGrains, AFallingGrainBounces)
 {
   constexpr double height = 1e-4, beta = 0.1;
-  BallOnPlate scene(Vec3(0, 0, plate_radius + radius + height), Vec3::Zero(), 0, beta, g);
+  BallOnPlate scene(at(height), sliding_law(0), step, beta, g);
   const double fall = std::sqrt(2 * height / g), speed = g * fall;
   const double damped = natural * std::sqrt(1 - beta * beta), sag = g / (natural * natural);
   const double push_ends = std::atan2(2 * beta * std::sqrt(1 - beta * beta), 2 * beta * beta - 1) / damped; // F_n = 0
@@ -105,7 +62,7 @@ TEST(SingleGrains, HeightsOfBouncesFallWithTheRestitution)
   constexpr double height = 4e-5, beta = 0.05;
   const double w = std::sqrt(1 - beta * beta);
   const double e = std::exp(-beta / w * (M_PI - std::atan2(2 * beta * w, 1 - 2 * beta * beta)));
-  BallOnPlate scene(Vec3(0, 0, plate_radius + radius + height), Vec3::Zero(), 0, beta, g);
+  BallOnPlate scene(at(height), sliding_law(0), step, beta, g);
   double top = height, before = height;
   for (int bounce = 1, rising = 0; bounce <= 4;)
     {
@@ -171,7 +128,7 @@ TEST(SingleGrains, ASlidingBallBeginsToRoll)
 {
   constexpr double speed = 0.01, friction = 0.3;
   const double sag = g / (natural * natural), until = 2 * speed / (7 * friction * g);
-  BallOnPlate scene(Vec3(0, 0, plate_radius + radius - sag), Vec3(speed, 0, 0), friction, 0, g);
+  BallOnPlate scene(at(-sag, Vec3(speed, 0, 0)), sliding_law(friction), step, 0, g);
   double worst = 0;
   for (int k = 1; k * step < 1.5 * until; ++k)
     {
@@ -191,8 +148,7 @@ TEST(SingleGrains, ObliqueImpacts)
   const double contact = M_PI / (natural * step); // steps
   const auto impact = [&](double angle, double mu) {
     const Vec3 velocity = speed * Vec3(std::sin(angle), 0, -std::cos(angle));
-    const double ahead = plate_radius + radius + 1e-12;
-    return BallOnPlate(Vec3(0, 0, ahead), velocity, mu, 0, 0).after_contact(static_cast<int>(0.9 * contact));
+    return BallOnPlate(at(1e-12, velocity), sliding_law(mu), step).after_contact(static_cast<int>(0.9 * contact));
   };
   for (const double degrees : {60., 70., 80.})
     {
