@@ -16,7 +16,7 @@ std::string sealed(std::string bytes);
 /// @param path  for the message   @throws InputError  they are not those that were sealed
 std::string_view unsealed(std::string_view bytes, const std::filesystem::path &path);
 
-/// As unsealed(), of a file, in blocks of 1 MB. A file that was found whole is not read again until its size or the time
-/// of its last change differ: a column asks one library for each of its packings.
+/// As unsealed(), of a file, in blocks of 1 MB. A file that was found whole is not read again until its size or the
+/// time of its last change differ: a column asks one library for each of its packings.
 void check_seal(const std::filesystem::path &path);
 } // namespace isostat

@@ -52,7 +52,7 @@ class Soak(AppTest):
         print(f"  {name}: {len(pieces)} pieces, {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files "
               f"{size:.1f} MB", flush=True)
         self.assert_below((pieces - 6 * (histories - histories[0])).max() / pieces[0], 1.05,
-                          "rows are added to copies of history.h5 in memory; lists of pairs are a little longer at times")
+                          "rows are added to copies of history.h5; lists of pairs are a little longer at times")
         summary = json.loads((self.results / "summary.json").read_text(encoding="utf-8"))
         self.assertGreaterEqual(summary["steps"], STEPS)
         rows = history(self.results)
