@@ -8,9 +8,9 @@
 #
 #   format      clang-format on every file
 #   docs        scripts/docs.sh on the release preset: the site without a warning, no link that leads nowhere
-#   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on what the last thirty commits
-#               have touched: a source takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of
-#               its rules in each of them
+#   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on the dozen sources that were
+#               changed last: one takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of its
+#               rules in each of them
 #   fuzz        only where it is named: each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each
 #               time: those of the grains as the sanitizers have built them, all others of the release preset
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
@@ -39,11 +39,11 @@ docs() {
   scripts/setup.sh --docs && scripts/docs.sh
 }
 
-# Sources of the folders: all, or of the grains those that the last thirty commits have touched and that are still there.
+# Sources of the folders: all, or of the grains the dozen that were changed last.
 sources() {
   local all=("${folders[@]/%//*.cpp}")
   if [[ $preset == asan-grains ]]; then
-    comm -12 <(git log -30 --format= --name-only | sort -u) <(git ls-files "${all[@]}" | sort)
+    git log -30 --format= --name-only -- "${all[@]}" | awk '!seen[$0]++' | xargs -r ls -U 2>/dev/null | head -n 12
   else
     git ls-files "${all[@]}"
   fi
