@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/scene/document.hpp"
 #include "dem/scene/scene.hpp"
 #include "dem/scene/schema.hpp"
 
@@ -64,7 +65,7 @@ std::string scene_value(const std::string &scene, const std::string &key)
   const toml::node *node = document.find(key);
   if (!node)
     return "";
-  return node->is_string() ? node->as_string()->get() : number_text(*node->value<double>());
+  return node->is_string() ? node->as_string()->get() : number_text(number_of(*node));
 }
 } // namespace
 

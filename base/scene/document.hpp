@@ -35,6 +35,13 @@ constexpr void toml_assert(bool holds)
 
 namespace isostat
 {
+/// The number of a node that is one. Whole numbers beyond 2^53, which toml++ refuses to give as a double, are rounded.
+inline double number_of(const toml::node &node)
+{
+  const auto *whole = node.as_integer();
+  return whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
+}
+
 /// The TOML tree of a scene with the --set overrides in it, which knows where each of its values came from.
 /// Paths are those of the user: "motion.damping", "stage.0.strain".
 /// tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp

@@ -123,15 +123,10 @@ struct Reading
 
   double number(const toml::node &node) const
   {
-    double value = 0;
-    if (const auto *real = node.as_floating_point())
-      value = real->get();
-    else if (const auto *whole = node.as_integer())
-      value = static_cast<double>(whole->get());
-    else
+    if (!node.is_number())
       refuse("must be a plain number without unit or quotes");
-    check_range(value);
-    return value;
+    check_range(number_of(node));
+    return number_of(node);
   }
 
   /// A quantity or number of a key that is not of this scene: whoever knows that key reads it.
@@ -142,8 +137,8 @@ struct Reading
         const auto number = plain_number(text->get());            // in quotes or without, it is the same
         return number ? number_text(*number + 0.0) : text->get(); // -0 is 0
       }
-    if (const auto number = node.value<double>(); node.is_number() && std::isfinite(*number))
-      return number_text(*number + 0.0);
+    if (node.is_number() && std::isfinite(number_of(node)))
+      return number_text(number_of(node) + 0.0);
     refuse("must be a finite number, or a quantity with its unit in quotes");
   }
 
@@ -172,7 +167,7 @@ struct Reading
     const auto *pair = row.as_array();
     if (!pair || pair->size() != 2 || !(pair->get(1)->is_number()))
       refuse("must be rows of [diameter, percent finer], the diameter with its unit in quotes");
-    const double diameter = quantity(*pair->get(0)), percent = *pair->get(1)->value<double>();
+    const double diameter = quantity(*pair->get(0)), percent = number_of(*pair->get(1));
     if (!Range{0, std::numeric_limits<double>::infinity(), true}.contains(diameter))
       refuse("must have diameters > 0 mm");
     if (!Range{0, 100}.contains(percent))

@@ -24,6 +24,14 @@ Eigen::Matrix3i compact_periods(const Mat3 &edges);
 /// H U with the U above, m.
 inline Mat3 compact_edges(const Mat3 &edges) { return edges * compact_periods(edges).cast<double>(); }
 
+/// How far a place is from the cell at the origin, in edges: the largest of its three coordinates along them. Beyond
+/// max_edges_away nothing is a state that a run can have come to.
+inline constexpr double max_edges_away = 1e6;
+inline double edges_away(const Mat3 &edges, const Vec3 &place)
+{
+  return (edges.inverse() * place).cwiseAbs().maxCoeff();
+}
+
 /// Distance of a grain from the nearest of its own images, whatever edges describe the lattice, m.
 inline double shortest_period(const Mat3 &edges) { return compact_edges(edges).colwise().norm().minCoeff(); }
 } // namespace isostat

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/neighbours/periodic_grid.hpp"
 
+#include "base/error.hpp"
 #include "dem/domain/lattice.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 
 namespace isostat
@@ -60,6 +62,10 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &given_edges, do
     {
       const Vec3 fraction = to_fraction * packing.centre(i);
       const Vec3 whole = fraction.array().floor();
+      if (!(whole.cwiseAbs().maxCoeff() <= max_edges_away))
+        throw RunFailure(fmt::format("grain {} (id {}) is {:.3g} edges away from the periodic cell; grains are within "
+                                     "{:.0g}. Take smaller time steps or softer grains.",
+                                     i, packing.id[i], whole.cwiseAbs().maxCoeff(), max_edges_away));
       cells.turns.emplace_back(whole.cast<int>());
       place[i] = packing.centre(i) - edges * whole;
       Index3 c;
@@ -106,6 +112,17 @@ Neighbour beside(int cell, int step, int n)
   return at < 0 ? Neighbour{n - 1, -1} : at == n ? Neighbour{0, 1} : Neighbour{at, 0};
 }
 
+ImageCode image_of_pair(const WrappedCells &cells, std::uint32_t i, std::uint32_t j, const Eigen::Vector3i &shift)
+{
+  const Eigen::Vector3i image = cells.periods * (cells.turns[i] - cells.turns[j] + shift);
+  if (image.cwiseAbs().maxCoeff() > max_image)
+    throw RunFailure(
+        fmt::format("grains {} and {} are neighbours through {} edges of the periodic cell; at most {} can "
+                    "be told apart. Start from a packing whose grains are in its cell.",
+                    i, j, image.cwiseAbs().maxCoeff(), max_image));
+  return image_code(image);
+}
+
 /// Appends grains after `i` of one grid cell, seen through `shift` faces, that are within reach of it.
 void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const Eigen::Vector3i &shift, double skin,
                      std::vector<Partner> &out)
@@ -121,7 +138,7 @@ void collect_in_cell(const WrappedCells &cells, std::uint32_t i, int cell, const
       const double dx = q[0] - x, dy = q[1] - y, dz = q[2] - z, reach = reach_i + q[3];
       const std::uint32_t j = *later;
       if (dx * dx + dy * dy + dz * dz < reach * reach)
-        out.push_back({j, image_code(cells.periods * (cells.turns[i] - cells.turns[j] + shift))});
+        out.push_back({j, image_of_pair(cells, i, j, shift)});
     }
 }
 

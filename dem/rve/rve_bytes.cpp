@@ -9,6 +9,7 @@
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "dem/contact/law_parameters.hpp"
+#include "dem/domain/lattice.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/state/state_fault.hpp"
 
@@ -89,6 +90,9 @@ std::string fault_of(const Snapshot &start, const RveState &whole)
     return "their rows are not as long as grains and contacts are many";
   if (!all_finite(state.grains) || !all_finite(state.history) || !state.virial.allFinite())
     return "they hold a number that is not finite";
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(edges_away(state.cell.edges, Vec3(&state.grains[15 * i])) <= max_edges_away))
+      return fmt::format("grain {} is too far away from their periodic cell", i);
   if (!(state.time_step > 0 && std::isfinite(state.time_step) && std::isfinite(state.time)))
     return fmt::format("they have a time step of {} s", state.time_step);
   bool numbers_are = true;

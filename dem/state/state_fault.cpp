@@ -2,6 +2,7 @@
 #include "dem/state/state_fault.hpp"
 
 #include "dem/contact/history.hpp"
+#include "dem/domain/lattice.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -30,6 +31,15 @@ std::string grain_fault(const Packing &grains)
         return fmt::format("grain {} (id {}) has radius {} m, 1/mass {} 1/kg, 1/inertia {} 1/(kg m2); expected all > 0",
                            i, grains.id[i], r, inverse_mass, inverse_inertia);
     }
+  return {};
+}
+
+std::string place_fault(const Packing &grains, const PeriodicCell &cell)
+{
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    if (const double away = edges_away(cell.edges, grains.centre(i)); !(away <= max_edges_away))
+      return fmt::format("grain {} (id {}) is {:.3g} edges away from the periodic cell; expected at most {:.0g}", i,
+                         grains.id[i], away, max_edges_away);
   return {};
 }
 
@@ -93,7 +103,9 @@ std::string state_fault(const Snapshot &state)
   if (!state.strain.allFinite() || !Eigen::Map<const Vec3>(walls.rate).allFinite() ||
       !Eigen::Map<const Vec3>(walls.shift).allFinite())
     return "its strain or the motion of its walls is not finite";
-  std::string grains = grain_fault(state.grains);
-  return grains.empty() ? contact_fault(state) : grains;
+  std::string found = grain_fault(state.grains);
+  if (found.empty() && state.cell)
+    found = place_fault(state.grains, *state.cell);
+  return found.empty() ? contact_fault(state) : found;
 }
 } // namespace isostat

@@ -21,6 +21,10 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t *data, std::size_t size, st
 extern "C" __attribute__((weak)) std::size_t LLVMFuzzerCustomMutator(std::uint8_t *data, std::size_t size,
                                                                      std::size_t most, unsigned seed);
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());
+extern "C" const char *__ubsan_default_options() // which has a callback of its own: the signal does for it
+{
+  return "abort_on_error=1:print_stacktrace=1";
+}
 
 namespace
 {

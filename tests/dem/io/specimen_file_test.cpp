@@ -105,6 +105,10 @@ TEST_F(SpecimenFile, BadStatesAreRefusedBothWays)
   s.box.upper = s.box.lower;
   EXPECT_THAT(refused(s), HasSubstr("the box has edges 0"));
   s = small_snapshot();
+  s.cell = PeriodicCell::with_edges({1e-3, 1e-3, 1e-3});
+  s.grains.position[4] = 1e200;
+  EXPECT_THAT(refused(s), HasSubstr("grain 1 (id 3) is 1e+203 edges away from the periodic cell"));
+  s = small_snapshot();
   s.grains = make_packing({}, {}, 2650);
   s.contacts.clear();
   s.wall_contacts.clear();

@@ -6,6 +6,7 @@
 #include "dem/neighbours/verlet_list.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -116,8 +117,8 @@ TEST(FindPairsInACell, EqualsBruteForceOverImages)
   Random random;
   std::size_t found = 0, across = 0;
   for (const Cell &cell : cells())
-    for (const double skin : {0.0, 1e-3, 0.1})
-      for (const int far : {0, 1, 100})
+    for (const double skin : {0.0, 0.1})
+      for (const int far : {0, 100})
         {
           const Packing packing = random_packing(random, cell.n, cell.edges, 0.1, far);
           SCOPED_TRACE(testing::Message() << cell.name << " skin " << skin << " far " << far);
@@ -158,6 +159,29 @@ TEST(FindPairsInACell, OneGrainNearlyAsLargeAsTheCell)
       found += pairs.size();
     }
   EXPECT_GT(found, 1000u);
+}
+
+TEST(FindPairsInACell, WhatIsTooFarAwayIsNamed)
+{
+  const Mat3 edges = leaning(Vec3::Ones(), 0.3, 0, 0.2);
+  const Vec3 here(0.1, 0.2, 0.3), near(0.25, 0.2, 0.3);
+  const auto find = [&](double a) {
+    return find_pairs(make_packing({here, near + edges * Vec3(a, 0, 0)}, {0.1, 0.1}, 2650), edges, 0);
+  };
+  EXPECT_EQ(image_shift(find(511).second.at(0)), Eigen::Vector3i(-511, 0, 0));
+  const auto failure = [&](double a) {
+    try
+      {
+        find(a);
+      }
+    catch (const RunFailure &error)
+      {
+        return std::string(error.what());
+      }
+    return std::string();
+  };
+  test::expect_parts(failure(512), {"grains 0 and 1 are neighbours through 512 edges", "at most 511"});
+  test::expect_parts(failure(1e300), {"grain 1 (id 1) is 1e+300 edges away", "within 1e+06"});
 }
 
 TEST(FindPairsInACell, NoneOneAndTwo)
