@@ -132,7 +132,7 @@ struct Reading
   /// A quantity or number of a key that is not of this scene: whoever knows that key reads it.
   std::string plain(const toml::node &node) const
   {
-    if (const auto *text = node.as_string())
+    if (const auto *text = node.as_string(); text && !text->get().empty())
       {
         const auto number = plain_number(text->get());            // in quotes or without, it is the same
         return number ? number_text(*number + 0.0) : text->get(); // -0 is 0

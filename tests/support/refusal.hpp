@@ -9,15 +9,15 @@
 
 namespace isostat::test
 {
-/// The message with which a scene is refused; "accepted" if it is not.   @param parse  reads the scene
-template <typename Parse>
+/// The message with which a scene is refused, or a run fails; "accepted" if not.   @param parse  reads the scene
+template <typename Error = InputError, typename Parse>
 std::string refusal(const Parse &parse)
 {
   try
     {
       parse();
     }
-  catch (const InputError &error)
+  catch (const Error &error)
     {
       return error.what();
     }

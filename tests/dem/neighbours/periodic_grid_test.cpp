@@ -169,17 +169,7 @@ TEST(FindPairsInACell, WhatIsTooFarAwayIsNamed)
     return find_pairs(make_packing({here, near + edges * Vec3(a, 0, 0)}, {0.1, 0.1}, 2650), edges, 0);
   };
   EXPECT_EQ(image_shift(find(511).second.at(0)), Eigen::Vector3i(-511, 0, 0));
-  const auto failure = [&](double a) {
-    try
-      {
-        find(a);
-      }
-    catch (const RunFailure &error)
-      {
-        return std::string(error.what());
-      }
-    return std::string();
-  };
+  const auto failure = [&](double a) { return test::refusal<RunFailure>([&] { find(a); }); };
   test::expect_parts(failure(512), {"grains 0 and 1 are neighbours through 512 edges", "at most 511"});
   test::expect_parts(failure(1e300), {"grain 1 (id 1) is 1e+300 edges away", "within 1e+06"});
 }
