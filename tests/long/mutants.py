@@ -9,7 +9,7 @@ that none of them notices.
 BUILD is a configured build of its own: the sources that it was made from are changed, and changed back. Less than half
 the time than a release build takes one of -O1 with one instruction set:
     cmake --preset release -B BUILD "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG \
-'-DHWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3|HWY_AVX3_DL)'"
+-DHWY_DISABLED_TARGETS=HWY_SSSE3+HWY_SSE4+HWY_AVX3+HWY_AVX3_DL"
 What TABLE holds is not tried again.
 """
 import argparse
