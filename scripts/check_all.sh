@@ -11,11 +11,11 @@
 #   tidy        clang-tidy (.clang-tidy) on the libraries and programs, of the grains on the dozen sources that were
 #               changed last: one takes half a minute. Tests are left out, as the macros of GoogleTest break a dozen of its
 #               rules in each of them
-#   fuzz        only where it is named: each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each
-#               time: those of the grains as the sanitizers have built them, all others of the release preset
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
 #               what the sanitizers put in
+#   fuzz        each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each time: those of the grains
+#               as the sanitizers have built them, all others of the release preset
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -29,7 +29,7 @@ if [[ "${1:-}" == --grains ]]; then
   shift
 fi
 gates=("$@")
-((${#gates[@]})) || gates=(format docs tidy sanitizers)
+((${#gates[@]})) || gates=(format docs tidy sanitizers fuzz)
 
 format() {
   git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
