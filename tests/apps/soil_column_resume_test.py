@@ -21,7 +21,7 @@ from support import PATIENCE, contents, main
 class Resume(ColumnTest):
     """A run that is killed and resumed leaves the same files."""
 
-    OPTIONS = settings(analysis__duration="50 s", output__profile_interval="0.1 s", output__paraview_interval="2 s",
+    OPTIONS = settings(analysis__duration="20 s", output__profile_interval="0.1 s", output__paraview_interval="2 s",
                        output__checkpoint="1e-9 min")
 
     def interrupt(self, with_signal, expected, *more):

@@ -108,9 +108,10 @@ void change_bytes(Bytes &bytes)
       }
 }
 
-/// How many inputs there were.
-std::uint64_t run_changed(const std::vector<Bytes> &seeds, std::uint64_t number, double seconds, std::uint64_t seed)
+/// How many inputs there were. What readers take is changed further, so that changes add up.
+std::uint64_t run_changed(std::vector<Bytes> seeds, std::uint64_t number, double seconds, std::uint64_t seed)
 {
+  const std::size_t n_given = seeds.size(), most_kept = 4 * n_given + 100;
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   draw.seed(seed);
   for (std::uint64_t k = 0; k < number; ++k)
@@ -120,7 +121,14 @@ std::uint64_t run_changed(const std::vector<Bytes> &seeds, std::uint64_t number,
       Bytes bytes = seeds.empty() ? Bytes() : seeds[draw() % seeds.size()];
       change_bytes(bytes);
       name_if_it_breaks = "found-" + std::to_string(seed) + "-" + std::to_string(k);
-      run(std::move(bytes));
+      const std::uint64_t taken = isostat::fuzz::tally.taken;
+      run(bytes);
+      if (isostat::fuzz::tally.taken == taken || n_given == 0 || bytes.size() > most_bytes)
+        continue;
+      if (seeds.size() < most_kept)
+        seeds.push_back(std::move(bytes));
+      else
+        seeds[n_given + draw() % (most_kept - n_given)] = std::move(bytes);
     }
   return number;
 }
