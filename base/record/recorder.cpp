@@ -71,8 +71,8 @@ void Recorder::start_anew(const std::string &scene)
 
 std::uintmax_t Recorder::bytes_of_lines() const
 {
-  std::ifstream in(csv_,
-                   std::ios::binary); // line by line: a history of days is larger than the run that goes on with it
+  // line by line: a history of days is larger than the run that goes on with it
+  std::ifstream in(csv_, std::ios::binary);
   std::string line;
   std::getline(in, line);
   if (in.eof() || line + "\n" != header())

@@ -62,7 +62,7 @@ WrappedCells sort_into_cells(const Packing &packing, const Mat3 &given_edges, do
     {
       const Vec3 fraction = to_fraction * packing.centre(i);
       const Vec3 whole = fraction.array().floor();
-      if (!(whole.cwiseAbs().maxCoeff() <= max_edges_away))
+      if (!(whole.array().abs() <= max_edges_away).all())
         throw RunFailure(fmt::format("grain {} (id {}) is {:.3g} edges away from the periodic cell; grains are within "
                                      "{:.0g}. Take smaller time steps or softer grains.",
                                      i, packing.id[i], whole.cwiseAbs().maxCoeff(), max_edges_away));

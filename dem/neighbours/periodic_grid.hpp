@@ -17,6 +17,8 @@ double max_reach(const Packing &packing);
 /// @param edges  columns, m     @param skin  m, >= 0
 /// @pre the shortest period of the lattice exceeds 2 (max_reach() + skin): then a pair is near through one image only,
 ///      and, as no width of the compact cell is below 1/sqrt(2) of that period, through one face of it at most
+/// @throws RunFailure  a grain is beyond max_edges_away (lattice.hpp), or a pair is near through more than max_image
+/// edges (periodic_cell.hpp)
 /// cost: O(N) and 27 cells a grain; not in the loop
 /// tested: tests/dem/neighbours/periodic_grid_test.cpp (against all pairs and all images, sheared cells)
 std::pair<std::vector<ContactList::Pair>, std::vector<ImageCode>> find_pairs(const Packing &packing, const Mat3 &edges,
