@@ -51,6 +51,8 @@ class RandomCommands(AppTest):
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGTERM)
                 said = process.communicate(timeout=120)
+                if process.returncode == -signal.SIGTERM:
+                    return 130, "told to end before it had begun"
         return process.returncode, said[0] + said[1]
 
     def test_each_program(self):
