@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A packing that liquefies and stiffens twice in each cycle, and one that rests, for 1e7 steps each or as many as asked
-for, in pieces that end by SIGTERM and go on by --resume: memory, volume, energy, momentum and the size of the files
-stay what they are. Not part of the usual tests: ctest --preset long.
+"""A packing that liquefies and stiffens in each half of a cycle, and one that rests, for 1e7 steps each or as many as
+asked for, in pieces that end by SIGTERM and go on by --resume: memory, volume, energy, momentum and the size of the
+files stay what they are. Not part of the usual tests: ctest --preset long.
 
 ISOSTAT_SOAK_STEPS    of time (1e7)       ISOSTAT_SOAK_FOLDER   keeps the runs, and goes on with what is there
 ISOSTAT_SOAK_MINUTES  of a piece (1)
@@ -91,8 +91,9 @@ class Soak(AppTest):
         print(f"  {step[-1]:.0f} steps, {rows['reversals'][-1]:.0f} reversals, p' {p.min():.1f} to {p.max():.0f} Pa\n"
               f"  volume within {volume:.1e}, residual {np.abs(residual).max():.2e} J of {np.abs(work).max():.2e} J of "
               f"work, momentum {momentum:.1e} of the sum of all", flush=True)
-        self.assertLess(p.min(), 1e3)
-        self.assertGreater(p.max(), 1e5)
+        halves = [p[rows["reversals"][sheared] == half] for half in range(int(rows["reversals"][-1]))]
+        both = np.mean([half.min() < 1e3 and half.max() > 1e4 for half in halves])
+        self.assertGreater(both, 0.9, "it is liquid and stiff in each half of a cycle")
         self.assert_below(volume, 1e-12, "it is set from the sum of strains, which is zero to round-off")
         self.assert_below(np.abs(residual).max() / np.abs(work).max(), 0.02, "first order where contacts slide")
         self.assert_below(momentum, 0.5, "local damping takes from each grain by itself; it does not add up to a drift")
