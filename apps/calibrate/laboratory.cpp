@@ -18,6 +18,7 @@ constexpr double isotropy_tolerance = 0.25; ///< |q| / p' of the first row
 constexpr double greatest_ratio = 14;       ///< of principal stresses: an angle of friction of 60 deg
 constexpr double least_ratio = 1.2;         ///< at the largest |q|: what any sand reaches within half a percent
 constexpr double short_curve = 0.005;       ///< strain_end below which the last is not asked
+constexpr double greatest_stress = 1e12;    ///< Pa
 constexpr double first_strain = 0.003;      ///< up to here volumes change as an elastic body's
 constexpr double least_volume = 0.006;      ///< largest |eps_v| / strain_end
 
@@ -108,7 +109,12 @@ Table read_table(const PlanCurve &plan)
   for (std::size_t k = 0; k < names.size(); ++k)
     factors.push_back(k == 0 || (drained && k == 1) ? unit_factor(plan, names[k], strain_units, "a strain")
                                                     : unit_factor(plan, names[k], stress_units, "a stress"));
-  return {plan, std::move(cells), names, factors};
+  Table table{plan, std::move(cells), names, factors};
+  for (std::size_t row = 0; row < table.cells.n_rows(); ++row)
+    for (std::size_t k = drained ? 2 : 1; k < names.size(); ++k)
+      if (!(std::abs(table(row, k)) <= greatest_stress))
+        table.refuse(row, k, "is no stress of a soil. Correct the number, or the unit in the header.");
+  return table;
 }
 
 void check_strains(const Table &table, const Curve &curve)
