@@ -80,6 +80,9 @@ std::string fault_of(const Snapshot &start, const RveState &whole)
   for (const AlignedVector<double> *records : {&start.grains.position, &start.grains.velocity, &start.grains.spin})
     if (records->size() != numbers)
       return fmt::format("they have {} numbers where {} grains have {}", records->size(), n, numbers);
+  for (std::size_t i = n; i < n + Packing::n_padding; ++i)
+    if (start.grains.position[4 * i + 3] != 0)
+      return "the padding behind their grains has a radius";
   if (std::string found = state_fault(start); !found.empty())
     return found;
   const auto joins = [&](const ContactList::Pair &pair) { return pair.first < pair.second && pair.second < n; };
