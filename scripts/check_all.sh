@@ -14,8 +14,8 @@
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
 #               what the sanitizers put in
-#   fuzz        only where it is named: each fuzz target (tests/fuzz) for a minute, on inputs drawn anew: those of the grains
-#               as the sanitizers have built them, all others of the release preset
+#   fuzz        only where it is named: each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each
+#               time: those of the grains as the sanitizers have built them, all others of the release preset
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
