@@ -42,37 +42,35 @@ namespace
 
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
-/// Signals of the keyboard are ignored as long as this lives.
-class KeyboardIgnored
+volatile std::sig_atomic_t keyboard_signal = 0;
+
+/// Signals of the keyboard are noted, and do nothing else, as long as this lives.
+class KeyboardNoted
 {
 public:
-  KeyboardIgnored()
+  KeyboardNoted()
   {
-    sigemptyset(&signals_);
-    struct sigaction ignore = {};
-    ignore.sa_handler = SIG_IGN;
+    keyboard_signal = 0;
+    struct sigaction note = {};
+    note.sa_handler = [](int caught) { keyboard_signal = caught; };
     for (std::size_t k = 0; k < before_.size(); ++k)
       {
-        sigaction(keyboard[k], &ignore, &before_[k]);
+        sigaction(keyboard[k], nullptr, &before_[k]);
         if (before_[k].sa_handler != SIG_IGN) // as nohup would have it
-          sigaddset(&signals_, keyboard[k]);
+          sigaction(keyboard[k], &note, nullptr);
       }
   }
-  ~KeyboardIgnored()
+  ~KeyboardNoted()
   {
     for (std::size_t k = 0; k < before_.size(); ++k)
       sigaction(keyboard[k], &before_[k], nullptr);
   }
-  KeyboardIgnored(const KeyboardIgnored &) = delete;
-  KeyboardIgnored &operator=(const KeyboardIgnored &) = delete;
-
-  /// Those that were not ignored before.
-  const sigset_t &signals() const { return signals_; }
+  KeyboardNoted(const KeyboardNoted &) = delete;
+  KeyboardNoted &operator=(const KeyboardNoted &) = delete;
 
 private:
   static constexpr std::array keyboard = {SIGINT, SIGQUIT};
   std::array<struct sigaction, keyboard.size()> before_ = {};
-  sigset_t signals_;
 };
 
 /// The command that goes on with what is there.
@@ -125,18 +123,13 @@ void ChildProcess::stop() const { kill(id_, SIGTERM); }
 int run_program(std::vector<std::string> command, const fs::path &log)
 {
   const std::vector<char *> arguments = pointers_to(command);
-  const KeyboardIgnored ignored;
+  const KeyboardNoted noted; // the program has them by default: what is caught is not handed on
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawnattr_t how;
-  posix_spawnattr_init(&how);
-  posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGDEF);
-  posix_spawnattr_setsigdefault(&how, &ignored.signals());
   pid_t id = 0;
-  const int failure = posix_spawn(&id, arguments[0], &files, &how, arguments.data(), environ);
-  posix_spawnattr_destroy(&how);
+  const int failure = posix_spawn(&id, arguments[0], &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   if (failure != 0)
     throw RunFailure(fmt::format("{} cannot be started, or {} not be written: {}", command[0], log.string(),
@@ -144,7 +137,8 @@ int run_program(std::vector<std::string> command, const fs::path &log)
   int status = 0;
   while (waitpid(id, &status, 0) < 0 && errno == EINTR)
     ;
-  return code_of(status);
+  const int code = code_of(status);
+  return code != 0 && keyboard_signal != 0 ? 128 + keyboard_signal : code;
 }
 
 std::string last_line(const fs::path &log)

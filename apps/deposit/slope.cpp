@@ -22,7 +22,7 @@ constexpr double largest_friction = 60;
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // clang-format off
-constexpr Key keys[] = {
+constexpr Key in_slope[] = {
   {.path = "angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "0 deg",
    .range = {0, 60}, .reason = "because x points down the slope, and no slope of soil is steeper than 60 deg",
    .text = "Inclination of the surface to the horizontal.",
@@ -151,7 +151,7 @@ void check_table(const SceneDocument &document, const ColumnScene &scene)
 }
 } // namespace
 
-SceneFragment<Slope> slope_keys() { return {keys}; }
+SceneFragment<Slope> slope_keys() { return {in_slope}; }
 
 std::optional<SlopeSafety> slope_safety(const ColumnScene &scene)
 {

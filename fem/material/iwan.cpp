@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace isostat
 {
 namespace
 {
-constexpr double root3 = 1.7320508075688772;
 /// All parameters, in the order of their keys.
 std::vector<double> as_numbers(IwanParameters p)
 {
@@ -105,7 +105,7 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
     {
       const Stress &t = effective[i];
       const double p = -(t[0] + t[1] + t[2]) / 3;
-      const Shear s{(t[0] - t[1]) / 2, (2 * t[2] - t[0] - t[1]) / (2 * root3), t[3], t[4], t[5]};
+      const Shear s{(t[0] - t[1]) / 2, (2 * t[2] - t[0] - t[1]) / (2 * std::numbers::sqrt3), t[3], t[4], t[5]};
       const double size = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
       if (!(p > 0) || !std::isfinite(p))
         throw InputError(at_iwan_point(i) + "initial mean effective stress = " + std::to_string(p) +

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace isostat
 {
 namespace
 {
-constexpr double root3 = 1.7320508075688772;
 
 /// (p/p_ref)^n, without pow() for the usual exponents: that is most of the time of a step.
 double power(double ratio, double exponent)
@@ -43,7 +43,8 @@ double Iwan::shear_modulus(double p) const
 Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
 {
   const auto e = strain(h);
-  Increment d{{e[0] - e[1], (2 * e[2] - e[0] - e[1]) / root3, e[3], e[4], e[5]}, -(e[0] + e[1] + e[2]), 0};
+  Increment d{
+      {e[0] - e[1], (2 * e[2] - e[0] - e[1]) / std::numbers::sqrt3, e[3], e[4], e[5]}, -(e[0] + e[1] + e[2]), 0};
   double square = d.volumetric * d.volumetric;
   for (double g : d.shear)
     square += g * g;
@@ -151,7 +152,7 @@ void Iwan::integrate(const double *from, const Increment &d, double *to) const
 
 Stress Iwan::stress(const double *state) const
 {
-  const double p = state[pressure], a = state[deviator], b = state[deviator + 1] / root3;
+  const double p = state[pressure], a = state[deviator], b = state[deviator + 1] / std::numbers::sqrt3;
   return {a - b - p, -a - b - p, 2 * b - p, state[deviator + 2], state[deviator + 3], state[deviator + 4]};
 }
 

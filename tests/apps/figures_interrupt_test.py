@@ -12,16 +12,16 @@ from support import BIN, PATIENCE, MONOTONIC, contents, main, tiny_scene
 
 
 class Interrupted(ColumnTest):
-    def stop_drawing(self, *command, with_signal=signal.SIGINT):
-        """Runs it in a terminal of its own, and stops all in it when the figures have been begun. Returns what it said
-        on stderr."""
+    def stop_drawing(self, *command, with_signal=signal.SIGINT, after=0.1):
+        """Runs it in a terminal of its own, and stops all in it some seconds after the figures have been begun. Returns
+        what it said on stderr."""
         log = self.folder / "out/figures.log"
         with subprocess.Popen(self.command(*command, "-o", "out", "-q"), cwd=self.folder, start_new_session=True,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
             end = time.time() + 60 * PATIENCE
             while process.poll() is None and not log.exists() and time.time() < end:
                 time.sleep(0.005)
-            time.sleep(0.1)
+            time.sleep(after)
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, with_signal)
             said = process.communicate(timeout=60 * PATIENCE)[1]
@@ -52,9 +52,10 @@ class Interrupted(ColumnTest):
 
     def test_column(self):
         column = ("soil_column", self.scene, *settings(analysis__duration="0.05 s"))
-        for with_signal in (signal.SIGINT, signal.SIGTERM):
-            self.stop_drawing(*column, *(["--overwrite"] if with_signal == signal.SIGTERM else []),
-                              with_signal=with_signal)
+        moments = [(signal.SIGINT, after) for after in (0.0, 0.02, 0.04, 0.1)]  # as Python starts, and later
+        for k, (with_signal, after) in enumerate([*moments, (signal.SIGTERM, 0.1)]):
+            with self.subTest(with_signal=with_signal, after=after):
+                self.stop_drawing(*column, *(["--overwrite"] if k else []), with_signal=with_signal, after=after)
             (self.folder / "out/figures.log").unlink()
         self.assert_drawn_by_resume(*column)
 

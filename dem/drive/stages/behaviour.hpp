@@ -38,6 +38,9 @@ struct ServoSpec
   bool operator==(const ServoSpec &) const = default;
 };
 
+/// A stage that waits for balance fails after so many steps.
+inline constexpr std::uint64_t hopeless_steps = 20'000'000;
+
 /// What a stage works with. Its own settings are in the stage, what it remembers is in `state`.
 struct StageContext
 {

@@ -10,7 +10,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t check_interval = 200, min_steps = 1000, hopeless_steps = 20'000'000;
+constexpr std::uint64_t check_interval = 200, min_steps = 1000;
 }
 
 void Friction::begin(const StageContext &c) const

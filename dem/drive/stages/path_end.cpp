@@ -13,7 +13,7 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t rest_interval = 200, hopeless_steps = 20'000'000;
+constexpr std::uint64_t rest_interval = 200;
 constexpr double rest_tolerance = 0.005;  ///< relative to p', on the stresses at the end of a path that is not driven
 constexpr double start_tolerance = 0.001; ///< relative to p', on a stress that ends the path and is there already
 constexpr double hopeless_strain = 1; ///< driven, or of a path that drives nothing, where nothing ends it for sure [-]
