@@ -72,20 +72,21 @@ class FailingRuns(AppTest):
         self.assert_done(self.run_app(program, *arguments, *output))
 
     def every_call(self, program, *arguments, output=OUTPUT, goes_on=resumed, most=6, fewest=3):
-        """@param most  calls of a kind and a way of failing that are tried, unless all are   @param fewest  files"""
+        """@param most  calls of a kind that are tried, unless all are   @param fewest  files"""
         self.assert_done(self.run_app(program, *arguments, *output))
         whole = results(self.folder / "out")
         self.assertGreaterEqual(len(whole), fewest)
         command = self.command(program, *arguments, *output)
         tried = collections.Counter()
-        for kind in KINDS:
+        for k, kind in enumerate(KINDS):
             self.empty()
             result, n = self.run_failing(command, kind)
             self.assert_done(result)
             self.assertEqual(results(self.folder / "out"), whole, "a run that is watched is the same")
             self.assertGreater(n, 0, kind)
-            for calls in (1, 0):  # one call; all from then on
-                for at in range(1, n + 1, 1 if EVERY else max(1, -(-n // most))):
+            numbers = range(1, n + 1, 1 if EVERY else max(1, -(-n // most)))
+            for i, at in enumerate(numbers):
+                for calls in (1, 0) if EVERY else ((i + k) % 2,):  # this call, or all from then on
                     with self.subTest(program=program, kind=kind, at=at, calls=calls):
                         self.empty()
                         result, _ = self.run_failing(command, kind, at, calls)
