@@ -46,8 +46,8 @@ std::vector<char *> pointers_to(std::vector<std::string> &words);
 
 /// Runs a program to its end, without a shell. Ctrl-C ends that program, not this one.
 /// @param log  what it prints; replaced
-/// @return its exit code, or 128 + the signal that ended it or, from the keyboard, after which it failed: Python that is
-/// interrupted as it starts ends with 1
+/// @return its exit code, or 128 + the signal that ended it or, from the keyboard, after which it failed: Python ends
+/// with 1 when it is interrupted as it starts
 /// @throws RunFailure  it cannot be started, or the log not be written
 /// tested: tests/apps/report_test.py, tests/apps/figures_interrupt_test.py
 int run_program(std::vector<std::string> command, const std::filesystem::path &log);
