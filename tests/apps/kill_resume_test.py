@@ -17,6 +17,8 @@ EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
 
 
 class Resume(AppTest):
+    often = EVERY_256_STEPS
+
     def scene_text(self):
         return tiny_scene(stages=STAGES, output="energy = true", motion="inertial_number = 1e-4")
 
@@ -67,17 +69,17 @@ class Resume(AppTest):
 
     def test_sigkill(self):
         started = (self.folder / "parts/checkpoint/last.h5", True)
-        self.interrupt(signal.SIGKILL, -signal.SIGKILL, started, self.whole(*EVERY_256_STEPS), *EVERY_256_STEPS)
+        self.interrupt(signal.SIGKILL, -signal.SIGKILL, started, self.whole(*self.often), *self.often)
 
     def test_sigkill_with_damaged_last_checkpoint(self):
-        seconds = self.whole(*EVERY_256_STEPS)
+        seconds = self.whole(*self.often)
         checkpoints = self.folder / "parts/checkpoint"
         self.run_and_stop(0.2 * seconds, signal.SIGKILL, (checkpoints / "previous.h5", True), self.scene, "-o", "parts",
-                          *EVERY_256_STEPS)
+                          *self.often)
         for name in ("fresh.h5", "last.h5"):
             if (checkpoints / name).exists():
                 (checkpoints / name).write_bytes((checkpoints / name).read_bytes()[:5000])
-        self.assert_done(self.run_test(self.scene, "-o", "parts", "--resume", *EVERY_256_STEPS))
+        self.assert_done(self.run_test(self.scene, "-o", "parts", "--resume", *self.often))
         self.assert_same_results("whole", "parts")
 
     def test_resume_of_a_finished_run_changes_nothing(self):
@@ -106,6 +108,8 @@ class ResumeInACell(Resume):
 
 class ResumeInASmallCell(Resume):
     """The same where a cell of few grains is sheared by 200 %, exchanged for others of its lattice on the way."""
+
+    often = ("--set", "output.checkpoint=0.001 min")  # thousands of them would take a minute
 
     def scene_text(self):
         stages = (REBALANCE.format(steps=2500) + '[[stage]]\nkind = "undrained-simple-shear"\nstrain = 2\n'
