@@ -43,7 +43,8 @@ docs() {
 sources() {
   local all=("${folders[@]/%//*.cpp}")
   if [[ $preset == asan-grains ]]; then
-    git log -30 --format= --name-only -- "${all[@]}" | awk '!seen[$0]++' | xargs -r ls -U 2>/dev/null | head -n 12
+    git log -30 --format= --name-only -- "${all[@]}" |
+      awk 'NR == FNR { there[$0] = 1; next } there[$0] && !seen[$0]++ && ++n <= 12' <(git ls-files "${all[@]}") -
   else
     git ls-files "${all[@]}"
   fi
