@@ -155,7 +155,7 @@ bool run_campaign(Campaign &campaign, const RunPool &pool, const Options &option
 void find_resistance(Options options)
 {
   options.plan.ratios = parse_ratios(options.ratios);
-  const Scene scene = read_scene(options.scene, options.set);
+  const Scene scene = read_scene(options.scene, options.set, LeftOutLoads::given_later);
   const fs::path folder = output_folder(options.output, scene.output.folder + "_resistance");
   if (options.share.help(folder))
     return;

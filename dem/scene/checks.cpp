@@ -89,9 +89,8 @@ std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
   return prepared ? std::optional(scene.specimen.pressure) : std::nullopt;
 }
 
-/// Refuses loads that do not hold q = 0 and tau = 0, where these are known before the run. A campaign gives what its
-/// scene leaves out.
-void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i)
+/// Refuses loads that do not hold q = 0 and tau = 0, where these are known before the run.
+void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i, LeftOutLoads left_out)
 {
   const auto *shear = as<ShearStage>(scene.stages[i]);
   const std::optional<double> pressure = shear ? isotropic_before(scene, i) : std::nullopt;
@@ -101,15 +100,16 @@ void check_static_bias(const SceneDocument &document, const Scene &scene, std::s
   if (why.empty())
     return;
   const char *turn = shear->required_loads(*pressure)->low > 0 ? "turn.low" : "turn.high";
-  for (const auto &[given, blamed] :
+  for (const auto &[amplitude, blamed] :
        {std::pair{"deviator_amplitude", "deviator_average"}, {"stress_ratio", "static_stress_ratio"}, {turn, turn}})
-    if (document.find(fmt::format("stage.{}.{}", i, given)))
+    if (const std::string path = fmt::format("stage.{}.{}", i, blamed);
+        document.find(path) &&
+        (left_out == LeftOutLoads::default_ones || document.find(fmt::format("stage.{}.{}", i, amplitude))))
       document.refuse(
-          fmt::format("stage.{}.{}", i, blamed),
-          fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3, why));
+          path, fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3, why));
 }
 
-void check_stages(const SceneDocument &document, const Scene &scene)
+void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoads left_out)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     {
@@ -122,18 +122,18 @@ void check_stages(const SceneDocument &document, const Scene &scene)
                         fmt::format("there are {} stages before this one. Give as many or fewer.", i));
       if (behaviour(scene.stages[i]).needs_cell())
         need_cell(document, scene.specimen, kind, "change the kind");
-      check_static_bias(document, scene, i);
+      check_static_bias(document, scene, i, left_out);
     }
 }
 
 } // namespace
 
-void check_scene(const SceneDocument &document, Scene &scene)
+void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out)
 {
   check_groups(document, &scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);
-  check_stages(document, scene);
+  check_stages(document, scene, left_out);
 }
 } // namespace isostat

@@ -21,7 +21,7 @@ void forget_default_limits(const SceneDocument &document, SpecimenSpec &specimen
     specimen.e_max.reset();
 }
 
-Scene checked_scene(const SceneDocument &document)
+Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
 {
   Scene scene;
   fill_scene(document, &scene);
@@ -31,7 +31,7 @@ Scene checked_scene(const SceneDocument &document)
     scene.grading.curve.clear();
   if (document.find("grading.table") || document.find("specimen.file"))
     forget_default_limits(document, scene.specimen);
-  check_scene(document, scene);
+  check_scene(document, scene, left_out);
   return scene;
 }
 } // namespace
@@ -45,13 +45,13 @@ SpecimenPlace specimen_place(const std::string &file)
 
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)
 {
-  return checked_scene(SceneDocument(scene_schema(), text, name, overrides));
+  return checked_scene(SceneDocument(scene_schema(), text, name, overrides), LeftOutLoads::default_ones);
 }
 
-Scene read_scene(const std::string &path, const std::vector<std::string> &overrides)
+Scene read_scene(const std::string &path, const std::vector<std::string> &overrides, LeftOutLoads left_out)
 {
   const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
-  Scene scene = checked_scene(document);
+  Scene scene = checked_scene(document, left_out);
   if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
     scene.specimen.file =
         found_file(document, "specimen.file", path, place.path, true) + (place.entry.empty() ? "" : "#" + place.entry);

@@ -11,5 +11,5 @@ const SceneSchema &scene_schema();
 
 /// Rules that bind several keys: those that exclude each other, limits in order, what needs the periodic cell.
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
-void check_scene(const SceneDocument &document, Scene &scene);
+void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out);
 } // namespace isostat

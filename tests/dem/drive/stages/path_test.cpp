@@ -5,9 +5,11 @@
 #include "base/error.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/specimens.hpp"
+#include "tests/support/temporary_folder.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace isostat
 {
@@ -126,8 +128,20 @@ TEST(StaticBias, ThatIsotropicConsolidationCannotGiveIsRefusedAtReading)
   for (const char *set : {"specimen.consolidation=k0", "specimen.file=a.h5", "stage.0.deviator_average=0 kPa",
                           "stage.0.deviator_average=40.5 kPa", "stage.0.deviator_amplitude=90 kPa"})
     EXPECT_EQ(message(triaxial, {set}), "") << set;
-  EXPECT_EQ(message("[[stage]]\nkind = \"undrained-cyclic\"\ndeviator_average = \"80 kPa\"\n"), "")
-      << "a campaign gives the amplitude";
+}
+
+using ScenesOnDisk = TemporaryFolder;
+
+/// The written form of a scene has its default loads, and would be refused.
+TEST_F(ScenesOnDisk, DefaultLoadsCountAsWellUnlessACampaignGivesOthers)
+{
+  const std::string text = "[specimen]\npreparation_friction = \"10 deg\"\n[[stage]]\nkind = "
+                           "\"undrained-cyclic\"\ndeviator_average = \"80 kPa\"\n";
+  EXPECT_THAT(test::refusal([&] { parse_scene(text, "s.toml"); }),
+              testing::StartsWith("s.toml:5: stage.0.deviator_average = 80 kPa; cannot be held"));
+  const std::string path = put("s.toml", text).string();
+  EXPECT_THAT(test::refusal([&] { read_scene(path); }), testing::HasSubstr("cannot be held"));
+  EXPECT_NO_THROW(read_scene(path, {}, LeftOutLoads::given_later));
 }
 
 TEST(PathKeys, ShearNeedsTheCell)
