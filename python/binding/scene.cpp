@@ -33,7 +33,9 @@ void bind_scene(py::module_ &module)
       .def(py::init(&parse_scene), py::arg("text"), py::arg("name"), py::arg("overrides"))
       .def_static(
           "_read",
-          [](const std::string &path, const std::vector<std::string> &overrides) { return read_scene(path, overrides); },
+          [](const std::string &path, const std::vector<std::string> &overrides) {
+            return read_scene(path, overrides);
+          },
           py::arg("path"), py::arg("overrides"))
       .def_readonly("title", &Scene::title, "What heads tables and figures.")
       .def_readonly("law", &Scene::contact, "The contact law.")
