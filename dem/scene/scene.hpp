@@ -87,7 +87,7 @@ struct Scene
   bool operator==(const Scene &) const = default; ///< bit for bit, every field
 };
 
-/// The loads of a cyclic stage that a scene leaves out are the default ones, or a campaign gives them to each of its runs.
+/// Loads of a cyclic stage that a scene leaves out are the default ones, or a campaign gives them to each of its runs.
 enum class LeftOutLoads
 {
   default_ones,
@@ -101,6 +101,7 @@ enum class LeftOutLoads
 ///        c is a TOML value, or else plain text (`specimen.pressure=200 kPa`, `=200kPa`). An override of one of several
 ///        keys that exclude each other (specimen.void_ratio, motion.strain_rate, grading.table ...) takes the place of
 ///        the one in the file; two such overrides are an error.
+/// @param left_out   a static bias is not held against loads that are given later
 /// @throws InputError with file:line (or `--set a.b`), value, allowed range and remedy for an unknown key, a wrong unit
 ///         or type, a value out of range, a missing required key, keys that exclude each other, a missing file
 /// tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp

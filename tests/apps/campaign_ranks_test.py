@@ -128,7 +128,9 @@ class CampaignRanks(AppTest):
     def test_second_leader(self):
         leader = self.start(self.campaign("out"))
         self.wait_for(lambda: self.children(leader))
+        leader.send_signal(signal.SIGSTOP)
         self.assert_refused(self.run_app("liquefaction_resistance", self.scene, *RATIOS, "-o", "out"), "at work", "out")
+        leader.send_signal(signal.SIGCONT)
         self.assertEqual(self.ended(leader)[0], 0)
 
 
