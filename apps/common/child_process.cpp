@@ -78,7 +78,7 @@ std::vector<std::string> command_of(const ChildRun &run)
 {
   std::vector<std::string> words = run.command;
   if (fs::exists(run.results / "checkpoint" / "last.h5"))
-    words.push_back("--resume");
+    words.emplace_back("--resume");
   else
     fs::remove_all(run.results);
   return words;
@@ -101,6 +101,7 @@ pid_t start(const ChildRun &run, int kept_open)
 std::vector<char *> pointers_to(std::vector<std::string> &words)
 {
   std::vector<char *> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string &word : words)
     arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -109,7 +110,7 @@ std::vector<char *> pointers_to(std::vector<std::string> &words)
 
 ChildProcess::ChildProcess(const ChildRun &run, int kept_open) : id_(start(run, kept_open)) {}
 
-std::optional<int> ChildProcess::ended()
+std::optional<int> ChildProcess::ended() const
 {
   int status = 0;
   const pid_t found = waitpid(id_, &status, WNOHANG);

@@ -31,7 +31,7 @@ public:
   ChildProcess(const ChildRun &run, int kept_open);
 
   /// Its exit code, or 128 + the signal that ended it; nothing as long as it runs.
-  std::optional<int> ended();
+  std::optional<int> ended() const;
   /// Asks it to end, with a checkpoint.
   void stop() const;
   double seconds() const { return watch_.seconds(); }

@@ -104,6 +104,7 @@ bool run_all(const Campaign &campaign, const RunPool &pool, const std::vector<Ca
              const Options &options)
 {
   std::vector<ChildRun> children;
+  children.reserve(todo.size());
   for (const Campaign::Run *run : todo)
     children.push_back(child_of(campaign, *run));
   Stopwatch since_line;

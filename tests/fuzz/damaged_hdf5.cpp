@@ -124,6 +124,8 @@ void add_attribute(hid_t file, const std::string &object, const std::string &nam
   H5Aclose(id);
 }
 
+constexpr std::size_t most_values = 1'000'000; ///< a dataset that was damaged before may claim any number
+
 /// One value of a dataset, of whatever type.
 void change_value(hid_t file, const Member &member, Choices &choices)
 {
@@ -132,7 +134,7 @@ void change_value(hid_t file, const Member &member, Choices &choices)
     return;
   const hid_t space = H5Dget_space(id), type = H5Dget_type(id);
   const auto n = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
-  if (n > 0 && (H5Tget_class(type) == H5T_FLOAT || H5Tget_class(type) == H5T_INTEGER))
+  if (n > 0 && n <= most_values && (H5Tget_class(type) == H5T_FLOAT || H5Tget_class(type) == H5T_INTEGER))
     {
       std::vector<double> numbers(n);
       std::vector<std::uint64_t> counts(n);
