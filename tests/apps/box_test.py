@@ -4,6 +4,7 @@
 which restarts."""
 import json
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -123,8 +124,9 @@ class Box(ColumnTest):
         options = settings(mesh__distributed="true", analysis__duration="1 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(scene, "-o", "whole", *options))
         for n, then in ((1, 2), (2, 3), (3, 1)):
+            shutil.rmtree(self.folder / "parts", ignore_errors=True)  # its checkpoint is none of the next run
             with subprocess.Popen(["mpirun", "--oversubscribe", "-n", str(n), *self.command(
-                    "soil_column", scene, "-o", "parts", "--no-figures", "--overwrite", *options)], cwd=self.folder,
+                    "soil_column", scene, "-o", "parts", "--no-figures", *options)], cwd=self.folder,
                                   stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
                 end = time.time() + 60 * PATIENCE
                 while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
