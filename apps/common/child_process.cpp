@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/child_process.hpp"
 
+#include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 
 #include <array>
@@ -53,24 +54,14 @@ public:
     keyboard_signal = 0;
     struct sigaction note = {};
     note.sa_handler = [](int caught) { keyboard_signal = caught; };
-    for (std::size_t k = 0; k < before_.size(); ++k)
-      {
-        sigaction(keyboard[k], nullptr, &before_[k]);
-        if (before_[k].sa_handler != SIG_IGN) // as nohup would have it
-          sigaction(keyboard[k], &note, nullptr);
-      }
+    for (std::size_t k = 0; k < keyboard.size(); ++k)
+      if (kept_.before()[k].sa_handler != SIG_IGN) // as nohup would have it
+        sigaction(keyboard[k], &note, nullptr);
   }
-  ~KeyboardNoted()
-  {
-    for (std::size_t k = 0; k < before_.size(); ++k)
-      sigaction(keyboard[k], &before_[k], nullptr);
-  }
-  KeyboardNoted(const KeyboardNoted &) = delete;
-  KeyboardNoted &operator=(const KeyboardNoted &) = delete;
 
 private:
   static constexpr std::array keyboard = {SIGINT, SIGQUIT};
-  std::array<struct sigaction, keyboard.size()> before_ = {};
+  HandlersKept<keyboard.size()> kept_{keyboard};
 };
 
 /// The command that goes on with what is there.

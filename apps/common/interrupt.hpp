@@ -32,6 +32,32 @@ inline void catch_signals()
 
 inline bool stop_requested() { return detail::stop != 0; }
 
+/// What takes some signals, put back by `restore()` or once this is gone.
+template <std::size_t n>
+class HandlersKept
+{
+public:
+  explicit HandlersKept(const std::array<int, n> &signals) : signals_(signals)
+  {
+    for (std::size_t k = 0; k < n; ++k)
+      sigaction(signals_[k], nullptr, &before_[k]);
+  }
+  ~HandlersKept() { restore(); }
+  HandlersKept(const HandlersKept &) = delete;
+  HandlersKept &operator=(const HandlersKept &) = delete;
+
+  void restore() const
+  {
+    for (std::size_t k = 0; k < n; ++k)
+      sigaction(signals_[k], &before_[k], nullptr);
+  }
+  const std::array<struct sigaction, n> &before() const { return before_; }
+
+private:
+  std::array<int, n> signals_;
+  std::array<struct sigaction, n> before_ = {};
+};
+
 /// Signals are caught as long as this lives, for a run within a program that has handlers of its own: these take the
 /// second signal of a kind.
 /// tested: tests/python/column_test.py
@@ -40,18 +66,19 @@ class SignalsCaught
 public:
   SignalsCaught()
   {
-    for (std::size_t k = 0; k < detail::second.size(); ++k)
-      sigaction(detail::stopping[k], nullptr, &detail::second[k]);
+    detail::second = kept_.before();
     catch_signals();
   }
   ~SignalsCaught()
   {
-    for (std::size_t k = 0; k < detail::second.size(); ++k)
-      sigaction(detail::stopping[k], &detail::second[k], nullptr);
+    kept_.restore();
     detail::second = {};
     detail::stop = 0;
   }
   SignalsCaught(const SignalsCaught &) = delete;
   SignalsCaught &operator=(const SignalsCaught &) = delete;
+
+private:
+  HandlersKept<detail::stopping.size()> kept_{detail::stopping};
 };
 } // namespace isostat

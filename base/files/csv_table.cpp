@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
@@ -23,10 +25,14 @@ void reject(const fs::path &file, std::size_t line, const std::string &what)
 
 std::string read_text(const fs::path &path)
 {
-  std::error_code ignored;
-  gzFile file = fs::is_regular_file(path, ignored) ? gzopen(path.c_str(), "rb") : nullptr;
+  std::error_code absent;
+  const bool is_file = fs::is_regular_file(path, absent);
+  gzFile file = is_file ? gzopen(path.c_str(), "rb") : nullptr;
   if (!file)
-    throw InputError(fmt::format("{}: cannot be opened; check path and permissions", path.string()));
+    throw InputError(fmt::format("{}: cannot be opened: {}; check path and permissions", path.string(),
+                                 is_file  ? std::strerror(errno)
+                                 : absent ? absent.message()
+                                          : "it is not a file"));
   std::string text;
   std::array<char, 1 << 16> buffer;
   int n = 0;

@@ -27,9 +27,12 @@ std::string enumerate(const std::vector<std::string> &words)
   return text;
 }
 
-/// Levenshtein distance: insertions, deletions and substitutions that turn one word into the other.
-std::size_t typing_errors(std::string_view a, std::string_view b)
+/// Levenshtein distance: insertions, deletions and substitutions that turn one word into the other. `most` or more is
+/// as good as `most`.
+std::size_t typing_errors(std::string_view a, std::string_view b, std::size_t most)
 {
+  if (std::max(a.size(), b.size()) >= most + std::min(a.size(), b.size()))
+    return most;
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i)
@@ -42,6 +45,8 @@ std::size_t typing_errors(std::string_view a, std::string_view b)
           row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
           diagonal = above;
         }
+      if (*std::ranges::min_element(row) >= most)
+        return most;
     }
   return row[b.size()];
 }
@@ -121,13 +126,15 @@ std::string SceneSchema::schema_path(std::string_view path) const
 
 std::string SceneSchema::nearest_path(std::string_view unknown) const
 {
-  std::string best;
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
   const std::string_view word = last_word(unknown);
+  std::string best;
+  std::size_t fewest = 1 + std::max<std::size_t>(4, word.size());
   const auto offer = [&](std::string_view path) {
     // a word in the wrong section is nearer than another word in the right one, and so is a part of a longer word
     const bool other_section = path.substr(0, path.find('.')) != unknown.substr(0, unknown.find('.'));
-    std::size_t errors = std::min(2 * typing_errors(unknown, path), 2 * typing_errors(word, last_word(path)) + 1);
+    const std::size_t most = (fewest + 1) / 2;
+    std::size_t errors =
+        std::min(2 * typing_errors(unknown, path, most), 2 * typing_errors(word, last_word(path), most) + 1);
     if (word.size() > 2 && last_word(path).find(word) != std::string_view::npos)
       errors = std::min<std::size_t>(errors, 3 + other_section);
     if (errors < fewest)
@@ -140,7 +147,7 @@ std::string SceneSchema::nearest_path(std::string_view unknown) const
     offer(key.path);
   for (const Section &section : sections)
     offer(section.name);
-  return fewest <= std::max<std::size_t>(4, word.size()) ? best : "";
+  return best;
 }
 
 std::string toml_text(std::string_view text)
