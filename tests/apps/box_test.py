@@ -131,8 +131,8 @@ class Box(ColumnTest):
                 end = time.time() + 60 * PATIENCE
                 while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
                     time.sleep(0.005)
-                process.send_signal(signal.SIGTERM)
-                process.communicate(timeout=60 * PATIENCE)
+                process.send_signal(signal.SIGUSR1)
+                self.assertEqual(process.wait(timeout=60 * PATIENCE), 130, "stopped before its end")
             self.assert_done(self.run_on_ranks(then, scene, "-o", "parts", "--resume", *options))
             one, other = (json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
                           for name in ("whole", "parts"))
