@@ -94,14 +94,14 @@ inline ForceMisfit misfit_of_forces(const Snapshot &a, const Snapshot &b, const 
   return worst;
 }
 
-/// A loose packing of 500 grains, sheared to shortly before its cell is exchanged for a more upright one; after move().
+/// A dense packing of 500 grains, sheared to shortly before its cell is exchanged for a more upright one; after move().
 /// Made once per program and kept.
 inline const Snapshot &before_flip(double shear_step)
 {
   static std::map<double, Snapshot> made;
   if (!made.contains(shear_step))
     {
-      Assembly a(periodic_specimen(500, 20));
+      Assembly a(periodic_specimen(500, 10));
       const auto lean = [&] {
         const Mat3 &e = a.cell()->edges;
         return e.col(0).dot(e.col(1)) / std::min(e.col(0).squaredNorm(), e.col(1).squaredNorm());
