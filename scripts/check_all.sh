@@ -3,7 +3,7 @@
 # The gates beside the tests of the release preset. All are tried, and the last lines say what each found.
 #
 #   scripts/check_all.sh             the whole tree, with fem, coupling and MPI: more than an hour on two cores
-#   scripts/check_all.sh --grains    base and dem alone: some 20 minutes
+#   scripts/check_all.sh --grains    base and dem alone: some 25 minutes
 #   scripts/check_all.sh [--grains] GATE...    only these of the gates
 #
 #   format      clang-format on every file
@@ -14,8 +14,8 @@
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
 #               what the sanitizers put in
-#   fuzz        only where it is named: each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each
-#               time: those of the grains as the sanitizers have built them, all others of the release preset
+#   fuzz        each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each time: those of the grains
+#               as the sanitizers have built them, all others of the release preset
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -29,7 +29,7 @@ if [[ "${1:-}" == --grains ]]; then
   shift
 fi
 gates=("$@")
-((${#gates[@]})) || gates=(format docs tidy sanitizers)
+((${#gates[@]})) || gates=(format docs tidy sanitizers fuzz)
 
 format() {
   git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
