@@ -30,7 +30,7 @@ struct BiotCell
 
 /// @param layer  coefficients of the cell's layer   @param storage  1/Q of every point of the mesh
 /// @return zeros above the water table
-/// tested: tests/fem/water/pressure_system_test.cpp, tests/verification/consolidation_test.cpp
+/// tested: tests/fem/water/biot_integrals_test.cpp, tests/verification/consolidation_test.cpp
 BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::span<const double> storage,
                    std::size_t cell);
 

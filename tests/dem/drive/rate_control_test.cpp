@@ -158,6 +158,21 @@ TEST(BoundedRate, IsLowWhereThePackingIsStiff)
   EXPECT_EQ(bounded_rate(pace, loading), 10);
 }
 
+TEST(QuasiStaticIndicator, IsTheLargestOfItsParts)
+{
+  Assembly assembly(test::specimen(500, 10));
+  assembly.settings.time_step = dt;
+  assembly.compute_forces();
+  const double p = 150e3, fast = 1e4;
+  const double inertia = 10 * inertial_number(fast, assembly.d50(), assembly.packing().density, p),
+               imbalance = assembly.unbalanced_force_ratio(),
+               walls = (assembly.wall_stress() - assembly.contact_stress()).cwiseAbs().maxCoeff() / p;
+  EXPECT_GT(inertia, std::max(imbalance, walls));
+  EXPECT_GT(std::min(imbalance, walls), 0);
+  EXPECT_DOUBLE_EQ(quasi_static_indicator(assembly, p, 200e3, fast), inertia);
+  EXPECT_DOUBLE_EQ(quasi_static_indicator(assembly, p, 200e3, 0), std::max(imbalance, walls));
+}
+
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)
 {
   Assembly assembly(test::specimen(500, 10));

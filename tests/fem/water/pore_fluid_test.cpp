@@ -31,6 +31,9 @@ TEST(PoreFluid, SaturatedSoilStoresInItsWaterAlone)
   EXPECT_EQ(fluid(1, 0, AirLaw::boyle).storage(-5e4), n / k_w);
   EXPECT_FALSE(has_boyle_air({{{.name = "", .saturation = 1}}, {.air = AirLaw::boyle}}));
   EXPECT_TRUE(has_boyle_air({{{.name = "", .saturation = 1}}, {.air = AirLaw::boyle, .henry = 0.02}}));
+  const Layer wet{.name = "wet", .saturation = 1}, moist{.name = "moist", .saturation = 0.98};
+  EXPECT_TRUE(has_boyle_air({{wet, moist}, {.air = AirLaw::boyle}}));
+  EXPECT_FALSE(has_boyle_air({{wet, moist}, {.air = AirLaw::constant}}));
 }
 
 /// 1/K_f = S/K_w + (1 - S)/p_abs; Skempton's B = 1/(1 + n K'/K_f) of a skeleton of 50 MPa at 10 m.
