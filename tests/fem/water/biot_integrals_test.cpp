@@ -49,15 +49,15 @@ void integrals_are_exact(unsigned degree)
     {
       const BiotCell c = biot_cell(space, {mobility, density}, everywhere, cell);
       const Eigen::VectorXd one = Eigen::VectorXd::Ones(space.pressure_nodes_per_cell());
+      std::vector<Coordinate> axes;
       double volume = 1;
-      for (const int axis : mesh_axes[dim])
+      for (std::size_t d = 0; d < dim; ++d)
         {
-          const Coordinate x = coordinate(space, cell, axis);
-          volume *= x.high - x.low;
+          axes.push_back(coordinate(space, cell, mesh_axes[dim][d]));
+          volume *= axes.back().high - axes.back().low;
         }
-      for (const int axis : mesh_axes[dim])
+      for (const Coordinate &x : axes)
         {
-          const Coordinate x = coordinate(space, cell, axis);
           const double middle = (x.low + x.high) / 2, square = (x.low * x.low + x.low * x.high + x.high * x.high) / 3;
           EXPECT_CLOSE_BECAUSE(one.dot(c.g * x.nodes), volume, round_off);
           EXPECT_CLOSE_BECAUSE(x.corners.dot(c.g * x.nodes), volume * middle, round_off);
