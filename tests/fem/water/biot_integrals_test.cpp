@@ -16,7 +16,8 @@ MeshSpec uneven(unsigned degree)
   return {.soil = {.layers = {{.name = "soil", .thickness = 6, .cells = 2}}, .water = {}},
           .width = {4, 2.5},
           .cells_across = {2, 1},
-          .degree = degree};
+          .degree = degree,
+          .gauss_points = 2};
 }
 
 /// The coordinate along an axis at the corners of a cell, and as the displacement along it at its nodes.
