@@ -16,8 +16,7 @@ MeshSpec uneven(unsigned degree)
   return {.soil = {.layers = {{.name = "soil", .thickness = 6, .cells = 2}}, .water = {}},
           .width = {4, 2.5},
           .cells_across = {2, 1},
-          .degree = degree,
-          .gauss_points = 2};
+          .degree = degree};
 }
 
 /// The coordinate along an axis at the corners of a cell, and as the displacement along it at its nodes.
@@ -59,7 +58,9 @@ void integrals_are_exact(unsigned degree)
         }
       for (const Coordinate &x : axes)
         {
-          const double middle = (x.low + x.high) / 2, square = (x.low * x.low + x.low * x.high + x.high * x.high) / 3;
+          const double middle = (x.low + x.high) / 2,
+                       square = space.points_per_cell() == 1 ? middle * middle // the rule of one point
+                                                             : (x.low * x.low + x.low * x.high + x.high * x.high) / 3;
           EXPECT_CLOSE_BECAUSE(one.dot(c.g * x.nodes), volume, round_off);
           EXPECT_CLOSE_BECAUSE(x.corners.dot(c.g * x.nodes), volume * middle, round_off);
           EXPECT_CLOSE_BECAUSE(x.corners.dot(c.l * x.nodes), mobility * density * volume * middle, round_off);
