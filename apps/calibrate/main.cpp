@@ -18,6 +18,7 @@
 #include "apps/common/result_folder.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
+#include "base/record/tell.hpp"
 #include "base/scene/reader.hpp"
 
 #include <algorithm>
@@ -158,7 +159,7 @@ void calibrate(const Options &options)
   element_test_program();
   const auto say = [&](const std::string &line) {
     if (!options.quiet)
-      fmt::print(stderr, "{}\n", line);
+      tell(fmt::format("{}\n", line));
   };
   TaskQueue queue(folder / "queue");
   Trials trials(plan, scenes, folder, {queue, options.share.jobs}, say); // reads the laboratory before all writing

@@ -3,6 +3,7 @@
 
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/record/checkpoint_folder.hpp"
 
 #include <array>
 #include <cerrno>
@@ -68,7 +69,7 @@ private:
 std::vector<std::string> command_of(const ChildRun &run)
 {
   std::vector<std::string> words = run.command;
-  if (fs::exists(run.results / "checkpoint" / "last.h5"))
+  if (!checkpoints_of(run.results / "checkpoint").empty())
     words.emplace_back("--resume");
   else
     fs::remove_all(run.results);

@@ -5,8 +5,11 @@
 #include "base/record/installation.hpp"
 #include "base/record/instruction_set.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <new>
@@ -36,13 +39,30 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
   return told.value_or(code);
 }
 
+namespace
+{
+/// What is closed of the standard files would be the next file that a program opens, and take what it tells.
+void open_standard_files()
+{
+  for (int number = 0; number < 3; ++number)
+    if (fcntl(number, F_GETFD) < 0) [[maybe_unused]]
+      const int opened = open("/dev/null", number == 0 ? O_RDONLY : O_WRONLY);
+}
+} // namespace
+
 int guarded(const std::function<void()> &program)
 {
+  open_standard_files();
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond its limit (ulimit -f) is an error of write(), with a message
+  std::signal(SIGPIPE, SIG_IGN); // who reads what is told may have ended: a run goes on
   try
     {
       use_instruction_set_of_environment();
       program();
+      errno = 0;
+      if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw RunFailure(fmt::format("what is printed cannot be written: {}; files of results are whole",
+                                     std::strerror(errno ? errno : EIO)));
       return 0;
     }
   catch (const InputError &error)

@@ -9,25 +9,28 @@ namespace isostat
 namespace detail
 {
 inline volatile std::sig_atomic_t stop = 0;
-inline constexpr std::array stopping = {SIGINT, SIGTERM, SIGUSR1};
+inline constexpr std::array stopping = {SIGINT, SIGTERM, SIGUSR1, SIGHUP, SIGXCPU};
 inline std::array<struct sigaction, stopping.size()> second = {}; ///< what takes the second signal of each kind
 } // namespace detail
 
 /// Those that catch_signals() catches.
 inline constexpr const auto &stopping_signals = detail::stopping;
 
-/// From here on SIGINT, SIGTERM and SIGUSR1 only raise a flag; the run stops after the step it is in and writes a
-/// checkpoint. A second signal of the kind ends the program at once. SIGUSR1 is the one that mpirun hands on to the
-/// ranks without ending them itself.
+/// From here on SIGINT, SIGTERM, SIGUSR1, SIGHUP (a closed terminal) and SIGXCPU (the limit of a queue) only raise a
+/// flag; the run stops after the step it is in and writes a checkpoint. A second signal of the kind ends the program at
+/// once. One that is ignored, as nohup does, stays so. SIGUSR1 is the one that mpirun hands on to the ranks without
+/// ending them itself.
 inline void catch_signals()
 {
+  const auto note = [](int caught) {
+    detail::stop = 1;
+    for (std::size_t k = 0; k < detail::second.size(); ++k)
+      if (detail::stopping[k] == caught)
+        sigaction(caught, &detail::second[k], nullptr);
+  };
   for (int signal : detail::stopping)
-    std::signal(signal, [](int caught) {
-      detail::stop = 1;
-      for (std::size_t k = 0; k < detail::second.size(); ++k)
-        if (detail::stopping[k] == caught)
-          sigaction(caught, &detail::second[k], nullptr);
-    });
+    if (std::signal(signal, note) == SIG_IGN)
+      std::signal(signal, SIG_IGN);
 }
 
 inline bool stop_requested() { return detail::stop != 0; }

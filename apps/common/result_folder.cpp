@@ -8,6 +8,7 @@
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
 #include "base/record/instruction_set.hpp"
+#include "base/record/tell.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -226,7 +227,7 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   if (code != 0 && code != without_report)
     return fmt::format("figures were not drawn: {} ({})", last_line(log), log.string());
   if (code == without_report)
-    fmt::print(stderr, "{}\n", last_line(log));
+    tell(fmt::format("{}\n", last_line(log)));
   return fmt::format("figures in {}", (folder / "figures").string()) +
          (code == 0 ? fmt::format(", all on one page in {}", (folder / "report.html").string()) : std::string());
 }

@@ -106,7 +106,13 @@ void RunOutput::save_checkpoint(const Assembly &assembly, const DriveState &stat
 void restore(const Checkpoint &checkpoint, Assembly &assembly)
 {
   EnergyMemory memory;
-  EnergyMemory::for_each(memory, [&](const std::string &name, auto &value) { value = checkpoint.assembly.at(name); });
+  EnergyMemory::for_each(memory, [&](const std::string &name, auto &value) {
+    const auto found = checkpoint.assembly.find(name);
+    if (found == checkpoint.assembly.end())
+      throw InputError(
+          fmt::format("the checkpoint holds no assembly/@{}; it is damaged. Start anew with --overwrite.", name));
+    value = found->second;
+  });
   assembly.set_energy_memory(memory);
 }
 } // namespace isostat

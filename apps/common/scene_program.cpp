@@ -3,7 +3,9 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/record/checkpoint_folder.hpp"
 #include "base/record/instruction_set.hpp"
+#include "base/record/tell.hpp"
 #include "base/scene/reader.hpp"
 
 #include <fmt/format.h>
@@ -69,6 +71,13 @@ bool print_something(const SceneProgram &program, const SceneOptions &options)
 
 int SceneProgram::main(int argc, char **argv) const
 {
+  int code = 0;
+  const int failed = guarded([&] { code = parse_and_run(argc, argv); }); // memory may end before the line is parsed
+  return failed != 0 ? failed : code;
+}
+
+int SceneProgram::parse_and_run(int argc, char **argv) const
+{
   CLI::App line(description);
   SceneOptions options;
   options.threads = threads;
@@ -103,7 +112,7 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
 void note_instruction_set(const std::string &made_with)
 {
   if (const std::string note = other_instruction_set(made_with); !note.empty())
-    fmt::print(stderr, "note: {}\n", note);
+    tell(fmt::format("note: {}\n", note));
 }
 
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures)
@@ -141,9 +150,8 @@ RunFailure failure_of_run(const RunFailure &failure, const std::filesystem::path
       if (what.find(error.what()) == std::string::npos)
         what += fmt::format("\n  and then: {}", error.what());
     }
-  const std::filesystem::path last = folder / "checkpoint" / "last.h5";
-  std::error_code ignored;
-  const bool there = std::filesystem::exists(last, ignored);
-  return RunFailure(fmt::format("{}\n  last good checkpoint: {}", what, there ? last.string() : "there is none"));
+  const std::vector<std::filesystem::path> checkpoints = checkpoints_of(folder / "checkpoint");
+  return RunFailure(fmt::format("{}\n  last good checkpoint: {}", what,
+                                checkpoints.empty() ? "there is none" : checkpoints.front().string()));
 }
 } // namespace isostat

@@ -53,6 +53,9 @@ struct SceneProgram
 
   /// From the command line to the exit code.
   int main(int argc, char **argv) const;
+
+private:
+  int parse_and_run(int argc, char **argv) const;
 };
 
 /// First line in which two texts differ, as it stands in the second.

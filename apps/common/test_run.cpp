@@ -4,7 +4,9 @@
 #include "apps/common/run_output.hpp"
 #include "apps/common/stage_report.hpp"
 #include "base/error.hpp"
+#include "base/record/tell.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace isostat
@@ -57,11 +59,26 @@ TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSetti
   return run;
 }
 
+namespace
+{
+/// @throws InputError  it speaks of stages that the scene does not have
+void check_stages(const DriveState &state, std::size_t n_stages, const fs::path &folder)
+{
+  const auto has = [&](const auto &told) { return told.stage < n_stages; };
+  if (state.place.stage > n_stages || !std::ranges::all_of(state.early_ends, has) ||
+      !std::ranges::all_of(state.control.losses, has))
+    throw InputError(fmt::format("{}: the checkpoint speaks of stages beyond the {} of the scene; it is damaged. Start "
+                                 "anew with --overwrite.",
+                                 folder.string(), n_stages));
+}
+} // namespace
+
 TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettings &how)
 {
   TestRun run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
   check_same_scene(folder, run.resumed->scene, to_toml(scene));
+  check_stages(run.resumed->drive, scene.stages.size(), folder);
   note_instruction_set(run.resumed->instruction_set);
   run.assembly = std::make_shared<Assembly>(run.resumed->state, how);
   restore(*run.resumed, *run.assembly);
@@ -99,7 +116,7 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
   write_json(folder / "summary.json", summary);
   for (const std::string &line : stage_warnings(run.state, scene))
-    fmt::print(stderr, "warning: {}\n", line);
+    tell(fmt::format("warning: {}\n", line));
   return summary;
 }
 } // namespace isostat

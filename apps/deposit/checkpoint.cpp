@@ -90,6 +90,15 @@ const std::vector<double> &ColumnCheckpoint::vector(const std::string &name) con
   return field(*this, vectors, name);
 }
 
+const std::vector<double> &ColumnCheckpoint::vector(const std::string &name, std::size_t size) const
+{
+  const std::vector<double> &values = vector(name);
+  if (values.size() != size)
+    throw InputError(fmt::format("{}: {} are {} numbers, not {}: the file is damaged. Start anew with --overwrite.",
+                                 file, name, values.size(), size));
+  return values;
+}
+
 void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCheckpoint &checkpoint)
 {
   write_newest(folder, [&](hdf5::Group root) {

@@ -38,6 +38,8 @@ struct ColumnCheckpoint
   double number(const std::string &name) const;
   std::size_t count(const std::string &name) const; ///< @throws InputError  no whole number either
   const std::vector<double> &vector(const std::string &name) const;
+  /// @throws InputError  it has another length, too
+  const std::vector<double> &vector(const std::string &name, std::size_t size) const;
 };
 
 /// A number of a checkpoint that counts; 0 without one.   @throws InputError  the file lacks it

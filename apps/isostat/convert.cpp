@@ -3,6 +3,7 @@
 
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
+#include "base/record/tell.hpp"
 #include "base/units.hpp"
 #include "dem/prepare/convert.hpp"
 #include "dem/prepare/packing_check.hpp"
@@ -69,7 +70,7 @@ void run(ConvertLine asked)
   const Snapshot &state = packing.specimen.state;
   fmt::print("{}\n{}", asked.out, figures_text(packing_figures(state), state));
   for (const std::string &note : notes)
-    fmt::print(stderr, "warning: {}\n", note);
+    tell(fmt::format("warning: {}\n", note));
 }
 } // namespace
 

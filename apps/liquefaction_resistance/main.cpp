@@ -17,6 +17,7 @@
 #include "apps/liquefaction_resistance/campaign.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
+#include "base/record/tell.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -110,7 +111,7 @@ bool run_all(const Campaign &campaign, const RunPool &pool, const std::vector<Ca
   Stopwatch since_line;
   const auto say = [&](const std::string &line) {
     if (!options.quiet)
-      fmt::print(stderr, "{}{}\n", state(campaign.results(), options.share.jobs), line);
+      tell(fmt::format("{}{}\n", state(campaign.results(), options.share.jobs), line));
     since_line.restart();
   };
   const ChildEvents events = {

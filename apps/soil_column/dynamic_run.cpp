@@ -3,6 +3,7 @@
 #include "apps/deposit/grain_files.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/surface_motion.hpp"
+#include "base/record/tell.hpp"
 
 #include <cmath>
 
@@ -71,7 +72,7 @@ private:
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
     for (const std::string &warning : this->warnings_)
       if (!resumed_ && ranks().first())
-        fmt::print(stderr, "warning: {}\n", warning);
+        tell(fmt::format("warning: {}\n", warning));
     soil_.material->seconds = 0;
   }
 

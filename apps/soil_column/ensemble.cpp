@@ -8,6 +8,7 @@
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/progress.hpp"
+#include "base/record/tell.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -123,7 +124,7 @@ private:
     if (options_.quiet)
       return;
     const auto n = std::ranges::count_if(members_, [&](const EnsembleMember &member) { return is_finished(member); });
-    fmt::print(stderr, "{} of {} members{}\n", n, members_.size(), line);
+    tell(fmt::format("{} of {} members{}\n", n, members_.size(), line));
   }
 
   const SceneOptions &options_;

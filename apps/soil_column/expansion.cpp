@@ -67,8 +67,8 @@ void CapExpansions<dim>::restore(const ColumnCheckpoint &checkpoint)
 {
   if (caps_.empty())
     return;
-  const std::vector<double> &values = checkpoint.vector("expansions");
-  for (std::size_t k = 0; k < caps_.size() && 3 * k + 2 < values.size(); ++k)
+  const std::vector<double> &values = checkpoint.vector("expansions", 3 * caps_.size());
+  for (std::size_t k = 0; k < caps_.size(); ++k)
     {
       caps_[k].last = values[3 * k];
       caps_[k].largest = values[3 * k + 1];

@@ -209,9 +209,9 @@ void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
   checkpoint.get(state);
   expansions_.restore(checkpoint);
   filter_.restore(checkpoint.vector("filtered_accelerations"), checkpoint.count("filtered_steps"));
-  const std::vector<double> &rows = checkpoint.vector("waiting_rows");
-  const std::size_t n = columns().size();
-  for (std::size_t k = 0; k + n <= rows.size(); k += n)
+  const std::size_t n = columns().size(), n_rows = checkpoint.vector("waiting_rows").size() / n;
+  const std::vector<double> &rows = checkpoint.vector("waiting_rows", n_rows * n);
+  for (std::size_t k = 0; k < rows.size(); k += n)
     waiting_.emplace_back(rows.begin() + static_cast<std::ptrdiff_t>(k),
                           rows.begin() + static_cast<std::ptrdiff_t>(k + n));
 }

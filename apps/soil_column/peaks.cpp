@@ -33,9 +33,9 @@ void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(*this);
-  line_gamma = checkpoint.vector("peak_gamma");
-  line_ru = checkpoint.vector("peak_line_ru");
-  line_acceleration = checkpoint.vector("peak_acceleration");
+  line_gamma = checkpoint.vector("peak_gamma", line_gamma.size());
+  line_ru = checkpoint.vector("peak_line_ru", line_ru.size());
+  line_acceleration = checkpoint.vector("peak_acceleration", line_acceleration.size());
 }
 
 template <int dim>

@@ -16,6 +16,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/specimen_library/prepare.hpp"
 #include "base/error.hpp"
+#include "base/record/tell.hpp"
 #include "base/units.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/io/specimen_library.hpp"
@@ -191,7 +192,7 @@ void print_library(const fs::path &path)
   fmt::print("{}: {} specimens\n{}", path.string(), entries.size(), library_table(entries));
   for (const LibraryEntry &entry : entries)
     if (const double density = entry.number("relative_density"); !density_remark(density).empty())
-      fmt::print(stderr, "warning: {}: D_r = {:.3f}{}\n", entry.name, density, density_remark(density));
+      tell(fmt::format("warning: {}: D_r = {:.3f}{}\n", entry.name, density, density_remark(density)));
 }
 
 void report_failures(const std::vector<Task> &tasks)

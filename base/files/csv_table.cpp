@@ -40,7 +40,11 @@ std::string read_text(const fs::path &path)
     text.append(buffer.data(), n);
   int code = Z_OK;
   gzerror(file, &code);
+  const std::string reason = code == Z_ERRNO ? std::strerror(errno) : "";
   const int closed = gzclose(file);
+  if (!reason.empty())
+    throw InputError(fmt::format("{}: cannot be read: {}; check the disk, and copy the file again if that goes on",
+                                 path.string(), reason));
   if (n < 0 || closed != Z_OK || (code != Z_OK && code != Z_STREAM_END))
     throw InputError(fmt::format("{}: the gzip data are damaged or cut off after {} bytes of text; copy the file again",
                                  path.string(), text.size()));

@@ -6,6 +6,8 @@
 #include "base/types.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <limits>
 #include <map>
 #include <optional>
 #include <type_traits>
@@ -22,6 +24,27 @@ inline double number(const Group &group, const std::string &name)
   const auto value = group.attribute<double>(name);
   if (!std::isfinite(value))
     throw InputError(group.where() + "/@" + name + ": is not a finite number; the file is damaged");
+  return value;
+}
+
+/// Of an enumeration that is stored its last_of(); 1 of a truth value.
+template <class T>
+constexpr std::uint64_t largest()
+{
+  if constexpr (std::is_same_v<T, bool>)
+    return 1;
+  else if constexpr (std::is_enum_v<T>)
+    return static_cast<std::uint64_t>(last_of(T{}));
+  else
+    return std::numeric_limits<T>::max();
+}
+
+inline std::uint64_t whole_number(const Group &group, const std::string &name, std::uint64_t largest)
+{
+  const auto value = group.attribute<std::uint64_t>(name);
+  if (value > largest)
+    throw InputError(
+        fmt::format("{}/@{} = {}, expected at most {}; the file is damaged", group.where(), name, value, largest));
   return value;
 }
 } // namespace detail
@@ -84,7 +107,7 @@ void read_field(const Group &group, const std::string &name, T &value)
     for (int axis = 0; axis < 3; ++axis)
       value[axis] = detail::number(group, name + detail::axis_names[axis]);
   else
-    value = static_cast<T>(group.attribute<std::uint64_t>(name));
+    value = static_cast<T>(detail::whole_number(group, name, detail::largest<T>()));
 }
 template <class T>
 void read_field(const Group &group, const std::string &name, std::optional<T> &value)

@@ -21,10 +21,12 @@ namespace fs = std::filesystem;
 namespace
 {
 /// HDF5 prints its error stack by default; here it becomes part of the exception. Its clean-up at exit is not needed:
-/// files are closed here.
+/// files are closed here. Nor are its locks: files are replaced whole, and it takes a file system without locks for a
+/// damaged file.
 void silence()
 {
   [[maybe_unused]] static const bool once = [] {
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", true);
     H5dont_atexit();
     return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   }();
@@ -44,6 +46,20 @@ std::string library_reason()
   return reason.empty() ? reason : fmt::format(" (HDF5: {})", reason);
 }
 
+/// The first link of the file that leads out of it, or nothing.
+std::string link_to_elsewhere(hid_t file)
+{
+  std::string found;
+  const auto look = [](hid_t, const char *name, const H5L_info_t *info, void *out) -> herr_t {
+    if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT)
+      return 0;
+    *static_cast<std::string *>(out) = name;
+    return 1;
+  };
+  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, look, &found);
+  return found;
+}
+
 /// Opens the bytes in the name of `state.path`.
 void open_existing(FileState &state, const std::string &name, unsigned mode, hid_t access)
 {
@@ -52,6 +68,10 @@ void open_existing(FileState &state, const std::string &name, unsigned mode, hid
     throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again, or delete it if it is "
                                  "a cache",
                                  state.path.string(), library_reason()));
+  if (const std::string name = link_to_elsewhere(state.id); !name.empty())
+    throw InputError(fmt::format("{}: {} is a link to another file, which is not followed; copy its content into this "
+                                 "one",
+                                 state.path.string(), name));
 }
 
 /// A name that no other file in memory has, by which HDF5 tells them apart.

@@ -99,10 +99,16 @@ Handle open_item(const FileState &file, const std::string &item)
   return checked(H5Oopen(file.id, item.c_str(), H5P_DEFAULT), H5Oclose, file, item, "there is no such item");
 }
 
+/// A dataset whose values are in the file itself: others would be read from any file that it names.
 Handle open_dataset(const FileState &file, const std::string &item)
 {
   assert(file.id >= 0);
-  return checked(H5Dopen2(file.id, item.c_str(), H5P_DEFAULT), H5Dclose, file, item, "there is no such dataset");
+  Handle dataset =
+      checked(H5Dopen2(file.id, item.c_str(), H5P_DEFAULT), H5Dclose, file, item, "there is no such dataset");
+  const Handle made(H5Dget_create_plist(dataset), H5Pclose);
+  if (H5Pget_external_count(made) != 0 || H5Pget_layout(made) == H5D_VIRTUAL)
+    fail(file, item, "its values are in another file, which is not read");
+  return dataset;
 }
 
 template <typename T>

@@ -22,6 +22,26 @@ namespace
       fmt::format("{}: cannot be {}: {}; check free space and permissions of the folder", path.string(), what, reason));
 }
 
+/// @return errno; 0 if a file, or the names in a folder, are on the disk
+int synced(const fs::path &path)
+{
+  const int descriptor = ::open(path.c_str(), O_RDONLY);
+  if (descriptor < 0)
+    return errno;
+  int code = 0;
+  while ((code = ::fsync(descriptor) == 0 ? 0 : errno) == EINTR)
+    ;
+  ::close(descriptor);
+  return code;
+}
+
+/// That a file has its new name outlives a loss of power. Some file systems cannot say so of a folder.
+int name_synced(const fs::path &path)
+{
+  const int code = synced(path.has_parent_path() ? path.parent_path() : ".");
+  return code == EINVAL || code == ENOTSUP ? 0 : code;
+}
+
 /// @return errno; 0 if all of it is on the disk
 int bring_to_disk(const fs::path &path, std::string_view text)
 {
@@ -31,11 +51,7 @@ int bring_to_disk(const fs::path &path, std::string_view text)
   out.close();
   if (!out)
     return errno ? errno : EIO;
-  const int descriptor = ::open(path.c_str(), O_RDONLY);
-  const int code = descriptor >= 0 && ::fsync(descriptor) == 0 ? 0 : errno;
-  if (descriptor >= 0)
-    ::close(descriptor);
-  return code;
+  return synced(path);
 }
 } // namespace
 
@@ -45,6 +61,8 @@ void write_replacing(const fs::path &path, std::string_view text)
   int code = bring_to_disk(aside, text);
   if (code == 0 && ::rename(aside.c_str(), path.c_str()) != 0)
     code = errno;
+  if (code == 0)
+    code = name_synced(path);
   if (code == 0)
     return;
   std::error_code ignored;
@@ -58,6 +76,14 @@ void rename_file(const fs::path &from, const fs::path &to)
   fs::rename(from, to, error);
   if (error)
     fail(from, "renamed", error.message());
+  if (const int code = name_synced(to); code != 0)
+    fail(to, "brought to the disk", std::strerror(code));
+}
+
+void sync_to_disk(const fs::path &path)
+{
+  if (const int code = synced(path); code != 0)
+    fail(path, "brought to the disk", std::strerror(code));
 }
 
 void make_folder(const fs::path &folder)

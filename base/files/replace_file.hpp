@@ -7,12 +7,15 @@
 namespace isostat
 {
 /// Writes `text` to `path`.tmp, brings it to the disk (fsync) and gives it the name `path` in one step: whoever reads
-/// `path` sees the old content or the new, never a part. Throws RunFailure if that fails: `path` is as it was then, and
-/// `path`.tmp gone.
+/// `path` sees the old content or the new, never a part; the name is on the disk, too, when it returns. Throws
+/// RunFailure if that fails: `path` is whole then, the old content or the new, and `path`.tmp gone.
 void write_replacing(const std::filesystem::path &path, std::string_view text);
 
 /// Gives a file another name of the same folder, in one step.   @throws RunFailure  it cannot be done
 void rename_file(const std::filesystem::path &from, const std::filesystem::path &to);
+
+/// Brings what was added to a file to the disk.   @throws RunFailure  it cannot be done
+void sync_to_disk(const std::filesystem::path &path);
 
 /// Makes a folder with those above it.   @throws RunFailure  it cannot be made
 void make_folder(const std::filesystem::path &folder);

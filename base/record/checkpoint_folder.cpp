@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/tell.hpp"
 
 #include <fmt/format.h>
 
@@ -23,20 +24,27 @@ void write_newest(const fs::path &folder, const std::function<void(hdf5::Group r
   rename_file(fresh, last);
 }
 
+std::vector<fs::path> checkpoints_of(const fs::path &folder)
+{
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const char *name : {"fresh.h5", "last.h5", "previous.h5"})
+    if (fs::exists(folder / name, ignored))
+      found.push_back(folder / name);
+  return found;
+}
+
 void read_newest(const fs::path &folder, const std::function<void(const fs::path &)> &read)
 {
   std::string problems;
-  for (const char *name : {"fresh.h5", "last.h5", "previous.h5"})
+  for (const fs::path &path : checkpoints_of(folder))
     {
-      const fs::path path = folder / name;
-      if (!fs::exists(path))
-        continue;
       try
         {
           read(path);
-          if (path.filename() == "previous.h5" && fs::exists(folder / "last.h5"))
-            fmt::print(stderr, "warning:{}\n  This run goes on from the checkpoint before, {}.\n", problems,
-                       path.string());
+          if (!problems.empty())
+            tell(fmt::format("warning:{}\n  This run goes on from the checkpoint before, {}.\n", problems,
+                             path.string()));
           return;
         }
       catch (const InputError &error)

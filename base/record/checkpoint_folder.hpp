@@ -12,7 +12,10 @@ namespace isostat
 /// @throws RunFailure  disk full, not writable: the older ones survive
 void write_newest(const std::filesystem::path &folder, const std::function<void(hdf5::Group root)> &fill);
 
-/// Reads the newest checkpoint of a folder that can be read: a damaged last.h5 gives way to previous.h5, with a
+/// Checkpoints of a folder, the newest first: last.h5, previous.h5, and fresh.h5 where write_newest() was interrupted.
+std::vector<std::filesystem::path> checkpoints_of(const std::filesystem::path &folder);
+
+/// Reads the newest checkpoint of a folder that can be read: a damaged one gives way to the one before, with a
 /// warning on stderr.
 /// @param read  takes one file, throws InputError if it is damaged or not one of its own
 /// @throws InputError when there is none, naming what is wrong with each

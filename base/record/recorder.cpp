@@ -144,6 +144,7 @@ void Recorder::append(std::span<const double> row)
 void Recorder::flush()
 {
   flush_lines();
+  sync_to_disk(csv_); // a checkpoint that counts its rows may follow
   flush_hdf5();
 }
 

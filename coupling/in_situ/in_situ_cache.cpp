@@ -4,6 +4,7 @@
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "base/record/file_format.hpp"
+#include "base/record/tell.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ void InSituCache::add(const std::vector<InSituState> &states) const
     {
       const std::string aside = path_.string() + ".damaged";
       std::filesystem::rename(path_, aside);
-      fmt::print(stderr, "states in situ were made anew, because their cache was damaged; it is kept as {}\n", aside);
+      tell(fmt::format("states in situ were made anew, because their cache was damaged; it is kept as {}\n", aside));
     }
   std::set<std::string> taken;
   if (std::filesystem::exists(path_)) // as it is now, another program may have added something

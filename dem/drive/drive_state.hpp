@@ -43,6 +43,8 @@ enum class LoadDirection
   extension
 };
 
+constexpr LoadDirection last_of(LoadDirection) { return LoadDirection::extension; } ///< for reading checkpoints
+
 /// +1 in compression, -1 in extension.
 constexpr double sign(LoadDirection direction) { return direction == LoadDirection::compression ? 1 : -1; }
 constexpr LoadDirection opposite(LoadDirection direction)
@@ -221,6 +223,7 @@ enum class ControlledQuantity
   indicator
 };
 inline constexpr std::size_t n_controlled = 5;
+constexpr ControlledQuantity last_of(ControlledQuantity) { return ControlledQuantity::indicator; }
 
 /// How far a controlled quantity went from where it should be, in one stage.
 struct Deviation

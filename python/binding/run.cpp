@@ -5,6 +5,7 @@
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/record/tell.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
@@ -197,7 +198,7 @@ void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Resul
   watcher.keep_rows = true;
   result.finished = run_programme(request.scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
   for (const std::string &line : stage_warnings(run.state, request.scene))
-    fmt::print(stderr, "warning: {}\n", line);
+    tell(fmt::format("warning: {}\n", line));
   result.columns = history_columns(request.scene);
   result.rows = std::move(watcher.rows);
 }

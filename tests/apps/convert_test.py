@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat convert: packings of other programs in and out, what is refused, and the same guard in scenes."""
+import os
+import shutil
+
 import h5py
 import numpy as np
 
@@ -25,6 +28,34 @@ class Convert(AppTest):
     def refuse(self, source, *parts, options=()):
         self.assert_refused(self.convert(source, "out.h5", *options), *parts)
         self.assertFalse((self.folder / "out.h5").exists())
+
+    def test_values_of_another_file(self):
+        """External storage, links and virtual datasets: a file of a stranger would name any file of the reader's."""
+        self.assert_done(self.convert(self.lattice("a.txt"), "other.h5"))
+        (self.folder / "secret").write_bytes(bytes(8 * 27))
+        os.mkfifo(self.folder / "fifo")
+
+        def external(group, name):
+            group.create_dataset("id", (27,), "<u8", external=[(name, 0, 8 * 27)])
+
+        def virtual(group):
+            layout = h5py.VirtualLayout((27,), "<u8")
+            layout[:] = h5py.VirtualSource("other.h5", "snapshot/grains/id", (27,))
+            group.create_virtual_dataset("id", layout)
+
+        def link(group, name):
+            group["id"] = h5py.ExternalLink(name, "/snapshot/grains/id")
+
+        for put, said in ((lambda group: external(group, "secret"), "in another file, which is not read"),
+                          (lambda group: external(group, "fifo"), "in another file, which is not read"),
+                          (virtual, "in another file, which is not read"),
+                          (lambda group: link(group, "other.h5"), "is a link to another file, which is not followed"),
+                          (lambda group: link(group, "fifo"), "is a link to another file, which is not followed")):
+            shutil.copy(self.folder / "other.h5", self.folder / "theirs.h5")
+            with h5py.File(self.folder / "theirs.h5", "r+") as file:
+                del file["snapshot/grains/id"]
+                put(file["snapshot/grains"])
+            self.refuse("theirs.h5", "theirs.h5", said)
 
     def test_there_and_back_to_the_bit(self):
         result = self.convert(self.lattice("a.txt"), "a.h5")

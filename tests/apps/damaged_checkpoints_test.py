@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A number in a checkpoint that is none, or infinite, each of them in turn: the run does not go on from it, says where
-it is, and takes the checkpoint before where that is whole. ISOSTAT_EVERY_CALL=1 tries both with each; otherwise the one
-and the other take turns."""
+"""A number in a checkpoint that is none, or infinite, each of them in turn, and members that are wrong: the run does
+not go on from it, says where it is, and takes the checkpoint before where that is whole. ISOSTAT_EVERY_CALL=1 tries
+both with each number; otherwise the one and the other take turns."""
 import shutil
 import signal
 
@@ -71,6 +71,67 @@ class DamagedCheckpoints(AppTest):
                     self.assertEqual(contents(out), before)
         print(f"  {program}: {len(items)} items, (value, exit code): {counts}", flush=True)
         return parts
+
+    def refuse_each(self, program, arguments, parts, changes):
+        """@param changes   function of the open checkpoint -> what is said"""
+        out = self.folder / "out"
+        for change, said in changes.items():
+            with self.subTest(program=program, said=said):
+                shutil.rmtree(out, ignore_errors=True)
+                shutil.copytree(parts, out)
+                (out / "checkpoint/previous.h5").unlink()
+                with h5py.File(out / "checkpoint/last.h5", "r+") as file:
+                    change(file)
+                before = contents(out)
+                result = self.run_app(program, *arguments, *SAVED, *QUIET, "-o", "out", "--resume")
+                self.assert_refused(result, said)
+                self.assertEqual(contents(out), before)
+
+    def test_members_of_an_element_test(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        parts = self.stopped("element_test", (scene, *SAVED, *QUIET))
+
+        def ends_at(file, stage):
+            end = file["drive/early_ends"].create_group("0")
+            end.attrs.update({name: np.uint64(0) for name in ("stage", "done", "step", "times", "at_once")})
+            end.attrs["stage"] = np.uint64(stage)
+            figures = end.create_group("figures")
+            names = ("driven", "strain", "volumetric", "p", "q", "unbalanced", "stress_error", "place")
+            figures.attrs.update({name: 1.0 for name in names})
+            figures.attrs.update({name: np.uint64(0) for name in ("reversals", "own_reversals")})
+
+        def lost(file, quantity):
+            loss = file["drive/control/losses"].create_group("0")
+            loss.attrs.update({"stage": np.uint64(0), "done": np.uint64(0), "quantity": np.uint64(quantity),
+                               "share": 1.0})
+            deviation = loss.create_group("deviation")
+            deviation.attrs.update({name: 1.0 for name in ("strain", "worst", "value", "target", "began")})
+            deviation.attrs.update({"step": np.uint64(0), "told": np.uint64(1)})
+
+        def number(item, name, value):
+            return lambda file: file[item].attrs.modify(name, np.uint64(value))
+
+        self.refuse_each("element_test", (scene,), parts, {
+            lambda file: ends_at(file, 1): "speaks of stages beyond the 1 of the scene",
+            number("drive/place", "stage", 2): "speaks of stages beyond the 1 of the scene",
+            lambda file: lost(file, 5): "@quantity = 5, expected at most 4",
+            number("drive/loading", "direction", 2): "@direction = 2, expected at most 1",
+            lambda file: file["assembly"].attrs.__delitem__("energy_sliding"): "holds no assembly/@energy_sliding"})
+
+    def test_members_of_a_soil_column(self):
+        scene = self.write("column.toml", COLUMN.replace("0.6 s", "6 s"))
+        parts = self.stopped("soil_column", (scene, *SAVED, *QUIET))
+
+        def longer(name):
+            def change(file):
+                values = file[f"vectors/{name}"][()]
+                del file[f"vectors/{name}"]
+                file[f"vectors/{name}"] = np.append(values, 0.)
+            return change
+
+        self.refuse_each("soil_column", (scene,), parts, {
+            longer(name): f"{name} are " for name in ("peak_gamma", "peak_line_ru", "peak_acceleration",
+                                                      "waiting_rows")})
 
     def test_element_test(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))

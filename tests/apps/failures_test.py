@@ -78,10 +78,20 @@ class Failures(FailingRuns):
     def test_without_locks(self):
         """On a file system that has none: one run goes on, many in one folder would not be safe."""
         scene = self.write("scene.toml", SHORT_TEST)
-        command = self.command("element_test", scene, *OUTPUT)
+        arguments = (scene, *SAVED)
+        command = self.command("element_test", *arguments, *OUTPUT)
         result, n = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assert_done(result)
         self.assertGreater(n, 0)
+        whole = results(self.folder / "out")
+        for reason in (errno.ENOLCK, errno.EOPNOTSUPP):
+            self.empty()
+            code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "out/checkpoint/last.h5", False), *arguments,
+                                     "-o", "out")
+            self.assertEqual(code, 130)
+            result, _ = self.run_failing([*command, "--resume"], "flock", 1, code=reason)
+            self.assert_done(result)
+            self.assertEqual(results(self.folder / "out"), whole)
         self.empty()
         command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "-q")
         result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)

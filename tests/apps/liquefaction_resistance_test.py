@@ -129,6 +129,22 @@ class LiquefactionResistance(AppTest):
         self.assert_done(self.run_app("liquefaction_resistance", *arguments, "at_once"))
         self.assertEqual(self.outcome(), self.outcome("at_once"))
 
+    def test_a_run_killed_between_two_names_of_its_checkpoint(self):
+        """It goes on from there, and is not begun anew."""
+        arguments = (self.scene, "--ratios", "0.1", "-n", "1", "--cycles", "15", "--no-figures", "-o", "out",
+                     "--set", "output.checkpoint=1e-9 min")
+        checkpoint = self.folder / "out/runs/csr0.1_seed1/checkpoint"
+        with subprocess.Popen(self.command("liquefaction_resistance", *arguments), cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            end = time.time() + 60 * PATIENCE
+            while not (checkpoint / "previous.h5").exists() and time.time() < end:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=60 * PATIENCE), 130)
+        (checkpoint / "last.h5").rename(checkpoint / "fresh.h5")
+        self.assert_done(self.run_app("liquefaction_resistance", *arguments))
+        self.assertIn("--resume", (checkpoint.parent / "provenance.txt").read_text(encoding="utf-8"))
+
     def test_triaxial_ratio(self):
         scene = self.write("triaxial.toml", TRIAXIAL)
         self.assert_done(self.run_it("--ratios", "0.15", "-n", "1", "-o", "out", "--no-figures",

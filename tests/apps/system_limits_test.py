@@ -64,6 +64,43 @@ class SystemLimits(FailingRuns):
         self.assertGreater(n, 0)
         self.assertEqual(results(self.folder / "out"), whole)
 
+    def test_nobody_can_read_what_is_told(self):
+        """A log on a full disk, a pipe whose end is gone, or standard files that are closed: results are all there."""
+        command = self.command("element_test", *self.arguments, *OUTPUT)
+        self.assert_done(self.run_app("element_test", *self.arguments, *OUTPUT))
+        whole = results(self.folder / "out")
+        reader, gone = os.pipe()
+        os.close(reader)
+        with open("/dev/full", "wb") as full:
+            for stdout, stderr, code in ((subprocess.DEVNULL, full, 0), (full, subprocess.DEVNULL, 1),
+                                         (subprocess.DEVNULL, gone, 0), (gone, gone, 1)):
+                with self.subTest(stdout=stdout, stderr=stderr):
+                    self.empty()
+                    done = subprocess.run(command[:-1], cwd=self.folder, stdout=stdout, stderr=stderr, check=False)
+                    self.assertEqual(done.returncode, code)
+                    self.assertEqual(results(self.folder / "out"), whole)
+                    self.assertTrue((self.folder / "out/summary.txt").exists())
+        os.close(gone)
+        self.empty()
+        closed = subprocess.run(["sh", "-c", '"$0" "$@" <&- >&- 2>&-', *command[:-1]], cwd=self.folder, check=False)
+        self.assertEqual(closed.returncode, 0)
+        self.assertEqual(results(self.folder / "out"), whole)
+        self.assertEqual((self.folder / "out/.lock").read_bytes(), b"", "it is not what is told that it takes")
+
+    def test_a_closed_terminal_and_the_limit_of_a_queue(self):
+        for number in (signal.SIGHUP, signal.SIGXCPU):
+            with self.subTest(number):
+                code = self.run_and_stop(0.05, number, (self.folder / "out/checkpoint/last.h5", False), self.scene,
+                                         "--set", "stage.0.max_steps=1000000", *SAVED, "-o", "out")
+                self.assertEqual(code, 130)
+                self.empty()
+        with subprocess.Popen(self.command("element_test", *self.arguments, *OUTPUT), cwd=self.folder,
+                              preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) as process:
+            while process.poll() is None:
+                process.send_signal(signal.SIGHUP)
+                time.sleep(0.01)
+        self.assertEqual(process.returncode, 0, "what is ignored, as by nohup, stays so")
+
     def test_drawing_is_killed(self):
         log = self.folder / "out/figures.log"
         with subprocess.Popen(self.command("element_test", self.scene, "-o", "out"), cwd=self.folder, text=True,

@@ -171,6 +171,8 @@ TEST(QuasiStaticIndicator, IsTheLargestOfItsParts)
   EXPECT_GT(std::min(imbalance, walls), 0);
   EXPECT_DOUBLE_EQ(quasi_static_indicator(assembly, p, 200e3, fast), inertia);
   EXPECT_DOUBLE_EQ(quasi_static_indicator(assembly, p, 200e3, 0), std::max(imbalance, walls));
+  EXPECT_DOUBLE_EQ(quasi_static_indicator(assembly, 1e3, 200e3, fast),
+                   10 * inertial_number(fast, assembly.d50(), assembly.packing().density, 0.05 * 200e3));
 }
 
 TEST(QuasiStaticIndicator, IsContinuousInThePressure)

@@ -98,7 +98,8 @@ TEST_F(MotionFile, Missing)
 {
   EXPECT_THAT(message_of<InputError>([&] { read_motion(folder / "absent.at2", AccelerationUnit::g); }),
               HasSubstr("absent.at2: cannot be opened: No such file or directory; check path"));
-  EXPECT_THAT(message_of<InputError>([&] { read_motion(folder, AccelerationUnit::g); }), HasSubstr("cannot be opened: it is not a file"));
+  EXPECT_THAT(message_of<InputError>([&] { read_motion(folder, AccelerationUnit::g); }),
+              HasSubstr("cannot be opened: it is not a file"));
 }
 
 TEST_F(MotionFile, BadColumns)
