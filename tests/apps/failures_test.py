@@ -78,7 +78,7 @@ class Failures(FailingRuns):
     def test_without_locks(self):
         """On a file system that has none: one run goes on, many in one folder would not be safe."""
         scene = self.write("scene.toml", SHORT_TEST)
-        arguments = (scene, *SAVED)
+        arguments = (scene, *SAVED, "--set", "stage.0.max_steps=20000")
         command = self.command("element_test", *arguments, *OUTPUT)
         result, n = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
         self.assert_done(result)
