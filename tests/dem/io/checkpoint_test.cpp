@@ -89,8 +89,8 @@ struct Fill
       T::for_each(field, *this);
     else if constexpr (std::is_same_v<T, Vec3>)
       field = Vec3(n, n + 0.1, n + 0.2) / 3;
-    else if constexpr (std::is_same_v<T, LoadDirection>)
-      field = LoadDirection::extension;
+    else if constexpr (std::is_enum_v<T>)
+      field = last_of(T{});
     else
       field = static_cast<T>((1ull << 52) + static_cast<unsigned>(n));
   }
