@@ -61,8 +61,12 @@ int guarded(const std::function<void()> &program)
       program();
       errno = 0;
       if (std::fflush(stdout) != 0 || std::ferror(stdout))
-        throw RunFailure(fmt::format("what is printed cannot be written: {}; files of results are whole",
-                                     std::strerror(errno ? errno : EIO)));
+        {
+          const int code = errno ? errno : EIO;
+          std::clearerr(stdout); // it is told once
+          throw RunFailure(
+              fmt::format("what is printed cannot be written: {}; files of results are whole", std::strerror(code)));
+        }
       return 0;
     }
   catch (const InputError &error)

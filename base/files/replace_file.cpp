@@ -35,11 +35,12 @@ int synced(const fs::path &path)
   return code;
 }
 
-/// That a file has its new name outlives a loss of power. Some file systems cannot say so of a folder.
+/// That a file has its new name outlives a loss of power. Some file systems cannot say so of a
+/// folder, and one that may be written need not be readable.
 int name_synced(const fs::path &path)
 {
   const int code = synced(path.has_parent_path() ? path.parent_path() : ".");
-  return code == EINVAL || code == ENOTSUP ? 0 : code;
+  return code == EINVAL || code == ENOTSUP || code == EACCES ? 0 : code;
 }
 
 /// @return errno; 0 if all of it is on the disk
