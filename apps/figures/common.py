@@ -311,9 +311,9 @@ def draw_path(run, axes, x, y):
     for rows, colour, label in coloured_parts(run):
         axes.plot(x[rows], y[rows], color=colour, label=label, linewidth=0.8)
     axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
-    axes.plot(x[0], y[0], "o", color=BLACK, markersize=3.5, zorder=5, label="start")
+    axes.plot(x[0], y[0], "o", color=BLACK, markersize=3.5, zorder=5, label="start", clip_on=False)
     if run.onset is not None:
-        axes.plot(x[run.onset], y[run.onset], "D", color=RED, markersize=4, zorder=6,
+        axes.plot(x[run.onset], y[run.onset], "D", color=RED, markersize=4, zorder=6, clip_on=False,
                   label=rf"$p^\prime/p_0^\prime < {LIQUEFIED}$")
 
 

@@ -2,6 +2,7 @@
 """What a module says of a program's figures, and how they are drawn into a folder."""
 import dataclasses
 import re
+import textwrap
 import typing
 
 from .common import STYLE, BadInput, plain, plt
@@ -60,7 +61,8 @@ class Drawing:
     @staticmethod
     def _save(name, figure, results, out):
         if results.title:
-            figure.suptitle(plain(results.title), fontsize=9.5, x=0.01, ha="left")
+            lines = textwrap.wrap(results.title, int(14 * figure.get_figwidth()))  # letters in an inch, at this size
+            figure.suptitle(plain("\n".join(lines)), fontsize=9.5, x=0.01, ha="left")
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
         figure.savefig(out / f"{name}.png")
