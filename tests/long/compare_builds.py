@@ -53,6 +53,7 @@ def main():
         sys.exit(__doc__)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
+        differ = 0
         for name in instruction_sets(bins):
             for scene, (program, text) in SCENES.items():
                 pathlib.Path("scene.toml").write_text(text, encoding="utf-8")
@@ -65,8 +66,10 @@ def main():
                     rows.append(history(out))
                 for place, other in zip(bins[1:], rows[1:]):
                     same, n, column, apart = compare(rows[0], other)
+                    differ += same < n
                     print(f"{name:6} {scene:15} {place}: {same} of {n} rows have the same bits; {column} within "
                           f"{apart:.1e}", flush=True)
+        sys.exit(f"{differ} comparisons differ" if differ else 0)
 
 
 if __name__ == "__main__":

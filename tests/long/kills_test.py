@@ -58,7 +58,8 @@ class Kills(AppTest):
         @param others    options and their values, one of which each call has"""
         begin = time.monotonic()
         self.run_to([*self.command(program, *arguments), "-o", "whole" + ending], 0)
-        whole, seconds, killed, rows = results(self.folder / ("whole" + ending)), time.monotonic() - begin, 0, 0
+        whole, seconds = results(self.folder / ("whole" + ending)), time.monotonic() - begin
+        killed = rows = at_work = 0
         parts = self.folder / ("parts" + ending)
         while killed < KILLS:
             shutil.rmtree(parts, ignore_errors=True)
@@ -73,12 +74,13 @@ class Kills(AppTest):
                 if not self.run_to(command, self.draw.uniform(0.02, seconds) if k < ROW else 0):
                     break
                 killed += 1
+                at_work += parts.is_file() or any(parts.glob("**/checkpoint/*.h5"))
             found = results(parts)
             self.assertEqual(sorted(found), sorted(whole), f"ISOSTAT_SEED={SEED}")
             for name, data in found.items():
                 self.assertEqual(data == whole[name], True, f"ISOSTAT_SEED={SEED}: {name} has changed")
             rows += 1
-        print(f"  {program}: {killed} kills in {rows} runs, {time.monotonic() - begin:.0f} s", flush=True)
+        print(f"  {program}: {killed} kills, {at_work} of them after a checkpoint, in {rows} runs, {time.monotonic() - begin:.0f} s", flush=True)
 
     @staticmethod
     def folder_of_run(parts):
