@@ -208,7 +208,8 @@ Quantity parse_quantity(std::string_view text, Dimension dimension)
     {
       const Unit *other = find_unit(name);
       throw InputError(other ? fmt::format("{}, but {} is the unit of {}", must, name, dimension_name(other->dimension))
-                             : fmt::format("{}, but \"{}\" is none of these units", must, name));
+                       : name.starts_with(',') ? must + ", with a point in its number, no comma"
+                                               : fmt::format("{}, but \"{}\" is none of these units", must, name));
     }
   if (dimension == Dimension::angle)
     return from_angle(to_double(decimal, 0), name);

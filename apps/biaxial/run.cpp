@@ -102,11 +102,14 @@ public:
     open();
     try
       {
-        run();
+        during_the_run([&] {
+          run();
+          history_->flush();
+        });
       }
     catch (const RunFailure &failure) // of its files
       {
-        throw failure_of_run(failure, request_.folder);
+        throw failure_of_run(failure, request_.folder, [&] { history_->flush(); });
       }
     summary_.complete = summary_.failure.empty();
     return with_costs();
@@ -133,12 +136,20 @@ private:
   void open()
   {
     folder_ = open_result_folder(request_.folder, request_.use);
-    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                     {{"threads", std::to_string(request_.threads)}});
+    if (!resumed_)
+      note_provenance();
     history_ =
         std::make_unique<Recorder>(request_.folder, columns(scene_), counter(resumed_.get(), "rows"), to_toml(scene_));
     files_ = std::make_unique<BlockFiles>(request_.folder, space_, material_, scene_.water.undrained(),
                                           counter(resumed_.get(), "maps"));
+    if (resumed_) // only now: the files may be refused
+      note_provenance();
+  }
+
+  void note_provenance() const
+  {
+    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                     {{"threads", std::to_string(request_.threads)}});
   }
 
   /// The summary, which has the costs of earlier calls, with those of this one.
@@ -157,6 +168,7 @@ private:
 
   void save()
   {
+    history_->flush();
     ColumnCheckpoint checkpoint{statics_.save(), {}, {}, to_toml(scene_)};
     checkpoint.put(with_costs());
     if (summary_.large_from)
@@ -211,7 +223,6 @@ private:
     if (scene_.water.undrained())
       row.push_back(summary_.pore_pressure = mean_pore_pressure());
     history_->append(row);
-    history_->flush();
     summary_.axial_strain = vertical;
     summary_.volumetric_strain = volume;
     summary_.last_stress = stress;

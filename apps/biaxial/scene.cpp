@@ -35,14 +35,17 @@ constexpr Section sections[] = {
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
 
+constexpr Range extents{1e-4, 1e6};
+constexpr const char *because_extents = "because a block of soil is larger than its grains and smaller than a country";
+
 constexpr Key block_keys[] = {
   {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
    .field = [](BiaxialScene &s) -> Field { return &s.title; }},
 
   {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
-   .range = positive, .text = "Extent along x.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.width; }},
+   .range = extents, .reason = because_extents, .text = "Extent along x.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.width; }},
   {.path = "mesh.height", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "2 m",
-   .range = positive, .text = "Extent along z.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.height; }},
+   .range = extents, .reason = because_extents, .text = "Extent along z.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.height; }},
   {.path = "mesh.cells_across", .kind = Kind::integer, .value = "8", .range = counts, .text = "Elements along x.",
    .field = [](BiaxialScene &s) -> Field { return &s.mesh.cells_across; }},
   {.path = "mesh.cells_up", .kind = Kind::integer, .value = "16", .range = counts, .text = "Elements along z.",
@@ -58,7 +61,7 @@ constexpr Key block_keys[] = {
    .text = "Linear elastic, parallel slip elements (Iwan), friction and cohesion (Mohr-Coulomb), or a packing of grains at every Gauss point.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
-   .presence = Presence::required, .value = "50 MPa", .range = positive, .kinds = formula,
+   .presence = Presence::required, .value = "50 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
    .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
   {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
@@ -97,7 +100,7 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
 
   {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = positive, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
+   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
   {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
    .text = "At the end: way of the top over the height, compression positive.",
@@ -147,6 +150,7 @@ A scene is one TOML file that says all about a run of `biaxial`. This page is ge
 
 - Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, is an
   error. What has no dimension is a plain number.
+- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
 - An unknown key is an error, and so is a key twice. Compression is positive; x points across, z up.
 - `--set key=value` on the command line overrides the file: `--set test.steps=100`.
 

@@ -18,8 +18,8 @@
 #include "apps/common/result_folder.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
-#include "base/record/tell.hpp"
 #include "base/scene/reader.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

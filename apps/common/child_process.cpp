@@ -53,11 +53,8 @@ public:
   KeyboardNoted()
   {
     keyboard_signal = 0;
-    struct sigaction note = {};
-    note.sa_handler = [](int caught) { keyboard_signal = caught; };
-    for (std::size_t k = 0; k < keyboard.size(); ++k)
-      if (kept_.before()[k].sa_handler != SIG_IGN) // as nohup would have it
-        sigaction(keyboard[k], &note, nullptr);
+    for (int signal : keyboard)
+      handle_unless_ignored(signal, [](int caught) { keyboard_signal = caught; });
   }
 
 private:

@@ -23,6 +23,9 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
 {
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   line.set_version_flag("--version", fmt::format("{} (Isostat) {}", name, version()), "print the version and stop");
+  line.failure_message([](const CLI::App *, const CLI::Error &error) {
+    return fmt::format("error: {}\nRun with --help for more information.\n", error.what());
+  });
   std::optional<int> told; // what is wrong with the line, or its help
   const int code = guarded([&] {
     try
@@ -45,8 +48,8 @@ namespace
 void open_standard_files()
 {
   for (int number = 0; number < 3; ++number)
-    if (fcntl(number, F_GETFD) < 0) [[maybe_unused]]
-      const int opened = open("/dev/null", number == 0 ? O_RDONLY : O_WRONLY);
+    if (fcntl(number, F_GETFD) < 0)
+      open("/dev/null", O_RDWR);
 }
 } // namespace
 

@@ -16,10 +16,16 @@ inline std::array<struct sigaction, stopping.size()> second = {}; ///< what take
 /// Those that catch_signals() catches.
 inline constexpr const auto &stopping_signals = detail::stopping;
 
+/// What is ignored, as nohup does, stays so.
+inline void handle_unless_ignored(int signal, void (*handler)(int))
+{
+  if (std::signal(signal, handler) == SIG_IGN)
+    std::signal(signal, SIG_IGN);
+}
+
 /// From here on SIGINT, SIGTERM, SIGUSR1, SIGHUP (a closed terminal) and SIGXCPU (the limit of a queue) only raise a
 /// flag; the run stops after the step it is in and writes a checkpoint. A second signal of the kind ends the program at
-/// once. One that is ignored, as nohup does, stays so. SIGUSR1 is the one that mpirun hands on to the ranks without
-/// ending them itself.
+/// once. SIGUSR1 is the one that mpirun hands on to the ranks without ending them itself.
 inline void catch_signals()
 {
   const auto note = [](int caught) {
@@ -29,8 +35,7 @@ inline void catch_signals()
         sigaction(caught, &detail::second[k], nullptr);
   };
   for (int signal : detail::stopping)
-    if (std::signal(signal, note) == SIG_IGN)
-      std::signal(signal, SIG_IGN);
+    handle_unless_ignored(signal, note);
 }
 
 inline bool stop_requested() { return detail::stop != 0; }

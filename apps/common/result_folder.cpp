@@ -8,7 +8,7 @@
 #include "base/files/replace_file.hpp"
 #include "base/record/installation.hpp"
 #include "base/record/instruction_set.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -108,6 +108,9 @@ bool folder_exists(const fs::path &folder)
 void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
+  if (fs::is_symlink(folder, failure) && !fs::exists(folder, failure))
+    throw InputError(fmt::format("{}: is a link to {}, which is not there. Remove it, or choose another --output.",
+                                 folder.string(), fs::read_symlink(folder, failure).string()));
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder))
     throw InputError(
@@ -131,9 +134,13 @@ void check_result_folder(const fs::path &folder, FolderUse use)
   if (use == FolderUse::resume)
     {
       if (!fs::is_directory(folder / "checkpoint", failure))
-        throw InputError(fmt::format("{}: nothing to resume: there is no folder checkpoint in it. Give the folder of "
-                                     "an interrupted run with --output, or start without --resume.",
-                                     folder.string()));
+        throw InputError(fmt::format("{}: nothing to resume: {}. Give the folder of an interrupted run with "
+                                     "--output, or start {} --resume.",
+                                     folder.string(),
+                                     fs::exists(folder / "scene.toml", failure)
+                                         ? "the run in it ended before its first checkpoint"
+                                         : "there is no folder checkpoint in it",
+                                     is_unused(folder) ? "without" : "it anew with --overwrite in place of"));
       return expect_free(folder);
     }
   const bool used = !is_unused(folder);

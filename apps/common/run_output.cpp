@@ -4,6 +4,7 @@
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/tell.hpp"
 #include "dem/io/snapshot_file.hpp"
 
 #include <fmt/format.h>
@@ -47,6 +48,18 @@ RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::st
     make_folder(folder_ / "snapshots");
   if (scene.output.paraview)
     make_folder(folder_ / "paraview");
+  std::error_code ignored;
+  std::uint64_t n_missing = 0;
+  for (std::uint64_t k = 0; k < written_.snapshots; ++k)
+    n_missing += !fs::exists(snapshot_file(k), ignored);
+  if (n_missing > 0)
+    tell(fmt::format("warning: {}: {} of {} snapshots are not there any more; the run goes on without them\n",
+                     (folder_ / "snapshots").string(), n_missing, written_.snapshots));
+}
+
+fs::path RunOutput::snapshot_file(std::uint64_t k) const
+{
+  return folder_ / "snapshots" / fmt::format("snapshot_{:04d}.h5", k);
 }
 
 void RunOutput::record(const Assembly &assembly, const DriveState &state, const Observation &seen, bool snapshot)
@@ -64,7 +77,7 @@ void RunOutput::record(const Assembly &assembly, const DriveState &state, const 
 void RunOutput::store_snapshot(const Snapshot &snapshot)
 {
   const std::string name = fmt::format("{:04d}", written_.snapshots);
-  write_snapshot_file(folder_ / "snapshots" / ("snapshot_" + name + ".h5"), snapshot);
+  write_snapshot_file(snapshot_file(written_.snapshots), snapshot);
   if (scene_.output.paraview)
     {
       write_grains_vtp(folder_ / "paraview" / ("grains_" + name + ".vtp"), snapshot);

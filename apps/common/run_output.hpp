@@ -51,6 +51,7 @@ public:
 
 private:
   void store_snapshot(const Snapshot &snapshot);
+  std::filesystem::path snapshot_file(std::uint64_t k) const;
 
   std::filesystem::path folder_;
   const Scene &scene_;

@@ -5,8 +5,8 @@
 #include "base/files/csv_table.hpp"
 #include "base/record/checkpoint_folder.hpp"
 #include "base/record/instruction_set.hpp"
-#include "base/record/tell.hpp"
 #include "base/scene/reader.hpp"
+#include "base/tell.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "apps/common/run_output.hpp"
 #include "apps/common/stage_report.hpp"
 #include "base/error.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -78,6 +78,11 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   TestRun run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
   check_same_scene(folder, run.resumed->scene, to_toml(scene));
+  if (run.resumed->written.snapshots > run.resumed->written.rows)
+    throw InputError(
+        fmt::format("{}: the checkpoint speaks of {} snapshots and {} rows, but there is a row of each; it is "
+                    "damaged. Start anew with --overwrite.",
+                    folder.string(), run.resumed->written.snapshots, run.resumed->written.rows));
   check_stages(run.resumed->drive, scene.stages.size(), folder);
   note_instruction_set(run.resumed->instruction_set);
   run.assembly = std::make_shared<Assembly>(run.resumed->state, how);
@@ -92,8 +97,11 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   const auto &[scene, folder, command_line, use, quiet, threads] = request;
   if (!run.folder)
     run.folder = open_result_folder(folder, use); // only now that everything else went well may older results go
-  write_provenance(folder, scene, command_line);
+  if (!run.resumed)
+    write_provenance(folder, scene, command_line);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
+  if (run.resumed) // only now: the files may be refused
+    write_provenance(folder, scene, command_line);
   Watched observer(output, watcher);
   const std::uint64_t first_step = run.assembly->step();
   const Stopwatch watch;
@@ -101,6 +109,8 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   try
     {
       outcome = run_programme(scene.programme(), *run.assembly, run.state, observer);
+      if (outcome == RunOutcome::finished)
+        output.finish();
     }
   catch (const RunFailure &failure)
     {
@@ -109,7 +119,6 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
     throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
-  output.finish();
 
   TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());

@@ -114,7 +114,8 @@ constexpr Key ground_keys[] = {
   {.path = "layer.name", .kind = Kind::text, .text = "Name of the layer, for tables and figures.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.name; }},
   {.path = "layer.thickness", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::required, .value = "5 m", .range = positive, .reason = "because a layer without height has no cells",
+   .presence = Presence::required, .value = "5 m", .range = {1e-3, 1e5},
+   .reason = "because a layer without height has no cells, and the crust of the Earth is not as thick",
    .text = "Thickness of the layer.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.thickness; }},
   {.path = "layer.table", .kind = Kind::text, .presence = Presence::optional, .value = "profile.csv", .kinds = formula,
@@ -150,11 +151,12 @@ constexpr Key ground_keys[] = {
            "isostat.column.run() in Python takes by the name of the layer (docs/python.md), not with mesh.distributed.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
   {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::experiment, .value = "200 m/s", .range = positive, .kinds = formula, .group = "stiffness",
+   .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5}, .reason = "because waves in mud are as slow, and in rock not as fast",
+   .kinds = formula, .group = "stiffness",
    .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
   {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
-   .presence = Presence::optional, .value = "80 MPa", .range = positive, .kinds = formula, .group = "stiffness",
+   .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula, .group = "stiffness",
    .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
   {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
@@ -306,6 +308,7 @@ A scene is one TOML file that says all about a run of `soil_column`. This page i
 
 - Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
   unit of something else, is an error. What has no dimension is a plain number.
+- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
 - An unknown key is an error, and so is a key twice. Compression is positive; z points up, depths count downwards.
 - `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
   `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each

@@ -3,7 +3,7 @@
 
 #include "apps/common/command_line.hpp"
 #include "base/error.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 #include "base/units.hpp"
 #include "dem/prepare/convert.hpp"
 #include "dem/prepare/packing_check.hpp"

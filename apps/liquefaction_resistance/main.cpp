@@ -17,7 +17,7 @@
 #include "apps/liquefaction_resistance/campaign.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -138,10 +138,12 @@ protected:
   Progress progress_{request_.quiet, 5};
   RunTimes times_;
 
+  static constexpr double most_steps = 1e15; ///< they are counted exactly up to it
+
   /// Whole steps in an interval of output.
   std::uint64_t steps_in(double interval) const
   {
-    return static_cast<std::uint64_t>(std::max(1LL, std::llround(interval / run_.time_step())));
+    return static_cast<std::uint64_t>(std::clamp(std::round(interval / run_.time_step()), 1., most_steps));
   }
 
 private:
@@ -185,10 +187,18 @@ private:
     MPI_Barrier(MPI_COMM_WORLD); // all ranks have read their checkpoint, and are ready to start
     on_first_rank([&] {
       folder_ = open_result_folder(request_.folder, request_.use);
-      write_provenance(request_.folder, to_toml(scene_), request_.command_line,
-                       {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
+      if (!resumed_)
+        note_provenance();
       files_.open(velocities_, resumed_.get());
+      if (resumed_) // only now: the files may be refused
+        note_provenance();
     });
+  }
+
+  void note_provenance() const
+  {
+    write_provenance(request_.folder, to_toml(scene_), request_.command_line,
+                     {{"finite elements", finite_element_library()}, {"ranks", std::to_string(ranks().size)}});
   }
 
   /// Progress, signals, checkpoints. A signal reaches one rank before the other, and their clocks differ: they ask each

@@ -3,7 +3,7 @@
 #include "apps/deposit/grain_files.hpp"
 #include "apps/soil_column/column_run.hpp"
 #include "apps/soil_column/surface_motion.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <cmath>
 
@@ -163,8 +163,18 @@ private:
     times_.waves = cost.wave_seconds;
   }
 
-  const std::uint64_t last_step_ = static_cast<std::uint64_t>(
-      std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12))); ///< the last one whose start is recorded
+  std::uint64_t last_step() const
+  {
+    const double n = std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12));
+    if (!(n <= this->most_steps))
+      throw InputError(fmt::format(
+          "analysis.duration = {:g} s: must be at most {:g} s, because the time step is {:g} s "
+          "and there is no counting of more than {:g} of them.",
+          scene_.analysis.duration, this->most_steps * run_.time_step(), run_.time_step(), this->most_steps));
+    return static_cast<std::uint64_t>(n);
+  }
+
+  const std::uint64_t last_step_ = last_step(); ///< the last one whose start is recorded
   SurfaceMotion motion_;
   std::unique_ptr<GrainFiles> grain_files_;  ///< null without grains
   std::array<double, 2> range_ = {1e300, 0}; ///< of velocities_ where the soil is of grains, of all ranks

@@ -8,7 +8,7 @@
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/progress.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -33,8 +33,8 @@ public:
     if (!resumed_)
       return;
     resumed_->get(result_);
-    const std::vector<double> &start = resumed_->vector("plate_in_situ");
-    forces_.set_start({start.at(0), start.at(1), start.at(2)});
+    const std::vector<double> &start = resumed_->vector("plate_in_situ", 3);
+    forces_.set_start({start[0], start[1], start[2]});
   }
 
 private:

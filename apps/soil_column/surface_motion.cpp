@@ -115,12 +115,10 @@ void SurfaceMotion::save(ColumnCheckpoint &checkpoint) const
 
 void SurfaceMotion::restore(const ColumnCheckpoint &checkpoint)
 {
-  const std::vector<double> &numbers = checkpoint.vector("motion_bands");
-  std::size_t next = 0;
-  for_each_number(*this, [&](double &x) { x = next < numbers.size() ? numbers[next] : 0, ++next; });
-  if (next != numbers.size())
-    throw InputError(fmt::format("{}: its motion_bands are {} numbers, not {}; start anew with --overwrite.",
-                                 checkpoint.file, numbers.size(), next));
+  std::size_t n = 0;
+  for_each_number(*this, [&](double) { ++n; });
+  auto next = checkpoint.vector("motion_bands", n).begin();
+  for_each_number(*this, [&](double &x) { x = *next++; });
   for (std::size_t k = 0; k < axes_.size(); ++k)
     spectra_[k].restore(checkpoint.vector(fmt::format("spectrum_{}", "xyz"[axes_[k]])));
 }

@@ -16,7 +16,7 @@
 #include "apps/common/result_folder.hpp"
 #include "apps/specimen_library/prepare.hpp"
 #include "base/error.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 #include "base/units.hpp"
 #include "dem/assembly/assembly.hpp"
 #include "dem/io/specimen_library.hpp"

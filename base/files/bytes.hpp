@@ -2,6 +2,7 @@
 #pragma once
 #include "base/error.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -106,11 +107,14 @@ public:
     raw(s.data(), s.size());
     return s;
   }
-  /// As many numbers as were written, which must be those of `to`.
+  /// As many numbers as were written, which must be those of `to`, and finite.
   void numbers(std::span<double> to, const char *what)
   {
     expect(length(sizeof(double)), to.size(), what);
     raw(to.data(), to.size_bytes());
+    for (const double x : to)
+      if (!std::isfinite(x))
+        fail(std::string("one of its ") + what + " is not finite");
   }
   std::span<const std::byte> block()
   {

@@ -47,6 +47,8 @@ public:
   /// The same; a dataset of another shape is an error that states both shapes.
   template <typename T>
   std::vector<T> read(const std::string &name, const Shape &expected) const;
+  /// Rows of a dataset of doubles from `first` on.   @pre it has n_rows of them there
+  std::vector<double> rows(const std::string &name, std::size_t first, std::size_t n_rows) const;
   /// One value kept as attribute of this group or of one of its datasets.
   template <typename T>
   T attribute(const std::string &name, const std::string &item = ".") const;
@@ -94,11 +96,12 @@ public:
   static File open(const std::filesystem::path &path);
   /// For writing, empty. RunFailure if the folder is missing or not writable.
   static File create(const std::filesystem::path &path);
-  /// For writing, starting from a copy of what is there.   cost: twice the file in memory
+  /// For writing, starting from a copy of what is there.   cost: three times the file in memory
   static File update(const std::filesystem::path &path);
 
   Group root() const { return {state_, "/"}; }
-  /// Ends writing: close, write, fsync, rename. Groups of this file are invalid from here on.
+  /// Ends writing: close, write, fsync, rename. The bytes do not tell in which portions rows were added to a series.
+  /// Groups of this file are invalid from here on.
   /// @pre the file was opened by create() or update() and not yet committed
   void commit();
 

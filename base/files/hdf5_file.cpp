@@ -46,20 +46,6 @@ std::string library_reason()
   return reason.empty() ? reason : fmt::format(" (HDF5: {})", reason);
 }
 
-/// The first link of the file that leads out of it, or nothing.
-std::string link_to_elsewhere(hid_t file)
-{
-  std::string found;
-  const auto look = [](hid_t, const char *name, const H5L_info_t *info, void *out) -> herr_t {
-    if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT)
-      return 0;
-    *static_cast<std::string *>(out) = name;
-    return 1;
-  };
-  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, look, &found);
-  return found;
-}
-
 /// Opens the bytes in the name of `state.path`.
 void open_existing(FileState &state, const std::string &name, unsigned mode, hid_t access)
 {
@@ -68,10 +54,6 @@ void open_existing(FileState &state, const std::string &name, unsigned mode, hid
     throw InputError(fmt::format("{}: damaged or truncated HDF5 file{}; write or copy it again, or delete it if it is "
                                  "a cache",
                                  state.path.string(), library_reason()));
-  if (const std::string name = link_to_elsewhere(state.id); !name.empty())
-    throw InputError(fmt::format("{}: {} is a link to another file, which is not followed; copy its content into this "
-                                 "one",
-                                 state.path.string(), name));
 }
 
 /// A name that no other file in memory has, by which HDF5 tells them apart.
@@ -101,6 +83,47 @@ std::string bytes_of(const FileState &file)
   if (size < 0 || H5Fget_file_image(file.id, bytes.data(), bytes.size()) != size)
     fail(file, "the file", "its bytes cannot be had");
   return bytes;
+}
+
+/// An empty file in memory.
+void create_in_memory(FileState &state)
+{
+  state.id = H5Fcreate(name_in_memory().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory_access(state));
+  if (state.id < 0)
+    fail(state, "the file", "it cannot be made in memory");
+}
+
+/// Callback of H5Aiterate2: adds the attribute to the object that `to` points to.
+herr_t copy_attribute(hid_t owner, const char *name, const H5A_info_t *, void *to)
+{
+  const Handle from(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose), type(H5Aget_type(from), H5Tclose),
+      space(H5Aget_space(from), H5Sclose);
+  const Handle copy(H5Acreate2(*static_cast<hid_t *>(to), name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  std::vector<std::byte> value(H5Aget_storage_size(from) + H5Tget_size(type));
+  const bool done = H5Aread(from, type, value.data()) >= 0 && H5Awrite(copy, type, value.data()) >= 0;
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, value.data());
+  return done ? 0 : -1;
+}
+
+/// Callback of H5Literate: copies the object to the file that `to` points to. Links that lead elsewhere are of others.
+herr_t copy_object(hid_t from, const char *name, const H5L_info_t *link, void *to)
+{
+  if (link->type != H5L_TYPE_HARD)
+    return 0;
+  return H5Ocopy(from, name, *static_cast<hid_t *>(to), name, H5P_DEFAULT, H5P_DEFAULT);
+}
+
+/// What is in a file, in the order of names and rows: the bytes do not tell in which portions rows were added, and have
+/// no gaps where some were cut off.
+void bring_in_order(FileState &file)
+{
+  FileState ordered(file.path, true);
+  create_in_memory(ordered);
+  hsize_t first = 0;
+  if (H5Literate(file.id, H5_INDEX_NAME, H5_ITER_INC, nullptr, copy_object, &ordered.id) < 0 ||
+      H5Aiterate2(file.id, H5_INDEX_NAME, H5_ITER_INC, &first, copy_attribute, &ordered.id) < 0)
+    fail(file, "the file", "its content cannot be copied");
+  std::swap(file.id, ordered.id);
 }
 
 void require_hdf5(const fs::path &path)
@@ -149,9 +172,7 @@ File File::create(const fs::path &path)
                                  "space",
                                  path.string(), std::strerror(errno)));
   auto state = std::make_shared<FileState>(path, true);
-  state->id = H5Fcreate(name_in_memory().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory_access(*state));
-  if (state->id < 0)
-    fail(*state, "the file", "it cannot be made in memory");
+  create_in_memory(*state);
   return File(state);
 }
 
@@ -159,6 +180,7 @@ File File::update(const fs::path &path)
 {
   require_hdf5(path);
   auto state = std::make_shared<FileState>(path, true);
+  state->grows = true;
   std::string bytes(unsealed(read_text(path), path));
   const Handle access = memory_access(*state);
   if (H5Pset_file_image(access, bytes.data(), bytes.size()) < 0)
@@ -171,6 +193,8 @@ void File::commit()
 {
   FileState &file = *state_;
   assert(file.writing && file.id >= 0);
+  if (file.grows)
+    bring_in_order(file);
   const std::string bytes = bytes_of(file);
   file.close();
   write_replacing(file.path, sealed(bytes));

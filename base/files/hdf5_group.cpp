@@ -93,18 +93,43 @@ bool write_values(std::span<const T> values, const Transfer &transfer)
     return transfer(type, static_cast<const void *>(values.data())) >= 0;
 }
 
-Handle open_item(const FileState &file, const std::string &item)
+bool left_file = false; ///< an external link was met
+
+/// Properties of access to items by which no link to another file is followed: a file of a stranger could name any.
+hid_t within_file()
+{
+  static const hid_t access = [] {
+    const hid_t made = H5Pcreate(H5P_LINK_ACCESS);
+    H5Pset_elink_cb(
+        made,
+        [](const char *, const char *, const char *, const char *, unsigned *, hid_t, void *) -> herr_t {
+          left_file = true;
+          return -1;
+        },
+        nullptr);
+    return made;
+  }();
+  return access;
+}
+
+/// @param missing  what is said if there is none
+Handle open_item(const FileState &file, const std::string &item, const char *missing = "there is no such item")
 {
   assert(file.id >= 0);
-  return checked(H5Oopen(file.id, item.c_str(), H5P_DEFAULT), H5Oclose, file, item, "there is no such item");
+  left_file = false;
+  const hid_t id = H5Oopen(file.id, item.c_str(), within_file());
+  if (left_file)
+    missing = "it is a link to another file, which is not followed";
+  return checked(id, H5Oclose, file, item, missing);
 }
 
 /// A dataset whose values are in the file itself: others would be read from any file that it names.
 Handle open_dataset(const FileState &file, const std::string &item)
 {
-  assert(file.id >= 0);
-  Handle dataset =
-      checked(H5Dopen2(file.id, item.c_str(), H5P_DEFAULT), H5Dclose, file, item, "there is no such dataset");
+  constexpr const char *missing = "there is no such dataset";
+  Handle dataset = open_item(file, item, missing);
+  if (H5Iget_type(dataset) != H5I_DATASET)
+    fail(file, item, missing);
   const Handle made(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_external_count(made) != 0 || H5Pget_layout(made) == H5D_VIRTUAL)
     fail(file, item, "its values are in another file, which is not read");
@@ -141,6 +166,22 @@ Shape extent(hid_t dataset)
   return dims.empty() ? Shape{1} : Shape(dims.begin(), dims.end());
 }
 
+/// The spaces of some rows of a dataset.
+struct Rows
+{
+  Shape shape;
+  hsize_t start[2], count[2];
+  Handle in_file, in_memory;
+
+  Rows(hid_t dataset, std::size_t first, std::size_t n_rows)
+      : shape(extent(dataset)), start{first, 0}, count{n_rows, shape.size() == 2 ? shape[1] : 1},
+        in_file(H5Dget_space(dataset), H5Sclose),
+        in_memory(H5Screate_simple(static_cast<int>(shape.size()), count, nullptr), H5Sclose)
+  {
+    H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, count, nullptr);
+  }
+};
+
 /// Iteration callback: adds a name to the vector behind `out`.
 template <typename Info>
 herr_t collect(hid_t, const char *name, const Info *, void *out)
@@ -164,7 +205,7 @@ const std::filesystem::path &Group::file_path() const { return file_->path; }
 bool Group::has(const std::string &name) const
 {
   assert(file_->id >= 0);
-  return H5Lexists(file_->id, child(name).c_str(), H5P_DEFAULT) > 0;
+  return H5Lexists(file_->id, child(name).c_str(), within_file()) > 0;
 }
 
 bool Group::has_attribute(const std::string &name, const std::string &item) const
@@ -176,7 +217,7 @@ std::vector<std::string> Group::names() const
 {
   std::vector<std::string> found;
   H5Literate_by_name(file_->id, path_.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &found,
-                     H5P_DEFAULT);
+                     within_file());
   return found;
 }
 
@@ -189,8 +230,9 @@ std::vector<std::string> Group::attribute_names() const
 
 Group Group::group(const std::string &name) const
 {
-  const Handle exists = checked(H5Gopen2(file_->id, child(name).c_str(), H5P_DEFAULT), H5Gclose, *file_, child(name),
-                                "there is no such group");
+  constexpr const char *missing = "there is no such group";
+  if (H5Iget_type(open_item(*file_, child(name), missing)) != H5I_GROUP)
+    fail(*file_, child(name), missing);
   return {file_, child(name)};
 }
 
@@ -221,6 +263,17 @@ std::vector<T> Group::read(const std::string &name, const Shape &expected) const
   if (found != expected)
     fail(*file_, child(name), fmt::format("its shape is {}, expected {}", found, expected));
   return read<T>(name);
+}
+
+std::vector<double> Group::rows(const std::string &name, std::size_t first, std::size_t n_rows) const
+{
+  const Handle dataset = open_stored(*file_, child(name)), type(H5Dget_type(dataset), H5Tclose);
+  if (extent(dataset).size() > 2)
+    fail(*file_, child(name), "it is no series of rows");
+  const Rows rows(dataset, first, n_rows);
+  return read_values<double>(*file_, child(name), type, rows.in_memory, [&](hid_t memory, void *buffer) {
+    return H5Dread(dataset, memory, rows.in_memory, rows.in_file, H5P_DEFAULT, buffer);
+  });
 }
 
 template <typename T>
@@ -280,6 +333,7 @@ void Group::create_series(const std::string &name, const std::string &unit, std:
   const Handle space(H5Screate_simple(rank, dims, limits), H5Sclose), layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(layout, rank, chunk);
   const Handle made = create_dataset<double>(*file_, child(name), space, layout);
+  file_->grows = true;
   set_attribute("unit", unit, name);
 }
 
@@ -287,15 +341,13 @@ void Group::append(const std::string &name, std::span<const double> values)
 {
   const Handle dataset = open_dataset(*file_, child(name));
   const Shape before = extent(dataset);
-  const std::size_t n_columns = before.size() == 2 ? before[1] : 1;
+  const std::size_t n_columns = before.size() == 2 ? before[1] : 1, n_rows = values.size() / n_columns;
   assert(values.size() % n_columns == 0);
   if (values.empty())
     return;
-  const hsize_t start[2] = {before[0], 0}, count[2] = {values.size() / n_columns, n_columns};
-  resize(name, start[0] + count[0]);
-  const Handle space(H5Dget_space(dataset), H5Sclose), rows(H5Screate_simple(before.size(), count, nullptr), H5Sclose);
-  H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr);
-  if (H5Dwrite(dataset, H5T_IEEE_F64LE, rows, space, H5P_DEFAULT, values.data()) < 0)
+  resize(name, before[0] + n_rows);
+  const Rows rows(dataset, before[0], n_rows);
+  if (H5Dwrite(dataset, H5T_IEEE_F64LE, rows.in_memory, rows.in_file, H5P_DEFAULT, values.data()) < 0)
     fail(*file_, child(name), "writing failed");
 }
 
@@ -304,7 +356,7 @@ void Group::resize(const std::string &name, std::size_t n_rows)
   const Handle dataset = open_dataset(*file_, child(name));
   const Shape now = extent(dataset);
   const hsize_t target[2] = {n_rows, now.size() == 2 ? now[1] : 1};
-  if (H5Dset_extent(dataset, target) < 0)
+  if (now.size() > 2 || H5Dset_extent(dataset, target) < 0)
     fail(*file_, child(name), "changing the number of rows failed (made by create_series?)");
 }
 

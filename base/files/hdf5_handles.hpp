@@ -14,7 +14,7 @@ namespace isostat::hdf5
 struct FileState
 {
   std::filesystem::path path;
-  bool writing = false;
+  bool writing = false, grows = false; ///< the latter: rows are added, in any portions
   hid_t id = -1;
 
   FileState(std::filesystem::path path, bool writing) : path(std::move(path)), writing(writing) {}

@@ -35,8 +35,8 @@ int synced(const fs::path &path)
   return code;
 }
 
-/// That a file has its new name outlives a loss of power. Some file systems cannot say so of a
-/// folder, and one that may be written need not be readable.
+/// That a file has its new name outlives a loss of power. Some file systems cannot say so of a folder, and one that may
+/// be written need not be readable.
 int name_synced(const fs::path &path)
 {
   const int code = synced(path.has_parent_path() ? path.parent_path() : ".");
@@ -44,11 +44,11 @@ int name_synced(const fs::path &path)
 }
 
 /// @return errno; 0 if all of it is on the disk
-int bring_to_disk(const fs::path &path, std::string_view text)
+int bring_to_disk(const fs::path &path, const std::function<void(std::ostream &)> &write)
 {
   errno = 0;
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  write(out);
   out.close();
   if (!out)
     return errno ? errno : EIO;
@@ -56,19 +56,33 @@ int bring_to_disk(const fs::path &path, std::string_view text)
 }
 } // namespace
 
-void write_replacing(const fs::path &path, std::string_view text)
+void write_replacing(const fs::path &path, const std::function<void(std::ostream &)> &write)
 {
   const fs::path aside = path.string() + ".tmp";
-  int code = bring_to_disk(aside, text);
+  std::error_code ignored;
+  int code = 0;
+  try
+    {
+      code = bring_to_disk(aside, write);
+    }
+  catch (...)
+    {
+      fs::remove(aside, ignored);
+      throw;
+    }
   if (code == 0 && ::rename(aside.c_str(), path.c_str()) != 0)
     code = errno;
   if (code == 0)
     code = name_synced(path);
   if (code == 0)
     return;
-  std::error_code ignored;
   fs::remove(aside, ignored);
   fail(path, "written", std::strerror(code));
+}
+
+void write_replacing(const fs::path &path, std::string_view text)
+{
+  write_replacing(path, [&](std::ostream &out) { out.write(text.data(), static_cast<std::streamsize>(text.size())); });
 }
 
 void rename_file(const fs::path &from, const fs::path &to)

@@ -2,6 +2,8 @@
 // Files and folders, made or told why not.   tested: tests/apps/kill_resume_test.py, tests/apps/failures_test.py
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <string_view>
 
 namespace isostat
@@ -10,6 +12,10 @@ namespace isostat
 /// `path` sees the old content or the new, never a part; the name is on the disk, too, when it returns. Throws
 /// RunFailure if that fails: `path` is whole then, the old content or the new, and `path`.tmp gone.
 void write_replacing(const std::filesystem::path &path, std::string_view text);
+
+/// The same for what is too long to be had at once.
+/// @param write  writes it, piece by piece; what it throws goes on, and the old content stays
+void write_replacing(const std::filesystem::path &path, const std::function<void(std::ostream &)> &write);
 
 /// Gives a file another name of the same folder, in one step.   @throws RunFailure  it cannot be done
 void rename_file(const std::filesystem::path &from, const std::filesystem::path &to);

@@ -13,7 +13,9 @@ namespace isostat
 std::string sealed(std::string bytes);
 
 /// The bytes without their seal; all of them if there is none, as in files of other programs, or changed by one.
-/// @param path  for the message   @throws InputError  they are not those that were sealed
+/// @param path  for the message
+/// @throws InputError  they are not those that were sealed; or an HDF5 file has lost its seal in part, or with the end
+/// of its content, or something was added behind it
 std::string_view unsealed(std::string_view bytes, const std::filesystem::path &path);
 
 /// As unsealed(), of a file, in blocks of 1 MB. A file that was found whole is not read again until its size or the

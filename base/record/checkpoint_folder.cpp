@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 
 #include <fmt/format.h>
 

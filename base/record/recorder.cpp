@@ -5,14 +5,17 @@
 #include "base/files/hdf5.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/file_format.hpp"
+#include "base/tell.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 
 namespace isostat
 {
@@ -20,6 +23,11 @@ namespace fs = std::filesystem;
 
 namespace
 {
+void add_number(std::string &lines, double x, bool last_of_row)
+{
+  fmt::format_to(std::back_inserter(lines), "{:.10g}{}", x, last_of_row ? '\n' : ',');
+}
+
 const std::string history_format = "isostat-history";
 constexpr std::uint64_t history_schema_version = 1;
 } // namespace
@@ -36,7 +44,7 @@ Recorder::Recorder(const fs::path &folder, std::vector<RecordColumn> columns, st
   if (resume_rows == 0)
     start_anew(scene);
   else
-    resume();
+    resume(scene);
 }
 
 Recorder::~Recorder()
@@ -57,85 +65,132 @@ std::string Recorder::header() const
   return line + "\n";
 }
 
-void Recorder::start_anew(const std::string &scene)
+hdf5::File Recorder::empty_history(const std::string &scene) const
 {
-  write_replacing(csv_, header());
-  csv_bytes_ = header().size();
   hdf5::File file = hdf5::File::create(hdf5_);
   set_format(file.root(), history_format, history_schema_version, scene);
   hdf5::Group series = file.root().create_group("history");
   for (const RecordColumn &column : columns_)
     series.create_series(column.name, column.unit.empty() ? "-" : column.unit);
-  file.commit();
+  return file;
 }
 
-std::uintmax_t Recorder::bytes_of_lines() const
+void Recorder::start_anew(const std::string &scene)
 {
-  // line by line: a history of days is larger than the run that goes on with it
-  std::ifstream in(csv_, std::ios::binary);
-  std::string line;
-  std::getline(in, line);
-  if (in.eof() || line + "\n" != header())
-    throw InputError(
-        fmt::format("{}: found the header \"{}\", expected \"{}\"; resume with the columns of the first run, or "
-                    "start anew in another folder",
-                    csv_.string(), line, header().substr(0, header().size() - 1)));
-  std::uintmax_t end = header().size();
-  for (std::size_t row = 0; row < n_rows_; ++row)
-    {
-      std::getline(in, line);
-      if (in.eof() || !in)
-        throw InputError(fmt::format("{}: {} whole rows, the checkpoint expects {}; restore the file or resume from an "
-                                     "earlier checkpoint",
-                                     csv_.string(), row, n_rows_));
-      end += line.size() + 1;
-    }
-  return end;
+  write_replacing(csv_, header());
+  csv_bytes_ = header().size();
+  empty_history(scene).commit();
 }
 
-void Recorder::resume()
+/// @throws InputError  it has other columns, or fewer rows
+void Recorder::check(const hdf5::Group &root, std::size_t n_rows) const
 {
-  csv_bytes_ = bytes_of_lines(); // both files are judged before one is changed
-  resume_hdf5();
-  std::error_code error;
-  fs::resize_file(csv_, csv_bytes_, error);
-  if (error)
-    throw RunFailure(fmt::format("{}: cannot be cut to {} rows: {}; check its permissions", csv_.string(), n_rows_,
-                                 error.message()));
-}
-
-void Recorder::resume_hdf5()
-{
-  hdf5::File file = hdf5::File::update(hdf5_);
-  refuse_newer(file.root(), history_schema_version);
-  if (!file.root().has("history"))
+  refuse_newer(root, history_schema_version);
+  if (!root.has("history"))
     throw InputError(fmt::format("{}: no group \"history\"; restore the file or start the run anew", hdf5_.string()));
-  hdf5::Group series = file.root().group("history");
+  const hdf5::Group series = root.group("history");
   if (series.names().size() != columns_.size())
     throw InputError(fmt::format("{}: {} columns, expected {}; resume with the columns of the first run",
                                  hdf5_.string(), series.names().size(), columns_.size()));
   for (const RecordColumn &column : columns_)
     {
-      const std::size_t rows = series.has(column.name) ? series.shape(column.name)[0] : 0;
-      if (rows < n_rows_)
-        throw InputError(
-            fmt::format("{}: column \"{}\" has {} rows, the checkpoint expects {}; restore the file or resume "
-                        "from an earlier checkpoint",
-                        hdf5_.string(), column.name, rows, n_rows_));
-      series.resize(column.name, n_rows_);
+      const hdf5::Shape shape = series.has(column.name) ? series.shape(column.name) : hdf5::Shape{0};
+      if (shape.size() != 1 || shape[0] < n_rows)
+        throw InputError(fmt::format(
+            "{}: column \"{}\" has the shape {}, the checkpoint expects {} rows; restore the file or resume "
+            "from an earlier checkpoint",
+            hdf5_.string(), column.name, shape, n_rows));
     }
+}
+
+template <class Use>
+void Recorder::for_each_block(std::size_t n_rows, const Use &use) const
+{
+  constexpr std::size_t n_block = 4096; // a history of days is larger than the run that goes on with it
+  const hdf5::File file = hdf5::File::open(hdf5_);
+  const hdf5::Group series = file.root().group("history");
+  std::vector<std::vector<double>> block(columns_.size());
+  for (std::size_t first = 0; first < n_rows; first += n_block)
+    {
+      for (std::size_t c = 0; c < block.size(); ++c)
+        block[c] = series.rows(columns_[c].name, first, std::min(n_block, n_rows - first));
+      use(block);
+    }
+}
+
+void Recorder::resume(const std::string &scene)
+{
+  std::error_code ignored;
+  if (fs::is_directory(csv_, ignored))
+    throw InputError(fmt::format("{}: is a folder, where a file is to be written; remove it", csv_.string()));
+  check(hdf5::File::open(hdf5_).root(), n_rows_);
+  hdf5::File file = empty_history(scene);
+  hdf5::Group series = file.root().group("history");
+  for_each_block(n_rows_, [&](const auto &block) {
+    for (std::size_t c = 0; c < block.size(); ++c)
+      series.append(columns_[c].name, block[c]);
+  });
   file.commit();
   n_rows_in_hdf5_ = n_rows_;
+  copy_to_csv();
+}
+
+void Recorder::copy_to_csv()
+{
+  std::uintmax_t n_bytes = 0;
+  write_replacing(csv_, [&](std::ostream &out) {
+    std::string lines = header();
+    const auto write = [&] {
+      out << lines;
+      n_bytes += lines.size();
+      lines.clear();
+    };
+    for_each_block(n_rows_in_hdf5_, [&](const auto &block) {
+      for (std::size_t i = 0; i < block[0].size(); ++i)
+        for (std::size_t c = 0; c < block.size(); ++c)
+          add_number(lines, block[c][i], c + 1 == block.size());
+      write();
+    });
+    write();
+  });
+  csv_bytes_ = n_bytes;
+}
+
+/// What the run has written, and needs again, was changed by others: no fault of its input.
+template <typename Work>
+void Recorder::with_own_file(const Work &work) const
+{
+  try
+    {
+      work();
+    }
+  catch (const InputError &error)
+    {
+      throw RunFailure(fmt::format("{}\n  It was whole when this run wrote it, and another program has removed or "
+                                   "changed it since. Put it back and go on with --resume, or start anew with "
+                                   "--overwrite.",
+                                   error.what()));
+    }
+}
+
+void Recorder::mend_csv()
+{
+  waiting_lines_.clear();
+  n_waiting_lines_ = 0;
+  flush_hdf5();
+  with_own_file([&] { copy_to_csv(); });
+  tell(fmt::format("warning: {} was removed or changed while the run writes it; it has been written anew from {}\n",
+                   csv_.string(), hdf5_.string()));
 }
 
 void Recorder::append(std::span<const double> row)
 {
   assert(row.size() == columns_.size());
   for (std::size_t c = 0; c < row.size(); ++c)
-    fmt::format_to(std::back_inserter(waiting_lines_), "{:.10g}{}", row[c], c + 1 < row.size() ? ',' : '\n');
+    add_number(waiting_lines_, row[c], c + 1 == row.size());
   waiting_.insert(waiting_.end(), row.begin(), row.end());
   ++n_rows_;
-  if (++n_waiting_lines_ >= rows_per_line_flush)
+  if (++n_waiting_lines_ >= rows_per_line_flush || since_lines_.seconds() > seconds_per_line_flush)
     flush_lines();
   if (n_rows_ - n_rows_in_hdf5_ > std::max<std::size_t>(4096, n_rows_in_hdf5_ / 4))
     flush_hdf5();
@@ -150,17 +205,22 @@ void Recorder::flush()
 
 void Recorder::flush_lines()
 {
+  since_lines_.restart();
+  std::error_code error;
+  if (fs::file_size(csv_, error) != csv_bytes_)
+    return mend_csv();
   if (waiting_lines_.empty())
     return;
   errno = 0;
   std::ofstream out(csv_, std::ios::binary | std::ios::app);
+  if (!out && errno == EACCES) // the file is not ours any more, the folder may be
+    return mend_csv();
   out.write(waiting_lines_.data(), static_cast<std::streamsize>(waiting_lines_.size()));
   out.close();
   if (!out)
     {
       const std::string reason = std::strerror(errno);
-      std::error_code ignored;
-      fs::resize_file(csv_, csv_bytes_, ignored);
+      fs::resize_file(csv_, csv_bytes_, error);
       throw RunFailure(
           fmt::format("{}: rows cannot be added: {}; check free space and permissions", csv_.string(), reason));
     }
@@ -173,17 +233,24 @@ void Recorder::flush_hdf5()
 {
   if (waiting_.empty())
     return;
+  with_own_file([&] { append_to_hdf5(); });
+  n_rows_in_hdf5_ = n_rows_;
+  waiting_.clear();
+}
+
+void Recorder::append_to_hdf5() const
+{
   hdf5::File file = hdf5::File::update(hdf5_);
+  check(file.root(), n_rows_in_hdf5_);
   hdf5::Group series = file.root().group("history");
   std::vector<double> values(n_rows_ - n_rows_in_hdf5_);
   for (std::size_t c = 0; c < columns_.size(); ++c)
     {
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = waiting_[i * columns_.size() + c];
+      series.resize(columns_[c].name, n_rows_in_hdf5_);
       series.append(columns_[c].name, values);
     }
   file.commit();
-  n_rows_in_hdf5_ = n_rows_;
-  waiting_.clear();
 }
 } // namespace isostat

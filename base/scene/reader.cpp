@@ -167,10 +167,15 @@ std::string read_scene_text(const std::string &path)
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
+  if (std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: is a folder; must be a scene file (TOML). Give one that is in it.", path));
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path, ignored))
+  if (!file)
     throw InputError(fmt::format("{}: cannot be read; must be a scene file (TOML) open to you.", path));
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text.starts_with("\x1f\x8b"))
+    throw InputError(fmt::format("{}: is compressed; must be a scene file (TOML). Unpack it with gunzip.", path));
+  return text;
 }
 
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
@@ -185,6 +190,9 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored)))
       return path.string();
+  for (const fs::path &path : {beside_scene, here})
+    if (fs::is_directory(path, ignored))
+      document.refuse(key, fmt::format("is a folder: {}. Give a file that is in it.", path.string()));
   document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the "
                                    "scene file or else from the working directory; correct it.",
                                    beside_scene.string(), here.string()));

@@ -10,6 +10,8 @@ namespace isostat
 {
 namespace
 {
+constexpr double smallest = 1e-30, largest = 1e30; ///< besides 0, in size
+
 /// A value on its way from the file to its field, whose type says how it is read.
 struct Reading
 {
@@ -92,11 +94,18 @@ struct Reading
   /// @param scale  on the scale of ranges
   void check_range(double scale) const
   {
+    if (!std::isfinite(scale))
+      refuse("must be a finite number");
+    if (scale != 0 && !(std::abs(scale) >= smallest && std::abs(scale) <= largest))
+      refuse(fmt::format("must be between {:g} and {:g} in size{}, because products of larger or smaller numbers "
+                         "overflow or vanish",
+                         smallest, largest,
+                         key.kind == Kind::quantity || key.kind == Kind::quantity_list ? " (in SI units)" : ""));
     if (key.range.contains(scale))
       return;
     const std::string range = range_text(key);
     const std::string reason = *key.reason ? std::string(" ") + key.reason : "";
-    refuse(range.empty() ? "must be finite" : fmt::format("must be {}{}", range, reason));
+    refuse(fmt::format("must be {}{}", range, reason));
   }
 
   double quantity(const toml::node &node) const

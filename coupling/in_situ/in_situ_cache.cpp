@@ -4,7 +4,7 @@
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "base/record/file_format.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 #include "coupling/in_situ/in_situ.hpp"
 
 #include <algorithm>

@@ -11,6 +11,8 @@
 
 namespace isostat
 {
+inline constexpr Range up_to_thousand{0, 1e3, true};
+
 // clang-format off
 inline constexpr std::array keys_of_rolling_resistance{
   Key{.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
@@ -22,8 +24,8 @@ inline constexpr std::array keys_of_rolling_resistance{
   Key{.path = "rolling", .kind = Kind::table, .presence = Presence::experiment,
    .value = "{ stiffness = 0.3, limit = 0.5 }", .text = "Rolling resistance; left out: none.",
    .field = law_field<&RollingResistance::rolling>},
-  Key{.path = "rolling.stiffness", .value = "0.3", .range = ranges::positive,
-   .reason = "because zero means no resistance (leave the table out instead)",
+  Key{.path = "rolling.stiffness", .value = "0.3", .range = up_to_thousand,
+   .reason = "because zero means no resistance (leave the table out instead), and the time step falls with it",
    .text = "alpha_r: rolling stiffness over R1 R2 ks.",
    .field = law_field<&RollingResistance::rolling_stiffness>},
   Key{.path = "rolling.limit", .value = "0.5", .range = ranges::positive,
@@ -33,8 +35,8 @@ inline constexpr std::array keys_of_rolling_resistance{
   Key{.path = "twisting", .kind = Kind::table, .presence = Presence::experiment, .value = "{ stiffness = 0.3 }",
    .text = "Twisting resistance, elastic without limit; left out: none.",
    .field = law_field<&RollingResistance::twisting>},
-  Key{.path = "twisting.stiffness", .value = "0.3", .range = ranges::positive,
-   .reason = "because zero means no resistance (leave the table out instead)",
+  Key{.path = "twisting.stiffness", .value = "0.3", .range = up_to_thousand,
+   .reason = "because zero means no resistance (leave the table out instead), and the time step falls with it",
    .text = "alpha_t: twisting stiffness over R1 R2 ks; not given in the paper.",
    .field = law_field<&RollingResistance::twisting_stiffness>},
 };

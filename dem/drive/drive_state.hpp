@@ -222,8 +222,8 @@ enum class ControlledQuantity
   tau_xy,
   indicator
 };
-inline constexpr std::size_t n_controlled = 5;
 constexpr ControlledQuantity last_of(ControlledQuantity) { return ControlledQuantity::indicator; }
+inline constexpr std::size_t n_controlled = static_cast<std::size_t>(last_of(ControlledQuantity{})) + 1;
 
 /// How far a controlled quantity went from where it should be, in one stage.
 struct Deviation

@@ -51,7 +51,8 @@ constexpr Section fixed_sections[] = {
     {.name = "output", .text = "What is written, and how often. Output never changes a trajectory."},
 };
 
-using ranges::because_tan, ranges::fraction, ranges::positive, ranges::right_angle;
+using ranges::because_stresses, ranges::because_tan, ranges::fraction, ranges::positive, ranges::right_angle,
+    ranges::stresses;
 constexpr const char *because_damping = "because at 1 no grain would get moving";
 
 // clang-format off
@@ -90,7 +91,7 @@ constexpr Key first_keys[] = {
            "scaled up, with `d50` the edge.",
    .field = [](Scene &s) -> Field { return &s.grading.solid_fraction; }},
   {.path = "grading.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "2650 kg/m3", .range = positive, .text = "Density of the grains.",
+   .value = "2650 kg/m3", .range = {1, 1e6}, .reason = "because no solid has another", .text = "Density of the grains.",
    .field = [](Scene &s) -> Field { return &s.grading.density; }},
   {.path = "grading.seed", .kind = Kind::integer, .value = "1",
    .text = "Realisation: the same seed gives the same specimen on any number of threads.",
@@ -106,7 +107,7 @@ constexpr Key specimen_keys[] = {
            "periodic-cell only; not together with `file`).",
    .field = [](Scene &s) -> Field { return &s.specimen.consolidation; }},
   {.path = "specimen.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "200 kPa", .range = positive,
+   .value = "200 kPa", .range = stresses, .reason = because_stresses,
    .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one.",
    .field = [](Scene &s) -> Field { return &s.specimen.pressure; }},
   {.path = "specimen.relative_density", .presence = Presence::experiment, .value = "0.64", .range = {0, 1},
@@ -202,6 +203,7 @@ A scene is one TOML file that says all about a run. This page is generated from 
 - Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
   A bare number, or the unit of something else, is an error. What has no dimension is a plain number.
 - Friction is an angle in files (`deg`, `rad`, or its tangent as `"0.325 tan"`) and a coefficient tan(phi) inside.
+- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
 - An unknown key is an error, and so is a key twice. Stresses are effective; compression is positive.
 - A key written `rolling.limit` is `limit` in the table `rolling`: `rolling = { limit = 0.5 }`, or `rolling.limit = 0.5`.
 - `--set key=value` on the command line overrides the file: `--set motion.damping=0.3`,

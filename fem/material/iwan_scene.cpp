@@ -14,7 +14,7 @@ using namespace ranges;
 // clang-format off
 constexpr Key iwan_in_scenes[] = {
   {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = positive,
+   .value = "100 kPa", .range = ranges::stresses, .reason = ranges::because_stresses,
    .text = "Mean effective stress p_r at which the stiffness is given.",
    .field = [](IwanParameters &p) -> Field { return &p.reference_pressure; }},
   {.path = "exponent", .value = "0.5", .range = {0, 1},

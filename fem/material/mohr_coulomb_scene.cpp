@@ -14,7 +14,7 @@ using namespace ranges;
 // clang-format off
 constexpr Key mohr_coulomb_in_scenes[] = {
   {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = positive,
+   .value = "100 kPa", .range = ranges::stresses, .reason = ranges::because_stresses,
    .text = "Mean effective stress p_r at which the stiffness is given.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.reference_pressure; }},
   {.path = "exponent", .value = "0", .range = {0, 1}, .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",

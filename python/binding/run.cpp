@@ -5,7 +5,7 @@
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-#include "base/record/tell.hpp"
+#include "base/tell.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"

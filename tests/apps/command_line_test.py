@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
+import gzip
 import pathlib
 import re
 import shutil
@@ -257,13 +258,33 @@ class OutputFolder(AppTest):
             self.assert_refused(self.run_test(scene, "-o", place, "--overwrite"), "not overwritten", "holds no ")
         self.assertEqual(contents(self.folder), before)
 
+    def test_what_was_not_meant(self):
+        (self.folder / "folder").mkdir()
+        (self.folder / "scene.toml.gz").write_bytes(gzip.compress(tiny_scene().encode()))
+        (self.folder / "link").symlink_to("nowhere")
+        for said, arguments in (("folder: is a folder; must be a scene file", ("folder",)),
+                                ("is compressed; must be a scene file (TOML). Unpack it", ("scene.toml.gz",)),
+                                ("link: is a link to nowhere, which is not there", (self.scene, "-o", "link")),
+                                ("a point in its number, no comma", (self.scene, "--set", "specimen.pressure=0,5 kPa")),
+                                ("error: The following argument was not expected: --bogus", (self.scene, "--bogus"))):
+            with self.subTest(said):
+                self.assert_refused(self.run_test(*arguments), said)
+
+    def test_a_stage_that_cannot_begin(self):
+        """Known only when the stage before has ended, and still a mistake of the scene."""
+        stages = ('[[stage]]\nkind = "drained"\nstrain = 0.001\n[[stage]]\nkind = "undrained-cyclic"\n'
+                  'deviator_average = "500 kPa"\ndeviator_amplitude = "10 kPa"')
+        self.assert_refused(self.run_test(self.write("biased.toml", tiny_scene(stages=stages)), "-o", "out"),
+                            "stage 1 (undrained-cyclic): q = ", "when it begins")
+
     def test_resume_of_nothing(self):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
         self.assertFalse((self.folder / "out").exists())
         self.assert_done(self.run_test(self.scene, "-o", "out"))  # too short for a checkpoint
         (self.folder / "out/summary.json").unlink()  # as if it had been stopped before its end
         before = contents(self.folder / "out")
-        self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "nothing to resume")
+        self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "nothing to resume",
+                            "ended before its first checkpoint", "--overwrite")
         self.assertEqual(contents(self.folder / "out"), before)
 
     def test_resume_of_a_finished_run(self):

@@ -133,7 +133,7 @@ class Mistakes(ColumnTest):
 
     def test_scene(self):
         for old, new, *parts in (
-                ('thickness = "3 m"', 'thickness = "0 m"', "layer.0.thickness", "must be > 0 m"),
+                ('thickness = "3 m"', 'thickness = "0 m"', "layer.0.thickness", "must be in [0.001 m, 100000 m]"),
                 ('permeability = "1e-6 m/s"', 'permeability = "-1e-6 m/s"', "layer.1.permeability", "must be >= 0"),
                 ('cells = 4', 'cells = 4\npermeabilty = 3', "permeabilty", "permeability")):
             text, where = self.changed(old, new)
@@ -154,6 +154,10 @@ class Mistakes(ColumnTest):
                              (["0 0", "0.01 zero", "0.02 1"], "record.txt:2:", "zero")):
             self.write("record.txt", "\n".join(rows) + "\n")
             self.refuse(parts, text=text)
+
+    def test_more_steps_than_can_be_counted(self):
+        self.refuse(["analysis.duration = 1e+17 s: must be at most ", "because the time step is "], "--overwrite",
+                    *settings(analysis__duration="1e17 s"))
 
     def test_time_step_above_the_stable_one(self):
         self.refuse(["time step", "must be <=", "Give a smaller one"], "--overwrite",

@@ -80,7 +80,8 @@ class Kills(AppTest):
             for name, data in found.items():
                 self.assertEqual(data == whole[name], True, f"ISOSTAT_SEED={SEED}: {name} has changed")
             rows += 1
-        print(f"  {program}: {killed} kills, {at_work} of them after a checkpoint, in {rows} runs, {time.monotonic() - begin:.0f} s", flush=True)
+        print(f"  {program}: {killed} kills, {at_work} of them after a checkpoint, in {rows} runs, "
+              f"{time.monotonic() - begin:.0f} s", flush=True)
 
     @staticmethod
     def folder_of_run(parts):

@@ -94,13 +94,13 @@ class Soak(AppTest):
         halves = [p[rows["reversals"][sheared] == half] for half in range(int(rows["reversals"][-1]))]
         onset = next(k for k, half in enumerate(halves) if half.min() < 1e3)
         both = np.mean([half.min() < 1e3 and half.max() > 1e4 for half in halves[onset:]])
-        print(f"  liquid from half cycle {onset} on; of {len(halves) - onset} since then {100 * both:.0f} % are liquid and "
-              "stiff", flush=True)
+        print(f"  liquid from half cycle {onset} on; of {len(halves) - onset} since then {100 * both:.0f} % are liquid "
+              "and stiff", flush=True)
         self.assertGreater(both, 0.9, "it is liquid and stiff in each half of a cycle")
         self.assert_below(volume, 1e-12, "it is set from the sum of strains, which is zero to round-off")
         self.assert_below(np.abs(residual).max() / np.abs(work).max(), 0.02, "first order where contacts slide")
-        self.assert_below(momentum, 0.2, "local damping takes from each grain by itself; it does not add up to a drift: "
-                                         "of 500 grains at random it is 1/sqrt(500) = 0.04 of the sum")
+        self.assert_below(momentum, 0.2, "local damping takes from each grain by itself, which adds up to no drift: of"
+                                         " 500 grains at random it is 1/sqrt(500) = 0.04 of the sum")
         self.assertLess(len(step), STEPS / 20000 + 10 * rows["reversals"][-1] + 100)
 
     def test_at_rest(self):

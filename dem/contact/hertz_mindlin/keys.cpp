@@ -10,7 +10,7 @@ namespace
 // clang-format off
 constexpr auto keys_of_law = with_rolling_resistance(std::array{
   Key{.path = "young", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
-   .value = "64.96 GPa", .range = ranges::positive,
+   .value = "64.96 GPa", .range = ranges::moduli, .reason = ranges::because_moduli,
    .text = "Young's modulus of the grains. The default is that of quartz, 2 (1 + nu) G with G = 29 GPa and nu = 0.12.",
    .field = law_field<&HertzMindlin::young>},
   Key{.path = "poisson", .value = "0.12", .range = {0, 0.5},

@@ -70,7 +70,8 @@ TEST_F(LayerTables, OverridesCountTheLayersOfTheFile)
   ASSERT_EQ(scene.layers.size(), 3U);
   EXPECT_EQ(scene.layers[1].k0, 0.6);
   EXPECT_EQ(scene.layers[2].thickness, 5);
-  expect_refused(profile + above, {"--set layer.2.thickness", "must be > 0 m"}, {"layer.1.thickness=0 m"});
+  expect_refused(profile + above, {"--set layer.2.thickness", "must be in [0.001 m, 100000 m]"},
+                 {"layer.1.thickness=0 m"});
 }
 
 TEST_F(LayerTables, MistakesInTheScene)

@@ -32,10 +32,11 @@ TEST(ColumnSceneError, Layers)
   expect_refused("[layer]\nthickness = \"1 m\"\n" + dry + dynamic,
                  {"column.toml:1: layer; must be an array", "[[layer]]"});
   for (const char *wrong : {"0 m", "-1 m"})
-    expect_refused(smallest, {"layer.0.thickness", "must be > 0 m because a layer without height"},
+    expect_refused(smallest, {"layer.0.thickness", "must be in [0.001 m, 100000 m] because a layer without height"},
                    {std::string("layer.0.thickness=") + wrong});
-  expect_refused("[[layer]]\nthickness = \"0 m\"\nmaterial = \"elastic\"\n" + dynamic,
-                 {"column.toml:2: layer.0.thickness = 0 m; must be > 0 m", "Give for example \"5 m\"."});
+  expect_refused(
+      "[[layer]]\nthickness = \"0 m\"\nmaterial = \"elastic\"\n" + dynamic,
+      {"column.toml:2: layer.0.thickness = 0 m; must be in [0.001 m, 100000 m]", "Give for example \"5 m\"."});
   expect_refused(layer + "permeability = \"-1e-5 m/s\"\n" + dynamic,
                  {"column.toml:6: layer.0.permeability = -1e-5 m/s; must be >= 0 m/s"});
   expect_refused(layer + "permeability = \"1e-5 m\"\n" + dynamic, {"but m is the unit of a length"});
@@ -147,7 +148,8 @@ TEST(ColumnSceneError, Motions)
                  {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
   EXPECT_EQ(complaint(smallest + ricker + ricker + "axis = \"y\"\n"), "accepted");
   expect_refused(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
-  expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be > 0 Hz"}, {"motion.0.frequency=0 Hz"});
+  expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be in [1e-6 Hz, 10000 Hz]"},
+                 {"motion.0.frequency=0 Hz"});
   expect_refused(smallest + ricker, {"must be an acceleration with its unit (m/s2, cm/s2 or g)"},
                  {"motion.0.amplitude=0.1"});
   expect_refused(smallest + ricker, {"there is no motion 1; column.toml has 1"}, {"motion.1.amplitude=1 g"});
@@ -215,6 +217,9 @@ TEST(ColumnSceneError, MotionFiles)
           << message;
       EXPECT_NE(message.find((folder / "motions/a.txt").string()), std::string::npos) << message;
     }
+  std::ofstream(scene) << smallest + "[[motion]]\nkind = \"record\"\nfile = \"motions\"\n";
+  test::expect_parts(test::refusal([&] { read_column_scene(scene); }), {"motion.0.file = motions; is a folder: "});
+  std::ofstream(scene) << smallest + "[[motion]]\nkind = \"record\"\nfile = \"motions/a.txt\"\n";
   std::ofstream(folder / "motions/a.txt") << "0 0\n1 0\n";
   const ColumnScene read = read_column_scene(scene);
   EXPECT_EQ(read.motions[0].file, (folder / "motions/a.txt").string());

@@ -107,20 +107,134 @@ TEST_F(RecorderFiles, ResumeZeroStartsAnew)
 
 TEST_F(RecorderFiles, WrongResumesAreInputErrorsAndChangeNothing)
 {
-  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 2); }), HasSubstr("history.csv"));
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 2); }), HasSubstr("history.h5"));
   {
     Recorder recorder(folder / "run", columns);
     add(recorder, 0, 3);
   }
-  const std::string text = csv();
-  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 4); }), HasSubstr("3 whole rows"));
+  const std::string text = csv(), numbers = get(folder / "run/history.h5");
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 4); }),
+              HasSubstr("has the shape [3], the checkpoint expects 4 rows"));
   EXPECT_THAT(message_of<InputError>([&] {
                 Recorder(folder / "run", {{"q", "Pa"}}, 2);
               }),
-              HasSubstr("expected \"q (Pa)\""));
+              HasSubstr("3 columns, expected 1"));
+  EXPECT_EQ(get(folder / "run/history.h5"), numbers);
+  hdf5::File wide = hdf5::File::update(folder / "run/history.h5");
+  wide.root().group("history").create_series("q", "Pa", 2);
+  wide.commit();
+  const std::string changed = get(folder / "run/history.h5");
+  std::vector<RecordColumn> more = columns;
+  more.push_back({"q", "Pa"});
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", more, 2); }),
+              HasSubstr("\"q\" has the shape [0, 2]"));
+  EXPECT_EQ(get(folder / "run/history.h5"), changed);
   put("run/history.h5", "text");
   EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 2); }), HasSubstr("not an HDF5 file"));
   EXPECT_EQ(csv(), text);
+}
+
+TEST_F(RecorderFiles, BytesDoNotTellWhenRowsWereFlushed)
+{
+  std::string at_once;
+  for (const int every : {20'000, 1, 7, 700, 1024, 5000})
+    {
+      std::filesystem::remove_all(folder / "run");
+      {
+        Recorder recorder(folder / "run", columns);
+        for (int i = 0; i < 20'000; i += every)
+          {
+            add(recorder, i, std::min(i + every, 20'000));
+            if (every > 100 || i < 50 * every)
+              recorder.flush();
+          }
+        recorder.flush();
+      }
+      if (every == 700)
+        {
+          Recorder resumed(folder / "run", columns, 9'876);
+          add(resumed, 9'876, 20'000);
+        }
+      const std::string bytes = get(folder / "run/history.h5");
+      if (at_once.empty())
+        at_once = bytes;
+      EXPECT_EQ(bytes.size(), at_once.size()) << every;
+      EXPECT_TRUE(bytes == at_once) << every;
+    }
+}
+
+TEST_F(RecorderFiles, ResumeWritesTheCsvAnewWhateverBecameOfIt)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 9000);
+  }
+  const std::string text = csv();
+  std::string zeros = text;
+  zeros.replace(500, 4000, 4000, '\0'); // as a loss of power leaves a file
+  for (const std::string &found : {std::string(), text.substr(0, 1000), zeros, std::string("other,columns\n")})
+    {
+      put("run/history.csv", found);
+      Recorder(folder / "run", columns, 9000);
+      EXPECT_EQ(csv(), text);
+    }
+  std::filesystem::remove(folder / "run/history.csv");
+  Recorder(folder / "run", columns, 9000);
+  EXPECT_EQ(csv(), text);
+}
+
+TEST_F(RecorderFiles, ACsvThatOthersChangeIsWrittenAnew)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 9000);
+  }
+  const std::string text = csv();
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 4200);
+  std::filesystem::remove(folder / "run/history.csv");
+  add(recorder, 4200, 5000);
+  put("run/history.csv", csv().substr(0, 300));
+  recorder.flush(); // also where no row is waiting
+  put("run/history.csv", csv() + "1,2,3\n");
+  add(recorder, 5000, 9000);
+  recorder.flush();
+  EXPECT_EQ(csv(), text);
+  EXPECT_EQ(stored("time").size(), 9000u);
+}
+
+TEST_F(RecorderFiles, WhatOthersDoToItsHdf5IsAFailureOfTheRun)
+{
+  Recorder recorder(folder / "run", columns);
+  add(recorder, 0, 5);
+  recorder.flush();
+  const std::string older = get(folder / "run/history.h5");
+  add(recorder, 5, 9);
+  recorder.flush();
+  const std::string newer = get(folder / "run/history.h5");
+  add(recorder, 9, 11);
+  for (const std::string &found : {older, std::string("text")})
+    {
+      put("run/history.h5", found);
+      EXPECT_THAT(message_of<RunFailure>([&] { recorder.flush(); }),
+                  HasSubstr("another program has removed or changed"));
+    }
+  std::filesystem::remove(folder / "run/history.h5");
+  EXPECT_THAT(message_of<RunFailure>([&] { recorder.flush(); }), HasSubstr("Put it back"));
+  put("run/history.h5", newer);
+  recorder.flush();
+  EXPECT_EQ(stored("time").size(), 11u);
+}
+
+TEST_F(RecorderFiles, AFolderInPlaceOfTheCsvIsRefused)
+{
+  {
+    Recorder recorder(folder / "run", columns);
+    add(recorder, 0, 3);
+  }
+  std::filesystem::remove(folder / "run/history.csv");
+  std::filesystem::create_directory(folder / "run/history.csv");
+  EXPECT_THAT(message_of<InputError>([&] { Recorder(folder / "run", columns, 3); }), HasSubstr("is a folder"));
 }
 
 TEST_F(RecorderFiles, UnwritableFolderIsARunFailure)

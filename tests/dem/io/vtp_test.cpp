@@ -138,27 +138,40 @@ TEST_F(Vtp, CollectionGrowsAndResumes)
 {
   const auto path = folder / "grains.pvd";
   PvdCollection first(path);
-  first.append(0, "fields/a.vtp");
-  first.append(0.1, "fields/b & c.vtp");
+  first.append(0, "fields/a_0000.vtp");
+  first.append(0.1, "fields/b & c_0001.vtp");
   const std::string two = get(path);
-  first.append(0.2, "fields/d.vtp");
+  first.append(0.2, "fields/d_0002.vtp");
   const std::string three = get(path);
   ASSERT_TRUE(document.load_file(path.c_str()));
   const pugi::xml_node list = document.child("VTKFile").child("Collection");
   EXPECT_EQ(std::distance(list.begin(), list.end()), 3);
-  EXPECT_STREQ(list.first_child().next_sibling().attribute("file").value(), "fields/b & c.vtp");
+  EXPECT_STREQ(list.first_child().next_sibling().attribute("file").value(), "fields/b & c_0001.vtp");
   EXPECT_EQ(list.last_child().attribute("timestep").as_double(), 0.2);
 
   PvdCollection resumed(path, 2);
   EXPECT_EQ(resumed.n_entries(), 2u);
-  resumed.append(0.2, "fields/d.vtp");
+  resumed.append(0.2, "fields/d_0002.vtp");
   EXPECT_EQ(get(path), three);
   PvdCollection anew(path);
-  anew.append(0, "fields/a.vtp");
-  anew.append(0.1, "fields/b & c.vtp");
+  anew.append(0, "fields/a_0000.vtp");
+  anew.append(0.1, "fields/b & c_0001.vtp");
   EXPECT_EQ(get(path), two);
-  EXPECT_THAT(message_of<InputError>([&] { PvdCollection(path, 5); }), HasSubstr("2 entries, expected at least 5"));
-  EXPECT_THAT(message_of<InputError>([&] { PvdCollection(put("bad.pvd", "<VTKFile"), 1); }), HasSubstr("bad.pvd"));
+  for (const auto &shortened : {path, put("bad.pvd", "<VTKFile"), folder / "missing.pvd"})
+    {
+      PvdCollection more(shortened, 5);
+      EXPECT_EQ(more.n_entries(), 5u);
+      more.append(0.5, "fields/f_0005.vtp");
+      EXPECT_EQ(more.n_entries(), 6u);
+      more.append(0.6, "fields/g_0006.vtp");
+      PvdCollection once_more(shortened, 6);
+      EXPECT_EQ(once_more.n_entries(), 6u);
+      once_more.append(0.6, "fields/g_0006.vtp");
+      const std::string text = get(shortened);
+      EXPECT_EQ(text.find("fields/a_0000.vtp") != std::string::npos, shortened == path);
+      EXPECT_NE(text.find("fields/f_0005.vtp"), std::string::npos);
+      EXPECT_EQ(text.find("fields/g_0006.vtp"), text.rfind("fields/g_0006.vtp")) << "once";
+    }
 }
 
 TEST_F(Vtp, UnwritablePlacesAreRunFailures)
