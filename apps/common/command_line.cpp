@@ -106,7 +106,7 @@ std::string command_text(int argc, char **argv)
         {
           for (std::size_t at = 0; (at = argument.find('\'', at)) != std::string::npos; at += 4)
             argument.replace(at, 1, "'\\''");
-          argument = "'" + argument + "'";
+          argument = fmt::format("'{}'", argument);
         }
       text += (text.empty() ? "" : " ") + argument;
     }
