@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
-constexpr const char *lock_name = ".lock";
+constexpr const char *lock_name = ".lock", *scene_name = "scene.toml", *provenance_name = "provenance.txt";
 
 /// As one word of a shell command, for messages.
 std::string quoted(const fs::path &path)
@@ -32,6 +32,14 @@ std::string quoted(const fs::path &path)
   for (char c : path.string())
     word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
+}
+
+/// Whether there is nothing else in the folder, but what was being written when a program was killed.
+bool holds_only(const fs::path &folder, const std::vector<fs::path> &names)
+{
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry &entry) {
+    return std::ranges::find(names, entry.path().filename()) != names.end() || entry.path().extension() == ".tmp";
+  });
 }
 
 /// @throws InputError  a program is at work in the folder
@@ -62,23 +70,25 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-bool is_unused(const fs::path &folder)
-{
-  return !folder_exists(folder) ||
-         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                     [](const fs::directory_entry &entry) { return entry.path().filename() == lock_name; });
-}
+bool is_unused(const fs::path &folder) { return !folder_exists(folder) || holds_only(folder, {lock_name}); }
 
 void empty_folder(const fs::path &folder)
 {
+  std::vector<fs::path> paths;
   for (const fs::directory_entry &entry : fs::directory_iterator(folder))
+    if (const fs::path name = entry.path().filename();
+        name != lock_name && name != scene_name && name != provenance_name)
+      paths.push_back(entry.path());
+  // last what tells that these are results, in the reverse of the order in which it was written: it may be killed here
+  for (const char *name : {scene_name, provenance_name})
+    paths.push_back(folder / name);
+  for (const fs::path &path : paths)
     {
       std::error_code failure;
-      if (entry.path().filename() != lock_name)
-        fs::remove_all(entry.path(), failure);
+      fs::remove_all(path, failure);
       if (failure)
         throw RunFailure(fmt::format("{}: cannot be removed: {}. Remove it by hand, or give another --output.",
-                                     entry.path().string(), failure.message()));
+                                     path.string(), failure.message()));
     }
 }
 
@@ -137,7 +147,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
         throw InputError(fmt::format("{}: nothing to resume: {}. Give the folder of an interrupted run with "
                                      "--output, or start {} --resume.",
                                      folder.string(),
-                                     fs::exists(folder / "scene.toml", failure)
+                                     fs::exists(folder / scene_name, failure)
                                          ? "the run in it ended before its first checkpoint"
                                          : "there is no folder checkpoint in it",
                                      is_unused(folder) ? "without" : "it anew with --overwrite in place of"));
@@ -148,8 +158,8 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
         fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
-  for (const char *name : {"scene.toml", "provenance.txt"}) // a folder of one's own may hold a scene
-    if (used && !fs::exists(folder / name))
+  for (const char *name : {scene_name, provenance_name}) // a folder of one's own may hold a scene
+    if (used && !fs::exists(folder / name) && !holds_only(folder, {lock_name, provenance_name}))
       throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
                                    "Choose another --output.",
                                    folder.string(), name));
@@ -161,7 +171,7 @@ FileLock open_result_folder(const fs::path &folder, FolderUse use)
 {
   make_writable_folder(folder);
   FileLock lock = lock_folder(folder);
-  if (use == FolderUse::fresh && fs::exists(folder / "scene.toml")) // of another program, since check_result_folder()
+  if (use == FolderUse::fresh && fs::exists(folder / scene_name)) // of another program, since check_result_folder()
     throw InputError(
         fmt::format("{}: another program has used it since this one began. Give another --output.", folder.string()));
   if (use == FolderUse::overwrite)
@@ -188,10 +198,10 @@ std::string provenance_text(const std::string &command_line, const MoreProvenanc
 void write_provenance(const fs::path &folder, const std::string &scene_text, const std::string &command_line,
                       const MoreProvenance &more)
 {
-  const fs::path file = folder / "provenance.txt";
+  const fs::path file = folder / provenance_name;
   const std::string before = fs::exists(file) ? read_text(file) + "\n" : "";
   write_replacing(file, before + provenance_text(command_line, more));
-  write_replacing(folder / "scene.toml", scene_text); // last: who finds it finds both
+  write_replacing(folder / scene_name, scene_text); // last: who finds it finds both
 }
 
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)

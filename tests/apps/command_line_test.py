@@ -277,6 +277,14 @@ class OutputFolder(AppTest):
         self.assert_refused(self.run_test(self.write("biased.toml", tiny_scene(stages=stages)), "-o", "out"),
                             "stage 1 (undrained-cyclic): q = ", "when it begins")
 
+    def test_a_folder_whose_run_was_killed_as_it_began(self):
+        """Or as it removed older results: their scene goes before their provenance."""
+        (self.folder / "out").mkdir()
+        for name in (".lock", "provenance.txt", "scene.toml.tmp"):
+            (self.folder / "out" / name).touch()
+        self.assert_refused(self.run_test(self.scene, "-o", "out"), "--overwrite")
+        self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
+
     def test_resume_of_nothing(self):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
         self.assertFalse((self.folder / "out").exists())
