@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
-constexpr const char *lock_name = ".lock", *scene_name = "scene.toml", *provenance_name = "provenance.txt";
+constexpr const char *lock_name = ".lock", *scene_name = "scene.toml", *provenance_name = "provenance.txt",
+                     *probe_name = ".writable";
 
 /// As one word of a shell command, for messages.
 std::string quoted(const fs::path &path)
@@ -38,7 +39,8 @@ std::string quoted(const fs::path &path)
 bool holds_only(const fs::path &folder, const std::vector<fs::path> &names)
 {
   return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry &entry) {
-    return std::ranges::find(names, entry.path().filename()) != names.end() || entry.path().extension() == ".tmp";
+    const fs::path name = entry.path().filename();
+    return std::ranges::find(names, name) != names.end() || name == probe_name || name.extension() == ".tmp";
   });
 }
 
@@ -128,8 +130,8 @@ void make_writable_folder(const fs::path &folder)
                     folder.string(), failure.message()));
   try
     {
-      write_replacing(folder / ".writable", "");
-      fs::remove(folder / ".writable");
+      write_replacing(folder / probe_name, "");
+      fs::remove(folder / probe_name);
     }
   catch (const RunFailure &error)
     {

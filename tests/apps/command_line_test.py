@@ -280,7 +280,7 @@ class OutputFolder(AppTest):
     def test_a_folder_whose_run_was_killed_as_it_began(self):
         """Or as it removed older results: their scene goes before their provenance."""
         (self.folder / "out").mkdir()
-        for name in (".lock", "provenance.txt", "scene.toml.tmp"):
+        for name in (".lock", ".writable", "provenance.txt", "scene.toml.tmp"):
             (self.folder / "out" / name).touch()
         self.assert_refused(self.run_test(self.scene, "-o", "out"), "--overwrite")
         self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
