@@ -96,7 +96,7 @@ public:
   static File open(const std::filesystem::path &path);
   /// For writing, empty. RunFailure if the folder is missing or not writable.
   static File create(const std::filesystem::path &path);
-  /// For writing, starting from a copy of what is there.   cost: three times the file in memory
+  /// For writing, starting from a copy of what is there.   cost: twice the file in memory, three times to add rows
   static File update(const std::filesystem::path &path);
 
   Group root() const { return {state_, "/"}; }

@@ -180,7 +180,6 @@ File File::update(const fs::path &path)
 {
   require_hdf5(path);
   auto state = std::make_shared<FileState>(path, true);
-  state->grows = true;
   std::string bytes(unsealed(read_text(path), path));
   const Handle access = memory_access(*state);
   if (H5Pset_file_image(access, bytes.data(), bytes.size()) < 0)

@@ -345,6 +345,7 @@ void Group::append(const std::string &name, std::span<const double> values)
   assert(values.size() % n_columns == 0);
   if (values.empty())
     return;
+  file_->grows = true;
   resize(name, before[0] + n_rows);
   const Rows rows(dataset, before[0], n_rows);
   if (H5Dwrite(dataset, H5T_IEEE_F64LE, rows.in_memory, rows.in_file, H5P_DEFAULT, values.data()) < 0)
