@@ -22,21 +22,6 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// What `work` returns, which reads files that the run itself has written: that one of them is gone or damaged is no
-/// fault of what the user gave.   @throws RunFailure  in place of InputError
-template <typename Work>
-auto during_the_run(const Work &work)
-{
-  try
-    {
-      return work();
-    }
-  catch (const InputError &error)
-    {
-      throw RunFailure(error.what());
-    }
-}
-
 /// The user or the system asked to stop. Applications return exit code 130.
 class Interrupted : public std::runtime_error
 {

@@ -102,10 +102,8 @@ public:
     open();
     try
       {
-        during_the_run([&] {
-          run();
-          history_->flush();
-        });
+        run();
+        history_->flush();
       }
     catch (const RunFailure &failure) // of its files
       {

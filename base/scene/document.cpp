@@ -151,12 +151,12 @@ void SceneDocument::apply(const std::string &override)
 void SceneDocument::make_room(const std::string &path)
 {
   const Key *key = schema_.find_key(schema_.schema_path(path));
-  if (!key || !*key->group)
+  if (!key || key->group.empty())
     return;
   const std::string prefix = path.substr(0, path.size() - key->name().size()); // "specimen." or "layer.2."
   for (const Key &other : schema_.keys)
     {
-      if (other.section() != key->section() || std::string_view(other.group) != key->group || other.path == key->path)
+      if (other.section() != key->section() || other.group != key->group || other.path == key->path)
         continue;
       const std::string rival = prefix + std::string(other.name());
       if (std::find(overridden_.begin(), overridden_.end(), rival) == overridden_.end())

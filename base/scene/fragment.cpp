@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/scene/fragment.hpp"
 
+#include <fmt/format.h>
+
 namespace isostat
 {
 KeyTable::KeyTable(std::span<const KeyRun> runs)
@@ -9,7 +11,7 @@ KeyTable::KeyTable(std::span<const KeyRun> runs)
     for (Key key : run.keys)
       {
         if (!run.section.empty())
-          key.path = paths_.emplace_back(run.section + "." + key.path).c_str();
+          key.path = paths_.emplace_back(fmt::format("{}.{}", run.section, key.path));
         if (run.kinds != 0)
           key.kinds = run.kinds;
         if (run.part)

@@ -114,7 +114,7 @@ void fill_table(const SceneDocument &document, const Section &section, const std
 
 void fill_array(const SceneDocument &document, const Section &section, void *scene)
 {
-  const std::string name = section.name;
+  const std::string name(section.name);
   const toml::node *node = document.find(name);
   if (!node && !section.needed)
     return;
@@ -139,7 +139,7 @@ void check_group(const SceneDocument &document, const KeyGroup &group, const std
   std::string given, names;
   for (const Key &key : document.schema().keys)
     {
-      if (std::string_view(key.group) != group.name || !takes_key(key, kind))
+      if (key.group != group.name || !takes_key(key, kind))
         continue;
       const std::string path = fmt::format("{}.{}", prefix, key.name());
       names += (names.empty() ? "" : ", ") + std::string(key.name());
@@ -156,7 +156,7 @@ void check_group(const SceneDocument &document, const KeyGroup &group, const std
 const Section &section_of(const SceneSchema &schema, const KeyGroup &group)
 {
   for (const Key &key : schema.keys)
-    if (std::string_view(key.group) == group.name)
+    if (key.group == group.name)
       return *schema.find_section(key.section());
   return schema.sections.front();
 }
@@ -217,10 +217,10 @@ void fill_scene(const SceneDocument &document, void *scene)
   check_known(document, document.root(), "");
   for (const Key &key : schema.keys)
     if (key.section().empty())
-      fill_key(document, key, key.path, key.field(scene, nullptr));
+      fill_key(document, key, std::string(key.path), key.field(scene, nullptr));
   for (const Section &section : schema.sections)
     if (!section.items)
-      fill_table(document, section, section.name, scene, nullptr);
+      fill_table(document, section, std::string(section.name), scene, nullptr);
   for (const Section &section : schema.sections)
     if (section.items)
       fill_array(document, section, scene);
@@ -233,7 +233,7 @@ void check_groups(const SceneDocument &document, void *scene)
     {
       const Section &section = section_of(schema, group);
       if (!section.items)
-        check_group(document, group, section.name, kind_number(schema, section, scene, nullptr));
+        check_group(document, group, std::string(section.name), kind_number(schema, section, scene, nullptr));
       else
         for (std::size_t i = 0; i < section.items.count(scene); ++i)
           check_group(document, group, fmt::format("{}.{}", section.name, i),

@@ -57,8 +57,9 @@ constexpr unsigned kind_bit(Kind kind)
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
 struct Key
 {
-  const char *path = ""; ///< "motion.damping"; in an array of tables without the number: "stage.strain". A key whose
-                         ///< range or meaning hangs on the kind has an entry for each meaning, without kinds in common
+  /// "motion.damping"; in an array of tables without the number: "stage.strain". A key whose range or meaning hangs on
+  /// the kind has an entry for each meaning, without kinds in common.
+  std::string_view path = "";
   Kind kind = Kind::number;
   Dimension dimension = Dimension::length; ///< of a quantity, quantity_list or size_curve
   const char *unit = "";                   ///< of those, the one it is shown in
@@ -67,9 +68,9 @@ struct Key
   Range range = {};
   const char *reason = ""; ///< of the range: "because tan() is used"
   std::span<const char *const> choices = {};
-  unsigned kinds = 0;     ///< bit (1 << kind) for each kind of its section it belongs to; 0: to all
-  const char *group = ""; ///< keys of one group of a section exclude each other
-  const char *text = "";  ///< one sentence
+  unsigned kinds = 0;          ///< bit (1 << kind) for each kind of its section it belongs to; 0: to all
+  std::string_view group = ""; ///< keys of one group of a section exclude each other
+  const char *text = "";       ///< one sentence
   FieldAccess field = {};
 
   std::string_view section() const;      ///< "motion"; "" at the top of the file
@@ -86,14 +87,14 @@ struct Key
 /// Keys that exclude each other.
 struct KeyGroup
 {
-  const char *name;
+  std::string_view name;
   const char *example = ""; ///< "relative_density = 0.64": one of them must be given; "": none has to be
 };
 
 /// A table of the file, [motion], or an array of tables, [[stage]].
 struct Section
 {
-  const char *name;
+  std::string_view name;
   const char *text;
   const char *kind_key = ""; ///< its word says which keys belong here ("kind", "material"); "": all do. An EnumField
   ItemAccess items = {};     ///< set: an array of tables

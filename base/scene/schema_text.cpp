@@ -61,23 +61,18 @@ bool Range::contains(double x) const
 
 std::string_view Key::section() const
 {
-  const std::string_view whole = path;
-  const std::size_t dot = whole.find('.');
-  return dot == std::string_view::npos ? std::string_view() : whole.substr(0, dot);
+  const std::size_t dot = path.find('.');
+  return dot == std::string_view::npos ? std::string_view() : path.substr(0, dot);
 }
 
-std::string_view Key::name() const
-{
-  const std::string_view whole = path;
-  return whole.substr(whole.find('.') + 1);
-}
+std::string_view Key::name() const { return path.substr(path.find('.') + 1); }
 
 bool Key::reads_as(const Key &other) const
 {
   const auto same = [](const char *a, const char *b) { return std::string_view(a) == b; };
-  return same(path, other.path) && kind == other.kind && dimension == other.dimension && same(unit, other.unit) &&
+  return path == other.path && kind == other.kind && dimension == other.dimension && same(unit, other.unit) &&
          presence == other.presence && same(value, other.value) && range == other.range && same(reason, other.reason) &&
-         choices.data() == other.choices.data() && same(group, other.group) && same(text, other.text);
+         choices.data() == other.choices.data() && group == other.group && same(text, other.text);
 }
 
 const Key *SceneSchema::find_key(std::string_view path) const

@@ -94,10 +94,10 @@ struct Source
   /// Another key of the group, one without default, is set: this one gave way to it.
   bool gave_way(const Key &key) const
   {
-    if (!*key.group || key.presence != Presence::standard)
+    if (key.group.empty() || key.presence != Presence::standard)
       return false;
     for (const Key &other : schema.keys)
-      if (std::string_view(other.group) == key.group && other.presence != Presence::standard && !value(other).empty())
+      if (other.group == key.group && other.presence != Presence::standard && !value(other).empty())
         return true;
     return false;
   }
@@ -105,8 +105,7 @@ struct Source
   /// The key is inside a table that is switched off (rolling, twisting).
   bool switched_off(const Key &key) const
   {
-    const std::string path = key.path;
-    const Key *table = schema.find_key(path.substr(0, path.rfind('.')));
+    const Key *table = schema.find_key(key.path.substr(0, key.path.rfind('.')));
     if (!table)
       return false;
     const Field field = table->field(scene, item);

@@ -53,7 +53,7 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
 void check_contact(const SceneDocument &document, const Scene &scene)
 {
   for (const Key &key : scene.contact->keys())
-    if (const std::string path = std::string("contact.") + key.path;
+    if (const std::string path = fmt::format("contact.{}", key.path);
         key.kind == Kind::table && document.find(path) && !document.find("contact.friction"))
       document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
   for (std::size_t i = 0; i < scene.stages.size(); ++i)

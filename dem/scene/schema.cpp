@@ -279,7 +279,7 @@ struct WholeSchema
     runs.emplace_back(output_keys);
     table.emplace(std::span<const KeyRun>(runs));
     for (Section &section : sections)
-      if (laws.size() > 1 && std::string_view(section.name) == "contact")
+      if (laws.size() > 1 && section.name == "contact")
         section.kind_key = "law", section.kinds_title = "Laws";
     schema = {.keys = table->keys(),
               .sections = sections,

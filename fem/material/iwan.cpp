@@ -26,10 +26,10 @@ std::vector<double> as_numbers(IwanParameters p)
   return numbers;
 }
 
-void require(bool holds, const char *name, double value, const std::string &range)
+void require(bool holds, std::string_view name, double value, const std::string &range)
 {
   if (!holds || !std::isfinite(value))
-    throw InputError(std::string("iwan: ") + name + " = " + std::to_string(value) + "; must be " + range);
+    throw InputError(std::string("iwan: ").append(name) + " = " + std::to_string(value) + "; must be " + range);
 }
 
 void check(const IwanParameters &p)

@@ -36,7 +36,7 @@ std::vector<double> as_numbers(MohrCoulombParameters p)
 
 std::string said(const Key &key, double scale)
 {
-  return std::string("mohr_coulomb: ") + key.path + " = " +
+  return std::string("mohr_coulomb: ").append(key.path) + " = " +
          (key.kind == Kind::quantity ? format_bound(scale, key.dimension, key.unit) : number_text(scale)) + "; ";
 }
 

@@ -161,7 +161,7 @@ class DamagedCheckpoints(AppTest):
         """Zeros at the end of the last checkpoint, and no more than a part of the table: the run goes on."""
         for program, scene, more in (
                 ("element_test", self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000))), ()),
-                ("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "2 s")), ()),
+                ("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")), ()),
                 ("biaxial", self.write("block.toml", FRICTION), ("--set", "test.steps=500"))):
             arguments = (scene, *more, *SAVED, *QUIET)
             with self.subTest(program):

@@ -301,7 +301,7 @@ TEST(ColumnScene, PrintedDefaultsAreAScene)
 
 TEST(ColumnSchema, EveryKeyIsDescribed)
 {
-  std::map<std::string, unsigned> kinds; // of each path so far
+  std::map<std::string_view, unsigned> kinds; // of each path so far
   for (const Key &key : column_schema().keys)
     {
       constexpr unsigned all = ~0u;

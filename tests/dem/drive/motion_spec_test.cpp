@@ -11,7 +11,7 @@ namespace
 TEST(MotionSpec, EveryFieldHasItsKey)
 {
   MotionSpec motion;
-  std::map<std::string, const void *> listed, keyed;
+  std::map<std::string_view, const void *> listed, keyed;
   MotionSpec::for_each(motion, [&](const char *name, auto &field) { listed[name] = &field; });
   for (const Key &key : motion_keys().keys)
     std::visit(

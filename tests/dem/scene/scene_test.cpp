@@ -356,7 +356,7 @@ TEST(Scene, PrintedDefaultsAreAScene)
 
 TEST(Schema, EveryKeyIsDescribed)
 {
-  std::map<std::string, unsigned> paths;
+  std::map<std::string_view, unsigned> paths;
   for (const Key &key : scene_schema().keys)
     {
       const auto [seen, is_new] = paths.try_emplace(key.path, 0);
