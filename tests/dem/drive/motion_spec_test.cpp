@@ -11,13 +11,13 @@ namespace
 TEST(MotionSpec, EveryFieldHasItsKey)
 {
   MotionSpec motion;
-  std::map<std::string_view, const void *> listed, keyed;
+  std::map<std::string, const void *> listed, keyed;
   MotionSpec::for_each(motion, [&](const char *name, auto &field) { listed[name] = &field; });
   for (const Key &key : motion_keys().keys)
     std::visit(
         [&](auto place) {
           if constexpr (std::is_pointer_v<decltype(place)>)
-            keyed[key.path] = place;
+            keyed[std::string(key.path)] = place;
         },
         key.field(&motion, nullptr));
   EXPECT_EQ(listed, keyed);
