@@ -43,6 +43,14 @@ int name_synced(const fs::path &path)
   return code == EINVAL || code == ENOTSUP || code == EACCES ? 0 : code;
 }
 
+/// A link that others have put at `path` would lead to a file of theirs or of the user, a pipe would wait for a reader.
+void make_way(const fs::path &path)
+{
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(path, ignored)))
+    fs::remove(path, ignored);
+}
+
 /// @return errno; 0 if all of it is on the disk
 int bring_to_disk(const fs::path &path, const std::function<void(std::ostream &)> &write)
 {
@@ -61,6 +69,7 @@ void write_replacing(const fs::path &path, const std::function<void(std::ostream
   const fs::path aside = path.string() + ".tmp";
   std::error_code ignored;
   int code = 0;
+  make_way(aside);
   try
     {
       code = bring_to_disk(aside, write);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files and folders, made or told why not.   tested: tests/apps/kill_resume_test.py, tests/apps/failures_test.py
+// Files and folders, made or told why not.
+// tested: tests/base/files/replace_file_test.cpp, tests/apps/kill_resume_test.py, tests/apps/failures_test.py
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -10,7 +11,8 @@ namespace isostat
 {
 /// Writes `text` to `path`.tmp, brings it to the disk (fsync) and gives it the name `path` in one step: whoever reads
 /// `path` sees the old content or the new, never a part; the name is on the disk, too, when it returns. Throws
-/// RunFailure if that fails: `path` is whole then, the old content or the new, and `path`.tmp gone.
+/// RunFailure if that fails: `path` is whole then, the old content or the new, and `path`.tmp gone. A link or a pipe by
+/// the name of `path`.tmp is removed: nothing is written to where it leads.
 void write_replacing(const std::filesystem::path &path, std::string_view text);
 
 /// The same for what is too long to be had at once.

@@ -122,6 +122,18 @@ class DamagedCheckpoints(AppTest):
             with self.subTest(name):
                 self.refuse("soil_column", arguments, parts, functools.partial(lengthen, name), f"{name} are ")
 
+        def soil(place, file):
+            """A number of the soil, which is kept as bytes."""
+            words = file["material"][()]
+            data = bytearray(words.tobytes())
+            begin = data.rindex(b"iwan") + len("iwan") + 8 * place
+            data[begin:begin + 8] = np.float64(np.nan).tobytes()
+            file["material"][...] = np.frombuffer(data, words.dtype)
+
+        for place in (40, 300, 520):
+            with self.subTest(place):
+                self.refuse("soil_column", arguments, parts, functools.partial(soil, place), "is not finite")
+
     def test_element_test(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
         parts = self.damage_each("element_test", scene)
