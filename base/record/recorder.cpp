@@ -187,8 +187,10 @@ void Recorder::append(std::span<const double> row)
 {
   assert(row.size() == columns_.size());
   for (std::size_t c = 0; c < row.size(); ++c)
-    add_number(waiting_lines_, row[c], c + 1 == row.size());
-  waiting_.insert(waiting_.end(), row.begin(), row.end());
+    {
+      waiting_.push_back(row[c] + 0.0); // -0 becomes 0
+      add_number(waiting_lines_, waiting_.back(), c + 1 == row.size());
+    }
   ++n_rows_;
   if (++n_waiting_lines_ >= rows_per_line_flush || since_lines_.seconds() > seconds_per_line_flush)
     flush_lines();

@@ -49,7 +49,7 @@ public:
   Recorder(const Recorder &) = delete;
   Recorder &operator=(const Recorder &) = delete;
 
-  /// @pre row.size() == number of columns
+  /// A zero has no sign in the files.   @pre row.size() == number of columns
   void append(std::span<const double> row);
   /// Brings both files up to the last row.
   void flush();

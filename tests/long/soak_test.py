@@ -26,7 +26,7 @@ STEPS = int(float(os.environ.get("ISOSTAT_SOAK_STEPS", "1e7")))
 MINUTES = float(os.environ.get("ISOSTAT_SOAK_MINUTES", "1"))
 KEPT = os.environ.get("ISOSTAT_SOAK_FOLDER")
 SCENE = pathlib.Path(__file__).resolve().with_name("soak.toml").read_text(encoding="utf-8")
-AT_REST = '[[stage]]\nkind = "hold"\nbalance = 1e-300\n'  # which no packing meets
+AT_REST = '[[stage]]\nkind = "hold"\nbalance = 1e-30\n'  # which no packing meets
 
 
 def memory(pid):

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
@@ -46,6 +47,15 @@ TEST_F(RecorderFiles, BothFormsHoldTheRows)
   const hdf5::File file = hdf5::File::open(folder / "run" / "history.h5");
   EXPECT_EQ(file.root().group("history").unit("p"), "Pa");
   EXPECT_EQ(file.root().group("history").unit("e"), "-");
+}
+
+TEST_F(RecorderFiles, AZeroHasNoSign)
+{
+  Recorder recorder(folder / "run", columns);
+  recorder.append(std::array{0.0, -0.0, -1e-300});
+  recorder.flush();
+  EXPECT_THAT(csv(), HasSubstr("\n0,0,-1e-300\n"));
+  EXPECT_FALSE(std::signbit(stored("p").front()));
 }
 
 TEST_F(RecorderFiles, LinesAppearWholeAndInTime)
