@@ -24,7 +24,8 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
   const int flags = missing == MissingFile::create ? O_CREAT : 0;
   FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
   if (!lock && missing == MissingFile::create)
-    throw RunFailure(fmt::format("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno)));
+    throw RunFailure(fmt::format("{}: cannot be opened for writing: {}; check free space and permissions of the folder",
+                                 file.string(), std::strerror(errno)));
   if (!lock || flock(lock.file_, LOCK_EX | LOCK_NB) == 0)
     return lock;
   if (errno != EWOULDBLOCK)

@@ -51,7 +51,8 @@ Recorder::~Recorder()
 {
   try
     {
-      flush();
+      if (!waiting_.empty() || !waiting_lines_.empty()) // else all is on the disk
+        flush();
     }
   catch (const std::exception &)
     {}

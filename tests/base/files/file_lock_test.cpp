@@ -36,8 +36,9 @@ TEST(FileLock, SaysWhyAFileCannotBeLocked)
 {
   const std::filesystem::path nowhere = path / "of" / "nothing";
   EXPECT_FALSE(FileLock::attempt(nowhere, FileLock::MissingFile::no_lock));
-  EXPECT_THAT(message_of<RunFailure>([&] { FileLock::attempt(nowhere); }),
-              testing::HasSubstr("nothing: cannot be opened for writing: No such file"));
+  EXPECT_THAT(
+      message_of<RunFailure>([&] { FileLock::attempt(nowhere); }),
+      testing::HasSubstr("nothing: cannot be opened for writing: No such file or directory; check free space and "));
 }
 
 TEST(FileLock, LastsAsLongAsAnyProcessHasTheFileOpen)
