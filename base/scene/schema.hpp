@@ -59,7 +59,7 @@ struct Key
 {
   /// "motion.damping"; in an array of tables without the number: "stage.strain". A key whose range or meaning hangs on
   /// the kind has an entry for each meaning, without kinds in common.
-  std::string_view path = "";
+  std::string_view path = {};
   Kind kind = Kind::number;
   Dimension dimension = Dimension::length; ///< of a quantity, quantity_list or size_curve
   const char *unit = "";                   ///< of those, the one it is shown in
@@ -69,7 +69,7 @@ struct Key
   const char *reason = ""; ///< of the range: "because tan() is used"
   std::span<const char *const> choices = {};
   unsigned kinds = 0;          ///< bit (1 << kind) for each kind of its section it belongs to; 0: to all
-  std::string_view group = ""; ///< keys of one group of a section exclude each other
+  std::string_view group = {}; ///< keys of one group of a section exclude each other
   const char *text = "";       ///< one sentence
   FieldAccess field = {};
 
