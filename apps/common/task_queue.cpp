@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/task_queue.hpp"
 
-#include "base/error.hpp"
 #include "base/files/csv_table.hpp"
+#include "base/files/file_failure.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 
@@ -35,6 +35,15 @@ std::pair<std::string, std::string> read_session(const fs::path &file)
   const std::string text = read_text(file);
   const std::size_t space = text.find(' ');
   return {text.substr(0, space), text.substr(std::min(space, text.size() - 1) + 1)};
+}
+/// @return whether the file was there: another process may be faster, or the file be withdrawn
+bool renamed(const fs::path &from, const fs::path &to)
+{
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    fail(from, "renamed", error.message());
+  return !error;
 }
 } // namespace
 
@@ -125,7 +134,7 @@ void TaskQueue::give_back_abandoned()
 {
   for (const std::size_t number : numbers(".run"))
     if (is_unlocked(file(number, ".run")) && !fs::exists(file(number, ".done")))
-      fs::rename(file(number, ".run"), file(number, ".task"));
+      renamed(file(number, ".run"), file(number, ".task"));
 }
 
 std::vector<std::size_t> TaskQueue::claimed() const { return numbers(".run"); }
@@ -143,10 +152,7 @@ std::optional<TaskQueue::Claim> TaskQueue::claim()
   for (const std::size_t number : numbers(".task"))
     {
       FileLock lock = FileLock::attempt(file(number, ".task"), FileLock::MissingFile::no_lock);
-      std::error_code gone; // another process was faster, or it was withdrawn
-      if (lock)
-        fs::rename(file(number, ".task"), file(number, ".run"), gone);
-      if (!lock || gone)
+      if (!lock || !renamed(file(number, ".task"), file(number, ".run")))
         continue;
       const Json task = read_json(file(number, ".run"));
       return Claim{number,

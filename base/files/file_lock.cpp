@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files/file_lock.hpp"
 
-#include "base/error.hpp"
+#include "base/files/file_failure.hpp"
 
 #include <chrono>
 #include <cstring>
@@ -23,9 +23,9 @@ FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missin
 {
   const int flags = missing == MissingFile::create ? O_CREAT : 0;
   FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
-  if (!lock && missing == MissingFile::create)
-    throw RunFailure(fmt::format("{}: cannot be opened for writing: {}; check free space and permissions of the folder",
-                                 file.string(), std::strerror(errno)));
+  const bool is_missing = errno == ENOENT || errno == ENOTDIR || errno == ESTALE; // ESTALE: on another machine
+  if (!lock && (missing == MissingFile::create || !is_missing))
+    fail(file, "opened for writing", std::strerror(errno));
   if (!lock || flock(lock.file_, LOCK_EX | LOCK_NB) == 0)
     return lock;
   if (errno != EWOULDBLOCK)

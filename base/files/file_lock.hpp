@@ -37,7 +37,7 @@ public:
   ~FileLock();
 
   /// The lock, or none if another holder has it, or (no_lock) the file is not there. Children that become another
-  /// program do not inherit it.   @throws RunFailure  the file cannot be made or opened for writing (create)
+  /// program do not inherit it.   @throws RunFailure  the file cannot be opened for writing, or made (create)
   /// @throws NoLocks  nobody can lock it
   static FileLock attempt(const std::filesystem::path &file, MissingFile missing = MissingFile::create);
 
@@ -53,6 +53,6 @@ private:
 /// Whether the condition is met within five seconds: what dying processes still hold becomes free.
 bool within_patience(const std::function<bool()> &condition);
 
-/// Whether the file is there and nobody has its lock.
+/// Whether the file is there and nobody has its lock.   @throws RunFailure  it is there and cannot be opened
 bool is_unlocked(const std::filesystem::path &file);
 } // namespace isostat

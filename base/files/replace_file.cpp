@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files/replace_file.hpp"
 
-#include "base/error.hpp"
+#include "base/files/file_failure.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <fstream>
 #include <unistd.h>
 
@@ -16,12 +15,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-[[noreturn]] void fail(const fs::path &path, const char *what, const std::string &reason)
-{
-  throw RunFailure(
-      fmt::format("{}: cannot be {}: {}; check free space and permissions of the folder", path.string(), what, reason));
-}
-
 /// @return errno; 0 if a file, or the names in a folder, are on the disk
 int synced(const fs::path &path)
 {

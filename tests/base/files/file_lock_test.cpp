@@ -39,6 +39,13 @@ TEST(FileLock, SaysWhyAFileCannotBeLocked)
   EXPECT_THAT(
       message_of<RunFailure>([&] { FileLock::attempt(nowhere); }),
       testing::HasSubstr("nothing: cannot be opened for writing: No such file or directory; check free space and "));
+  std::filesystem::create_directory(path);
+  for (const auto missing : {FileLock::MissingFile::create, FileLock::MissingFile::no_lock})
+    EXPECT_THAT(message_of<RunFailure>([&] { FileLock::attempt(path, missing); }),
+                testing::HasSubstr("cannot be opened for writing: Is a directory"))
+        << "a file that is there and cannot be opened is not taken for one that somebody else has";
+  EXPECT_THROW(is_unlocked(path), RunFailure);
+  std::filesystem::remove(path);
 }
 
 TEST(FileLock, LastsAsLongAsAnyProcessHasTheFileOpen)
