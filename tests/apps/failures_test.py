@@ -14,6 +14,8 @@ from grain_column_test import GrainColumnTest
 from support import main, results, tiny_scene
 from void_ratio_limits_test import LIMITS, QUICK
 
+LAST_WORD = {"open": 1, "write": 1, "fsync": 2, "rename": 1}  # of a campaign, to processes that help: its lock is free
+
 
 class Failures(FailingRuns):
     def test_element_test(self):
@@ -29,18 +31,18 @@ class Failures(FailingRuns):
         scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
         self.every_call("specimen_library", scene, *FEW, output=("-o", "out/library.h5", "-q"),
                         goes_on=FailingRuns.repeated, most=3, fewest=1,
-                        passed_over=("open",))  # a lock: two processes would prepare the same specimen
+                        harmless={"open": 1})  # a lock: two processes would prepare the same specimen
 
     def test_liquefaction_resistance(self):
         scene = self.write("scene.toml", SHORT_TEST)
         self.every_call("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-n", 1, goes_on=FailingRuns.repeated,
-                        most=2)
+                        most=2, harmless=LAST_WORD)
 
     def test_calibrate(self):
         for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
             self.write(name, text)
         self.every_call("calibrate", self.write("plan.toml", plan_text(trials=3)), "--jobs", 1,
-                        goes_on=FailingRuns.repeated, most=1)
+                        goes_on=FailingRuns.repeated, most=1, harmless=LAST_WORD)
 
     def test_void_ratio_limits(self):
         scene = self.write("limits.toml", LIMITS)
