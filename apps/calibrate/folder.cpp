@@ -2,8 +2,12 @@
 #include "apps/calibrate/folder.hpp"
 
 #include "apps/common/campaign_folder.hpp"
+#include "apps/common/result_folder.hpp"
+#include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"
+
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -25,6 +29,14 @@ fs::path laboratory_file(const fs::path &folder, const PlanCurve &curve)
 
 void check_calibration_folder(const fs::path &folder, const CalibrationPlan &plan, const std::string &scene)
 {
+  if (!fs::exists(folder / "plan.toml"))
+    {
+      if (fs::exists(folder / "summary.txt"))
+        throw InputError(fmt::format("{}: holds results of another program, since there is no plan.toml in it. Choose "
+                                     "another --output.",
+                                     folder.string()));
+      return check_file(folder / "scene.toml", scene); // it was killed as it began
+    }
   CalibrationPlan kept = parse_plan(read_text(folder / "plan.toml"), (folder / "plan.toml").string());
   kept.budget = plan.budget;
   check_kept_text(folder / "plan.toml", to_toml(kept), to_toml(plan), "calibration");
@@ -34,14 +46,14 @@ void check_calibration_folder(const fs::path &folder, const CalibrationPlan &pla
 }
 
 void open_calibration_folder(const fs::path &folder, const CalibrationPlan &plan, const std::string &scene,
-                             bool overwrite)
+                             const std::string &command_line, bool overwrite)
 {
   open_campaign_folder(
-      folder, "plan.toml", [&] { check_calibration_folder(folder, plan, scene); }, overwrite);
+      folder, [&] { check_calibration_folder(folder, plan, scene); }, overwrite);
+  write_provenance(folder, scene, command_line, {});
   write_replacing(folder / "plan.toml", to_toml(plan));
   make_folder(folder / "laboratory");
   make_folder(folder / "runs");
-  write_replacing(folder / "scene.toml", scene);
   for (const PlanCurve &curve : plan.curves)
     write_replacing(laboratory_file(folder, curve), read_text(curve.path));
 }

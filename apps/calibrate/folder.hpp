@@ -22,9 +22,9 @@ void check_calibration_folder(const std::filesystem::path &folder, const Calibra
 
 /// Locks the folder for this plan and makes it if it is missing.
 /// @param scene  text of the plan's scene, every key resolved
-/// @param overwrite  what another calibration left is removed first
+/// @param command_line  for provenance.txt   @param overwrite  what another calibration left is removed first
 /// @throws InputError  another program works in it; it holds something else, or, without `overwrite`, a calibration
 ///         with another plan, scene or laboratory file
 void open_calibration_folder(const std::filesystem::path &folder, const CalibrationPlan &plan, const std::string &scene,
-                             bool overwrite);
+                             const std::string &command_line, bool overwrite);
 } // namespace isostat

@@ -113,7 +113,7 @@ void check_start(const CalibrationPlan &plan, const SceneMaker &scenes, const fs
   const std::vector<double> start = first_points(plan, scenes)[0];
   for (const PlanCurve &curve : plan.curves)
     scenes.trial(start, curve, plan.specimens.first_seed);
-  if (!overwrite && fs::exists(folder / "plan.toml"))
+  if (!overwrite && !is_unused(folder))
     check_calibration_folder(folder, plan, scenes.scene_text());
 }
 
@@ -168,8 +168,7 @@ void calibrate(const Options &options)
       check_start(plan, scenes, folder, options.overwrite);
       return print_dry_run(plan, scenes);
     }
-  open_calibration_folder(folder, plan, scenes.scene_text(), options.overwrite);
-  write_provenance(folder, scenes.scene_text(), options.command_line, {});
+  open_calibration_folder(folder, plan, scenes.scene_text(), options.command_line, options.overwrite);
   queue.lead();
   catch_signals();
   try

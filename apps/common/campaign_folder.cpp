@@ -5,26 +5,11 @@
 #include "apps/common/scene_program.hpp"
 #include "base/error.hpp"
 
-#include <cerrno>
 #include <fmt/format.h>
 
 namespace isostat
 {
 namespace fs = std::filesystem;
-
-namespace
-{
-bool keeps_anything(const fs::path &folder, const std::string &mark)
-{
-  if (is_unused(folder))
-    return false;
-  if (!fs::exists(folder / mark))
-    throw InputError(fmt::format("{}: holds something else than runs of {} (no {} in it). Choose another "
-                                 "--output.",
-                                 folder.string(), program_invocation_short_name, mark));
-  return true;
-}
-} // namespace
 
 void check_kept_text(const fs::path &there, const std::string &kept, const std::string &text, const char *what)
 {
@@ -34,12 +19,14 @@ void check_kept_text(const fs::path &there, const std::string &kept, const std::
                                  there.string(), what, first_difference(text, kept), first_difference(kept, text)));
 }
 
-void open_campaign_folder(const fs::path &folder, const std::string &mark, const std::function<void()> &check_kept,
-                          bool overwrite)
+void open_campaign_folder(const fs::path &folder, const std::function<void()> &check_kept, bool overwrite)
 {
-  const bool kept = keeps_anything(folder, mark);
-  if (kept && !overwrite)
-    check_kept();
+  if (!is_unused(folder))
+    {
+      expect_results(folder);
+      if (!overwrite)
+        check_kept();
+    }
   make_writable_folder(folder);
   static FileLock held; // until this process ends
   held = lock_folder(folder);

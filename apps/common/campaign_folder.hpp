@@ -15,10 +15,9 @@ void check_kept_text(const std::filesystem::path &there, const std::string &kept
 
 /// Makes a folder in which the runs of one plan are kept, and to which the same command comes back; locks it until this
 /// process ends, however it ends.
-/// @param mark        a file that every such folder holds
 /// @param check_kept  throws if what is kept there belongs to another plan; called if anything is kept
 /// @param overwrite   what is kept is removed instead
-/// @throws InputError  a file; a folder without the mark; one that cannot be written, or in which a program is at work
-void open_campaign_folder(const std::filesystem::path &folder, const std::string &mark,
-                          const std::function<void()> &check_kept, bool overwrite);
+/// @throws InputError  a file; a folder that holds no results; one that cannot be written, or in which a
+///         program is at work
+void open_campaign_folder(const std::filesystem::path &folder, const std::function<void()> &check_kept, bool overwrite);
 } // namespace isostat

@@ -25,6 +25,8 @@ namespace
 constexpr int without_report = 3; ///< exit code of `report leave`: figures are there, the report is not
 constexpr const char *lock_name = ".lock", *scene_name = "scene.toml", *provenance_name = "provenance.txt",
                      *probe_name = ".writable";
+/// What a program leaves that is killed before its scene.toml is there.
+const std::vector<fs::path> first_files = {lock_name, probe_name, provenance_name, scene_name + std::string(".tmp")};
 
 /// As one word of a shell command, for messages.
 std::string quoted(const fs::path &path)
@@ -35,12 +37,13 @@ std::string quoted(const fs::path &path)
   return word + "'";
 }
 
-/// Whether there is nothing else in the folder, but what was being written when a program was killed.
+/// Whether there is nothing else in the folder, but what was being written of it when a program was killed.
 bool holds_only(const fs::path &folder, const std::vector<fs::path> &names)
 {
   return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry &entry) {
     const fs::path name = entry.path().filename();
-    return std::ranges::find(names, name) != names.end() || name == probe_name || name.extension() == ".tmp";
+    return std::ranges::any_of(names,
+                               [&](const fs::path &known) { return name == known || name == known.string() + ".tmp"; });
   });
 }
 
@@ -72,7 +75,16 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-bool is_unused(const fs::path &folder) { return !folder_exists(folder) || holds_only(folder, {lock_name}); }
+bool is_unused(const fs::path &folder) { return !folder_exists(folder) || holds_only(folder, first_files); }
+
+void expect_results(const fs::path &folder)
+{
+  for (const char *name : {scene_name, provenance_name}) // a folder of one's own may hold a scene
+    if (!fs::exists(folder / name))
+      throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
+                                   "Choose another --output.",
+                                   folder.string(), name));
+}
 
 void empty_folder(const fs::path &folder)
 {
@@ -160,11 +172,8 @@ void check_result_folder(const fs::path &folder, FolderUse use)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
         fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
-  for (const char *name : {scene_name, provenance_name}) // a folder of one's own may hold a scene
-    if (used && !fs::exists(folder / name) && !holds_only(folder, {lock_name, provenance_name}))
-      throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
-                                   "Choose another --output.",
-                                   folder.string(), name));
+  if (used)
+    expect_results(folder);
   try_writable_folder(folder);
   expect_free(folder);
 }
@@ -229,7 +238,7 @@ std::string draw_figures(const fs::path &folder, const std::string &program)
   int code = 0;
   try
     {
-      code = run_program(report_command({"leave", program, folder.string()}), log);
+      code = run_program(report_command({"leave", program, "--", folder.string()}), log);
     }
   catch (const RunFailure &failure)
     {

@@ -39,8 +39,11 @@ void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// seconds for what a dying process still holds.   @throws InputError  a program is at work in it
 [[nodiscard]] FileLock lock_folder(const std::filesystem::path &folder);
 
-/// Whether there is nothing in it but a lock.   @throws InputError  it is a file
+/// Whether there is nothing in it, or only what a program leaves that was killed as it began.
+/// @throws InputError  it is a file
 bool is_unused(const std::filesystem::path &folder);
+/// @throws InputError  it lacks what every results folder holds, scene.toml and provenance.txt
+void expect_results(const std::filesystem::path &folder);
 
 /// Removes all but the lock.   @throws RunFailure  something cannot be removed
 void empty_folder(const std::filesystem::path &folder);

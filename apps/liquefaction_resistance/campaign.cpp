@@ -125,7 +125,7 @@ void Campaign::open(bool overwrite, const std::string &command_line)
 {
   const fs::path scene = folder_ / "scene.toml";
   open_campaign_folder(
-      folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); }, overwrite);
+      folder_, [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); }, overwrite);
   write_provenance(folder_, shared_, command_line);
   for (const char *part : {"scenes", "runs", "logs"})
     make_folder(folder_ / part);

@@ -38,8 +38,7 @@ public:
   {
     const fs::path scene = folder_ / "scene.toml";
     open_campaign_folder(
-        folder_, "scene.toml", [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); },
-        options_.overwrite);
+        folder_, [&] { check_kept_text(scene, read_text(scene), to_toml(shared_), "scene"); }, options_.overwrite);
     write_provenance(folder_, to_toml(shared_), options_.command_line, {});
     for (const char *part : {"scenes", "members", "logs"})
       make_folder(folder_ / part);

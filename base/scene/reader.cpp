@@ -169,6 +169,8 @@ std::string read_scene_text(const std::string &path)
     throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
   if (std::filesystem::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder; must be a scene file (TOML). Give one that is in it.", path));
+  if (!std::filesystem::is_regular_file(path, ignored))
+    throw InputError(fmt::format("{}: is a pipe or a device; must be a scene file (TOML). Save it as a file.", path));
   std::ifstream file(path);
   if (!file)
     throw InputError(fmt::format("{}: cannot be read; must be a scene file (TOML) open to you.", path));

@@ -267,9 +267,15 @@ class Refusals(Calibrate):
         self.assert_done(self.run_it("-o", "out", "--no-figures", "--overwrite"))
         (self.folder / "thesis").mkdir()
         self.write("thesis/chapter.tex", "precious")
-        for flag in ((), ("--overwrite",)):
-            self.assert_refused(self.run_it("-o", "thesis", *flag), "thesis", "no plan.toml")
-        self.assertEqual(contents(self.folder / "thesis"), {"chapter.tex": b"precious"})
+        for name in ("scene.toml", "provenance.txt"):  # files of one's own do not make it a results folder
+            before = contents(self.folder / "thesis")
+            for flag in ((), ("--overwrite",)):
+                self.assert_refused(self.run_it("-o", "thesis", *flag), "thesis", f"holds no {name}")
+            self.assertEqual(contents(self.folder / "thesis"), before)
+            for own in ("plan.toml", "scene.toml"):
+                self.write(f"thesis/{own}", (self.folder / own).read_text(encoding="utf-8"))
+        (self.folder / "out/plan.toml").unlink()
+        self.assert_refused(self.run_it("-o", "out"), "holds results of another program", "no plan.toml")
 
     def test_dry_run_leaves_nothing(self):
         result = self.run_it("-o", "out", "--dry-run")

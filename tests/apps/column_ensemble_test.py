@@ -349,6 +349,13 @@ ground_z = ["4 m", "3 m"]
         self.ensemble("out")
         self.assert_refused(self.run_column(self.scene, "--ensemble", 3, "-o", "out",
                                             *settings(motion__0__amplitude="0.5 g")), "another scene", "amplitude")
+        (self.folder / "own").mkdir()
+        for name in ("scene.toml", "thesis.txt"):
+            self.write(f"own/{name}", self.scene.read_text(encoding="utf-8"))
+        before = contents(self.folder / "own")
+        self.assert_refused(self.run_column(self.scene, "--ensemble", 2, "-o", "own", "--overwrite"),
+                            "holds no provenance.txt and may not be a results folder")
+        self.assertEqual(contents(self.folder / "own"), before)
 
     def test_a_member_that_fails(self):
         """The others are kept and compared; the message names the member and why."""

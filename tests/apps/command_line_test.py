@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
 import gzip
+import os
 import pathlib
 import re
 import shutil
@@ -262,7 +263,10 @@ class OutputFolder(AppTest):
         (self.folder / "folder").mkdir()
         (self.folder / "scene.toml.gz").write_bytes(gzip.compress(tiny_scene().encode()))
         (self.folder / "link").symlink_to("nowhere")
+        os.mkfifo(self.folder / "pipe")
         for said, arguments in (("folder: is a folder; must be a scene file", ("folder",)),
+                                ("pipe: is a pipe or a device; must be a scene file", ("pipe",)),
+                                ("zero: is a pipe or a device; must be a scene file", ("/dev/zero",)),
                                 ("is compressed; must be a scene file (TOML). Unpack it", ("scene.toml.gz",)),
                                 ("link: is a link to nowhere, which is not there", (self.scene, "-o", "link")),
                                 ("a point in its number, no comma", (self.scene, "--set", "specimen.pressure=0,5 kPa")),
@@ -279,11 +283,11 @@ class OutputFolder(AppTest):
 
     def test_a_folder_whose_run_was_killed_as_it_began(self):
         """Or as it removed older results: their scene goes before their provenance."""
-        (self.folder / "out").mkdir()
-        for name in (".lock", ".writable", "provenance.txt", "scene.toml.tmp"):
-            (self.folder / "out" / name).touch()
-        self.assert_refused(self.run_test(self.scene, "-o", "out"), "--overwrite")
-        self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
+        for out, flag in (("out", ()), ("other", ("--overwrite",))):
+            (self.folder / out).mkdir()
+            for name in (".lock", ".writable", "provenance.txt", "scene.toml.tmp"):
+                (self.folder / out / name).touch()
+            self.assert_done(self.run_test(self.scene, "-o", out, *flag))
 
     def test_resume_of_nothing(self):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")

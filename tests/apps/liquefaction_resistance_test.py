@@ -175,9 +175,21 @@ class LiquefactionResistance(AppTest):
         self.assert_done(self.run_it(*quick, "--set", "motion.damping=0.3", "--overwrite"))
         (self.folder / "thesis").mkdir()
         self.write("thesis/chapter.tex", "precious")
-        for flag in ((), ("--overwrite",)):
-            self.assert_refused(self.run_it(*RATIOS, "-o", "thesis", *flag), "thesis", "scene.toml")
-        self.assertEqual(contents(self.folder / "thesis"), {"chapter.tex": b"precious"})
+        for name in ("scene.toml", "provenance.txt"):  # a scene of one's own does not make it a results folder
+            before = contents(self.folder / "thesis")
+            for flag in ((), ("--overwrite",)):
+                self.assert_refused(self.run_it(*RATIOS, "-o", "thesis", *flag), "thesis", f"holds no {name}")
+            self.assertEqual(contents(self.folder / "thesis"), before)
+            self.write("thesis/scene.toml", self.scene.read_text(encoding="utf-8"))
+
+    def test_a_folder_of_a_call_that_was_killed_as_it_began(self):
+        (self.folder / "out").mkdir()
+        for name in ("provenance.txt", "scene.toml.tmp", ".writable.tmp"):
+            self.write(f"out/{name}", "")
+        self.assert_done(self.run_it("--ratios", "0.25", "-n", "1", "--no-figures", "-o", "out"))
+        (self.folder / "own").mkdir()
+        self.write("own/thesis.tex.tmp", "precious")  # of another program
+        self.assert_refused(self.run_it("--ratios", "0.25", "-n", "1", "-o", "own"), "own", "holds no scene.toml")
 
 
 if __name__ == "__main__":
