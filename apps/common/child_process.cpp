@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
@@ -15,6 +16,7 @@
 #include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace isostat
@@ -30,7 +32,8 @@ namespace
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) // it died meanwhile
     _exit(1);
-  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  unlink(log); // it may be a link to a file of somebody
+  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0644);
   const int input = open("/dev/null", O_RDONLY);
   if (output < 0 || input < 0)
     _exit(126);
@@ -71,6 +74,21 @@ std::vector<std::string> command_of(const ChildRun &run)
   else
     fs::remove_all(run.results);
   return words;
+}
+
+/// The code of a process once it has ended; a signal to this one alone, since then, ends it.
+int wait_for(pid_t id)
+{
+  const bool stopped_before = stop_requested();
+  bool told = false;
+  int status = 0;
+  for (pid_t found = 0; (found = waitpid(id, &status, WNOHANG)) == 0 || (found < 0 && errno == EINTR);)
+    {
+      if (!told && (keyboard_signal != 0 || (stop_requested() && !stopped_before)))
+        told = kill(id, SIGTERM) == 0;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  return code_of(status);
 }
 
 pid_t start(const ChildRun &run, int kept_open)
@@ -114,9 +132,10 @@ int run_program(std::vector<std::string> command, const fs::path &log)
 {
   const std::vector<char *> arguments = pointers_to(command);
   const KeyboardNoted noted; // the program has them by default: what is caught is not handed on
+  unlink(log.c_str());       // it may be a link to a file of somebody
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0644);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   pid_t id = 0;
   const int failure = posix_spawn(&id, arguments[0], &files, nullptr, arguments.data(), environ);
@@ -124,10 +143,7 @@ int run_program(std::vector<std::string> command, const fs::path &log)
   if (failure != 0)
     throw RunFailure(fmt::format("{} cannot be started, or {} not be written: {}", command[0], log.string(),
                                  std::strerror(failure)));
-  int status = 0;
-  while (waitpid(id, &status, 0) < 0 && errno == EINTR)
-    ;
-  const int code = code_of(status);
+  const int code = wait_for(id);
   return code != 0 && keyboard_signal != 0 ? 128 + keyboard_signal : code;
 }
 

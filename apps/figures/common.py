@@ -46,6 +46,12 @@ STYLE = {
 }
 
 
+def use_style():
+    """Ours alone: a matplotlibrc of the user or, where Python started, of a stranger does not count."""
+    plt.rcdefaults()
+    plt.rcParams.update(STYLE)
+
+
 class BadInput(Exception):
     """The folder holds no history that can be drawn."""
 

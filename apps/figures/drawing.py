@@ -5,7 +5,7 @@ import re
 import textwrap
 import typing
 
-from .common import STYLE, BadInput, plain, plt
+from .common import BadInput, plain, plt, use_style
 
 # What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
 KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil",
@@ -48,7 +48,7 @@ class Drawing:
     def draw(self, results, out, each=lambda name, figure: None):
         """Leaves every figure of the results in a folder. `each` is called with name and figure when it is saved."""
         out.mkdir(parents=True, exist_ok=True)
-        plt.rcParams.update(STYLE)
+        use_style()
         for name, draw in self.figures.items():
             figure = draw(results)
             if figure is None:
@@ -65,5 +65,7 @@ class Drawing:
             figure.suptitle(plain("\n".join(lines)), fontsize=9.5, x=0.01, ha="left")
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
-        figure.savefig(out / f"{name}.png")
-        print(out / f"{name}.png")
+        path = out / f"{name}.png"
+        path.unlink(missing_ok=True)  # a link there would lead to a file of somebody
+        figure.savefig(path)
+        print(path)

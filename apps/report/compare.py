@@ -2,7 +2,7 @@
 """Two runs of one kind side by side: numbers of their summaries, what differs in their scenes, curves in one figure."""
 import re
 
-from figures.common import BadInput, STYLE, plt
+from figures.common import BadInput, plt, use_style
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
@@ -10,6 +10,7 @@ from .quantities import converted, is_number, named
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
+GENERATOR = b'<meta name="generator" content="Isostat">'  # of the head of every page (html.py)
 
 
 def flat(value, name=""):
@@ -99,7 +100,7 @@ def read_curves(pair):
 
 def page(pair):
     curves, read = read_curves(pair)
-    plt.rcParams.update(STYLE)
+    use_style()
     names = [f"{name}: {results.path.resolve().name}" for name, results in zip(NAMES, pair)]
     legend = ", ".join(f"{name} {word}" for name, word in zip(names, compare_curves.WORDS)) + "."
     parts = []
@@ -137,6 +138,8 @@ def leave(first, second, output):
     check(pair)
     if output.is_dir() or not output.absolute().parent.is_dir():
         raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
+    if output.exists() and not (output.is_file() and GENERATOR in output.read_bytes()[:1000]):
+        raise NoResults(f"{output}: is there, and no page of Isostat. Give another --output, or move it away.")
     text = page(pair)
     try:
         html.write_replacing(output, text)

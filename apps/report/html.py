@@ -90,6 +90,7 @@ def page(title, subtitle, sections):
 def write_replacing(path, text):
     """Writes aside, brings it to the disk and renames: whoever reads sees the old content or the new."""
     aside = path.with_name(path.name + ".tmp")
+    aside.unlink(missing_ok=True)  # a link there would lead to a file of somebody
     with open(aside, "w", encoding="utf-8") as file:
         file.write(text)
         file.flush()

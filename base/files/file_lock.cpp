@@ -22,7 +22,7 @@ FileLock::~FileLock()
 FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missing)
 {
   const int flags = missing == MissingFile::create ? O_CREAT : 0;
-  FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
+  FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0644));
   const bool is_missing = errno == ENOENT || errno == ENOTDIR || errno == ESTALE; // ESTALE: on another machine
   if (!lock && (missing == MissingFile::create || !is_missing))
     fail(file, "opened for writing", std::strerror(errno));

@@ -36,12 +36,16 @@ int name_synced(const fs::path &path)
   return code == EINVAL || code == ENOTSUP || code == EACCES ? 0 : code;
 }
 
-/// A link that others have put at `path` would lead to a file of theirs or of the user, a pipe would wait for a reader.
-void make_way(const fs::path &path)
+/// A file, or a link to one: a folder or a device is not replaced.
+void expect_replaceable(const fs::path &path)
 {
   std::error_code ignored;
-  if (!fs::is_regular_file(fs::symlink_status(path, ignored)))
-    fs::remove(path, ignored);
+  const fs::file_type type = fs::symlink_status(path, ignored).type();
+  if (type != fs::file_type::regular && type != fs::file_type::symlink && type != fs::file_type::not_found &&
+      type != fs::file_type::none)
+    throw InputError(fmt::format("{}: is a folder, a pipe or a device, which is not replaced. Give another path, or "
+                                 "move it away.",
+                                 path.string()));
 }
 
 /// @return errno; 0 if all of it is on the disk
@@ -62,7 +66,8 @@ void write_replacing(const fs::path &path, const std::function<void(std::ostream
   const fs::path aside = path.string() + ".tmp";
   std::error_code ignored;
   int code = 0;
-  make_way(aside);
+  expect_replaceable(path);
+  fs::remove(aside, ignored); // a link there would lead to a file of somebody, a pipe would wait for a reader
   try
     {
       code = bring_to_disk(aside, write);

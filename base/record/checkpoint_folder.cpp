@@ -39,6 +39,8 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
   std::string problems;
   for (const fs::path &path : checkpoints_of(folder))
     {
+      if (fs::is_directory(path))
+        throw InputError(fmt::format("{}: is a folder, in place of a checkpoint. Move it away.", path.string()));
       try
         {
           read(path);

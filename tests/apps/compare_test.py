@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The comparison of two runs, and the program isostat that leads to it."""
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -151,6 +152,14 @@ class Compare(ReportTest):
     def test_place_of_the_file(self):
         result = self.compare(self.runs / "one", self.runs / "other", "-o", "nowhere/compare.html")
         self.assert_refused(result, "nowhere/compare.html", "--output")
+
+    def test_files_of_others_are_not_replaced(self):
+        self.write("thesis.tex", "precious")
+        os.mkfifo(self.folder / "pipe")
+        for name in ("thesis.tex", "pipe"):
+            result = self.compare(self.runs / "one", self.runs / "other", "-o", name)
+            self.assert_refused(result, f"{name}: is there, and no page of Isostat. Give another --output")
+        self.assertEqual((self.folder / "thesis.tex").read_text(encoding="utf-8"), "precious")
 
 
 class Launcher(AppTest):

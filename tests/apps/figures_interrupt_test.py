@@ -12,9 +12,9 @@ from support import BIN, PATIENCE, MONOTONIC, contents, main, tiny_scene
 
 
 class Interrupted(ColumnTest):
-    def stop_drawing(self, *command, with_signal=signal.SIGINT, after=0.1):
-        """Runs it in a terminal of its own, and stops all in it some seconds after the figures have been begun. Returns
-        what it said on stderr."""
+    def stop_drawing(self, *command, with_signal=signal.SIGINT, after=0.1, stop=os.killpg):
+        """Runs it in a terminal of its own, and stops all in it (os.killpg) or the program alone (os.kill) some seconds
+        after the figures have been begun. Returns what it said on stderr."""
         log = self.folder / "out/figures.log"
         with subprocess.Popen(self.command(*command, "-o", "out", "-q"), cwd=self.folder, start_new_session=True,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
@@ -23,7 +23,7 @@ class Interrupted(ColumnTest):
                 time.sleep(0.005)
             time.sleep(after)
             with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, with_signal)
+                stop(process.pid, with_signal)
             said = process.communicate(timeout=60 * PATIENCE)[1]
         self.assertEqual(process.returncode, 130, said)
         self.assertIn("interrupted while its figures were drawn; all other results are complete", said)
@@ -63,6 +63,9 @@ class Interrupted(ColumnTest):
         test = ("element_test", self.write("tiny.toml", tiny_scene(stages=MONOTONIC.format(steps=500))))
         self.stop_drawing(*test)
         self.assert_drawn_by_resume(*test)
+        for with_signal in (signal.SIGINT, signal.SIGTERM):
+            (self.folder / "out/figures.log").unlink()
+            self.stop_drawing(*test, "--overwrite", with_signal=with_signal, stop=os.kill)
 
     def test_the_command_it_names(self):
         self.stop_drawing("soil_column", self.scene, *settings(analysis__duration="0.05 s"))

@@ -16,7 +16,7 @@ from report import narrow  # noqa: E402
 from report.folder import find_results  # noqa: E402
 from report.run import calls, captions  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
-from support import BIN, CYCLIC, PATIENCE, main, tiny_scene  # noqa: E402
+from support import BIN, CYCLIC, PATIENCE, contents, main, tiny_scene  # noqa: E402
 
 BROWSER = shutil.which("chromium")
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
@@ -208,6 +208,33 @@ class Reports(ReportTest):
         self.assert_done(self.run_app("isostat", "report", "cyclic"))
         self.assertTrue((self.folder / "cyclic/figures").is_dir())
         self.assertFalse((self.folder / "was_run").exists())
+
+    def test_a_style_in_the_working_folder_is_left_alone(self):
+        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
+        shutil.rmtree(self.folder / "cyclic/figures")
+        self.write("matplotlibrc", "text.usetex: True\nsavefig.format: svg\nfigure.figsize: 1, 1\n")
+        self.assert_done(self.run_app("isostat", "report", "cyclic"))
+        self.assertEqual(contents(self.folder / "cyclic/figures"), contents(self.runs / "cyclic/figures"))
+
+    def test_links_in_a_folder_of_a_stranger_are_not_followed(self):
+        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
+        shutil.copy(self.runs / "cyclic.toml", self.folder)
+        figures = sorted((self.folder / "cyclic/figures").glob("*.png"))
+        links = [figures[0], *(self.folder / "cyclic" / name for name in ("report.html", "figures.log"))]
+        for link in links:
+            link.unlink(missing_ok=True)
+            link.symlink_to(self.write("thesis.txt", "precious"))
+        self.assert_done(self.run_app("isostat", "report", "cyclic"))
+        links[1].unlink()
+        self.assert_done(self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume"))
+        self.assertEqual((self.folder / "thesis.txt").read_text(encoding="utf-8"), "precious")
+        self.assertFalse(any(link.is_symlink() for link in links))
+
+    def test_a_folder_whose_name_looks_like_an_option(self):
+        (self.folder / "dash").mkdir()
+        shutil.copy(self.runs / "cyclic.toml", self.folder)
+        self.assert_done(self.run_app("element_test", "cyclic.toml", "--output=-dash", "-q"))
+        self.assertTrue((self.folder / "-dash/report.html").exists())
 
     def test_a_package_that_is_missing_is_named(self):
         self.write("matplotlib.py", "raise ModuleNotFoundError('No module', name='matplotlib')")
