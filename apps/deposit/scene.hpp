@@ -11,6 +11,7 @@
 #include "fem/motion/motion_input.hpp"
 #include "fem/space/block.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -109,8 +110,11 @@ struct ColumnMotion
   std::optional<double> interval; ///< between samples of harmonic and ricker
   std::optional<double> again;    ///< start of the same motion for the second time, s
 
-  double peak_time() const { return centre.value_or(1.5 / frequency); }               ///< of a ricker, s
-  double sample_interval() const { return interval.value_or(1 / (500 * frequency)); } ///< not of a record, s
+  double peak_time() const { return centre.value_or(1.5 / frequency); } ///< of a ricker, s
+  double sample_interval() const
+  {
+    return interval.value_or(std::max(1e-5, 1 / (500 * frequency)));
+  } ///< not of a record, s
 
   bool operator==(const ColumnMotion &) const = default;
 };

@@ -13,12 +13,16 @@ namespace isostat
 namespace
 {
 constexpr std::size_t rows_to_a_side = 6;
+constexpr std::size_t most_steps = 1'000'000;   ///< between rows
 constexpr double kaiser = 4.53, middle = 0.375; ///< b; frequency of half the amplitude, per row
 } // namespace
 
 DecimationFilter::DecimationFilter(std::size_t n_channels, std::size_t stride)
     : n_channels_(n_channels), half_(stride > 1 ? rows_to_a_side * stride : 0)
 {
+  if (stride > most_steps)
+    throw InputError("output.history_interval is " + std::to_string(stride) + " time steps; must be at most " +
+                     std::to_string(most_steps) + ". Shorten it, or take a longer analysis.time_step.");
   double sum = 0;
   for (std::size_t k = 0; k <= half_; ++k)
     {

@@ -50,6 +50,7 @@ public:
   Recorder &operator=(const Recorder &) = delete;
 
   /// A zero has no sign in the files.   @pre row.size() == number of columns
+  /// @throws RunFailure  a number is infinite or none
   void append(std::span<const double> row);
   /// Brings both files up to the last row.
   void flush();

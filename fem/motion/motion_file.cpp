@@ -17,7 +17,6 @@ using Lines = std::vector<std::string_view>;
 
 constexpr std::size_t header_lines = 10;    // among which an AT2 file names NPTS
 constexpr double interval_tolerance = 1e-3; // of the median one
-constexpr double most_samples = 1e9;
 
 double unit_factor(AccelerationUnit unit)
 {
@@ -83,7 +82,7 @@ Header parse_header(const fs::path &path, const Lines &lines, std::size_t line)
                        ".005 SEC\"",
                        lines[line - 1]));
   const double n = numbers[npts < dt ? 0 : 1], interval = numbers[npts < dt ? 1 : 0];
-  if (!(n >= 2 && n <= most_samples && n == std::floor(n)))
+  if (!(n >= 2 && n <= Motion::most_samples && n == std::floor(n)))
     reject(path, line, fmt::format("NPTS = {}; must be a whole number of values, two at least", n));
   if (!(interval > 0 && std::isfinite(interval)))
     reject(path, line, fmt::format("DT = {} s; must be > 0", interval));

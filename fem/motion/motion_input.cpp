@@ -21,6 +21,9 @@ void check(bool good, const std::string &message)
     throw InputError(message);
 }
 
+constexpr double strongest = 1e5;               ///< acceleration, m/s2
+constexpr double shortest = 1e-5, longest = 10; ///< intervals, s
+
 /// An interval that shows the wave: lines between ten samples in a period miss 5 % of a crest at most.
 void check_sampling(double amplitude, double frequency, double interval)
 {
@@ -34,7 +37,12 @@ void check_sampling(double amplitude, double frequency, double interval)
 /// Steps that reach `duration`; a multiple of the interval is not exceeded because of round-off.
 std::size_t steps_to(double duration, double interval)
 {
-  return std::max<std::size_t>(1, std::ceil(duration / interval - 1e-6));
+  const double n = std::ceil(duration / interval - 1e-6);
+  check(n <= Motion::most_samples,
+        fmt::format("{} s at an interval of {} s are {} samples; must be at most {}. Take a longer "
+                    "interval or a shorter motion",
+                    duration, interval, n, Motion::most_samples));
+  return std::max<std::size_t>(1, n);
 }
 
 /// Rise and fall between 0 and 1; 0 outside.
@@ -79,13 +87,15 @@ Motion::Motion(std::vector<double> accelerations, double interval)
 {
   const std::size_t n = accelerations_.size();
   check(n >= 2, fmt::format("a motion of {} samples; needs two at least", n));
-  check(interval > 0 && std::isfinite(interval), fmt::format("interval = {} s; must be > 0", interval));
+  check(interval >= shortest && interval <= longest,
+        fmt::format("interval = {} s; must be in [{}, {}] s. Are its times in seconds?", interval, shortest, longest));
   velocities_.resize(n);
   displacements_.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     {
-      if (!std::isfinite(accelerations_[i]))
-        throw InputError(fmt::format("acceleration {} of {} is {} m/s2; must be finite", i + 1, n, accelerations_[i]));
+      if (!(std::abs(accelerations_[i]) <= strongest)) // nor none
+        throw InputError(fmt::format("acceleration {} of {} is {} m/s2; must be within {} m/s2. Is the unit right?",
+                                     i + 1, n, accelerations_[i], strongest));
       if (i + 1 == n)
         break;
       const double a = accelerations_[i], b = accelerations_[i + 1], h = interval;

@@ -108,6 +108,27 @@ class DamagedCheckpoints(AppTest):
             with self.subTest(said):
                 self.refuse("element_test", arguments, parts, change, said)
 
+    def test_a_folder_in_place_of_the_last_checkpoint(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
+        arguments = (scene, *SAVED, *QUIET)
+        last = self.stopped("element_test", arguments) / "checkpoint/last.h5"
+        last.unlink()
+        last.mkdir()
+        self.assert_refused(self.run_app("element_test", *arguments, "-o", "parts", "--resume"),
+                            "last.h5: is a folder, in place of a checkpoint. Move it away.")
+
+    def test_an_edge_without_length(self):
+        """Finite, and so taken: its logarithm is not."""
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
+        arguments = (scene, *SAVED, *QUIET)
+        checkpoint = self.stopped("element_test", arguments) / "checkpoint"
+        (checkpoint / "previous.h5").unlink()
+        with h5py.File(checkpoint / "last.h5", "r+") as file:
+            file["drive/path/start"].attrs["edges_x"] = 0.0
+        result = self.run_app("element_test", *arguments, "-o", "parts", "--resume")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, r"history.csv: eps_x = -?inf in row \d+; the run has gone wrong, or went on")
+
     def test_members_of_a_soil_column(self):
         scene = self.write("column.toml", COLUMN.replace("0.6 s", "6 s"))
         arguments = (scene, *SAVED, *QUIET)
@@ -151,7 +172,7 @@ class DamagedCheckpoints(AppTest):
 
     def test_a_link_in_a_history(self):
         """It is left out: what it leads to may be of others."""
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
         parts = self.stopped("element_test", (scene, *SAVED, *QUIET))
         with h5py.File(self.folder / "others.h5", "w") as others:
             others["secret"] = np.arange(3.)

@@ -148,8 +148,10 @@ TEST(ColumnSceneError, Motions)
                  {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
   EXPECT_EQ(complaint(smallest + ricker + ricker + "axis = \"y\"\n"), "accepted");
   expect_refused(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
-  expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be in [1e-6 Hz, 10000 Hz]"},
+  expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be in [0.001 Hz, 1000 Hz]"},
                  {"motion.0.frequency=0 Hz"});
+  expect_refused(smallest + ricker, {"motion.0.interval = 1e-9 s; must be in [1e-5 s, 10 s]"},
+                 {"motion.0.interval=1e-9 s"});
   expect_refused(smallest + ricker, {"must be an acceleration with its unit (m/s2, cm/s2 or g)"},
                  {"motion.0.amplitude=0.1"});
   expect_refused(smallest + ricker, {"there is no motion 1; column.toml has 1"}, {"motion.1.amplitude=1 g"});
@@ -193,6 +195,8 @@ TEST(ColumnSceneError, Output)
       head + "[\"2 m\", \"5.1 m\"]\n",
       {"column.toml:11: output.depths = [\"2 m\", \"5.1 m\"]; must lie in the soil, in [0 m, 5 m], but entry "
        "2 is 5.1 m."});
+  expect_refused(smallest, {"output.history_interval = 100 s; must be in (0 s, 10 s]"},
+                 {"output.history_interval=100 s"});
   expect_refused(head + "[\"-1 m\"]\n", {"column.toml:11: output.depths", "must be >= 0 m"});
   expect_refused(head + "[2]\n", {"must be a length with its unit (m, cm, mm or um), in quotes"});
   expect_refused(head + "\"2 m\"\n", {"must be a list [...] whose entries are a length with its unit"});

@@ -3,10 +3,11 @@
 
 #include "base/error.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
 #include <cstdio>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <numbers>
 
 namespace isostat
@@ -56,6 +57,12 @@ TEST(DecimationFilter, PassesWhatRowsCanShowAndNothingElse)
       EXPECT_BELOW_BECAUSE(delay, 1e-12, "symmetric weights: round-off");
       EXPECT_NEAR_BECAUSE(gain(stride, 0.375).first, 0.5, 0.01, "where a sinc of Kaiser's window passes half");
     }
+}
+
+TEST(DecimationFilter, RowsAMillionStepsApartAreTheLast)
+{
+  EXPECT_THAT(message_of<InputError>([] { DecimationFilter(1, 1'000'001); }),
+              testing::HasSubstr("output.history_interval is 1000001 time steps; must be at most 1000000"));
 }
 
 TEST(DecimationFilter, EveryStepIsLeftAlone)

@@ -58,6 +58,20 @@ TEST_F(RecorderFiles, AZeroHasNoSign)
   EXPECT_FALSE(std::signbit(stored("p").front()));
 }
 
+TEST_F(RecorderFiles, NumbersThatAreInfiniteOrNoneEndTheRun)
+{
+  Recorder recorder(folder / "run", columns);
+  recorder.append(std::array{0.0, 1.0, 2.0});
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THAT(message_of<RunFailure>([&] {
+                  recorder.append(std::array{0.1, bad, 2.0});
+                }),
+                AllOf(HasSubstr("history.csv: p = "), HasSubstr("in row 2; the run has gone wrong")));
+  recorder.flush();
+  EXPECT_EQ(recorder.n_rows(), 1u);
+  EXPECT_EQ(stored("p"), std::vector<double>{1.0});
+}
+
 TEST_F(RecorderFiles, LinesAppearWholeAndInTime)
 {
   Recorder recorder(folder / "run", columns);

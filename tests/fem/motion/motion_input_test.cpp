@@ -102,7 +102,7 @@ TEST(Motion, BadSamples)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(refusal([] { Motion({1}, 0.1); }), HasSubstr("1 samples; needs two"));
-  EXPECT_THAT(refusal([] { Motion({1, 2}, 0); }), HasSubstr("interval = 0 s; must be > 0"));
+  EXPECT_THAT(refusal([] { Motion({1, 2}, 0); }), HasSubstr("interval = 0 s; must be in [1e-05, 10] s"));
   EXPECT_THAT(refusal([&] { Motion({1, nan, 2}, 0.1); }), HasSubstr("acceleration 2 of 3 is nan"));
 }
 
@@ -201,6 +201,10 @@ TEST(AnalyticMotions, BadArguments)
   EXPECT_THAT(refusal([] { harmonic_motion(NAN, 5, 1, 0, 0.01); }), HasSubstr("amplitude = nan"));
   EXPECT_THAT(refusal([] { ricker_motion(1, 2, 0.4, 0.01); }), HasSubstr("t0 = 0.4 s; must be 0.5 s"));
   EXPECT_THAT(refusal([] { ricker_motion(1, 2, 1, 0); }), HasSubstr("interval = 0 s"));
+  EXPECT_THAT(refusal([] { harmonic_motion(1, 5, 1e4, 0, 1e-5); }), HasSubstr("1000000000 samples; must be at most"));
+  EXPECT_THAT(refusal([] { Motion({0, 1, 0}, 1e-9); }), HasSubstr("interval = 1e-09 s; must be in [1e-05, 10] s"));
+  EXPECT_THAT(refusal([] { Motion({0, 1, 0}, 1e7); }), HasSubstr("interval = 10000000 s; must be in [1e-05, 10] s"));
+  EXPECT_THAT(refusal([] { Motion({0, 1e29, 0}, 0.01); }), HasSubstr("acceleration 2 of 3 is 1e+29 m/s2; must be"));
 }
 
 TEST(Baseline, BothEndWithoutVelocity)
