@@ -146,6 +146,25 @@ class MPIRanks(ColumnTest):
                 self.assertIn("interrupted at step", message)
                 self.assertIn("go on with --resume", message)
 
+    def test_a_rank_is_killed(self):
+        """In the midst of a step, which waits for all ranks: the others end too, and the run goes on."""
+        options = settings(analysis__duration="8 s", output__checkpoint="1e-9 min")
+        self.assert_done(self.run_on_ranks(3, self.scene, "-o", "whole", *options))
+        for more in self.DISTRIBUTED + settings(analysis__duration="100000 s"), options:
+            with self.subTest(more):
+                process = self.start_ranks(3, *more, *settings(output__checkpoint="1e-9 min"))
+                checkpoint, end = self.folder / "out/checkpoint/previous.h5", time.time() + 60 * PATIENCE
+                while not checkpoint.exists() and time.time() < end:
+                    time.sleep(0.005)
+                os.kill(self.pid(1), signal.SIGKILL)
+                message = process.communicate(timeout=60 * PATIENCE)[1]
+                self.assertNotEqual(process.returncode, 0)
+                self.assertIn("signal 9", message)
+                if more is not options:
+                    shutil.rmtree(self.folder / "out")
+        self.assert_done(self.run_on_ranks(3, self.scene, "-o", "out", *options, "--resume"))
+        self.assert_same_files("whole", "out")
+
     def test_first_rank_cannot_write_its_last_rows(self):
         for more in (settings(analysis__duration="600 s", output__history_interval="10 s"),
                      self.DISTRIBUTED + settings(analysis__duration="10 s", output__history_interval="1 s")):

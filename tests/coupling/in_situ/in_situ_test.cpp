@@ -6,7 +6,6 @@
 #include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-#include <chrono>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -28,14 +27,12 @@ protected:
 };
 } // namespace
 
-TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
+TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSame)
 {
   const std::vector<Stress> target = {test::in_situ(70e3, 0.5), test::in_situ(40e3, 1), test::in_situ(10e3, 0.6)};
   const std::vector<SpecimenRequest> requests = {{0.5, 0}, {0.5, 1}, {0.5, 0}};
-  const auto begin = std::chrono::steady_clock::now();
   RveMaterial first(requests, settings, MPI_COMM_SELF);
   first.set_initial_stress(target);
-  const auto middle = std::chrono::steady_clock::now();
   std::vector<Stress> stress(3);
   first.trial(std::vector<Gradient>(3, Gradient{}), stress);
   for (int i = 0; i < 3; ++i)
@@ -43,15 +40,9 @@ TEST_F(InSitu, StressIsReachedAndASecondStartIsTheSameAndFast)
       EXPECT_NEAR_BECAUSE(stress[i][c], target[i][c], -0.01 * (target[i][0] + target[i][1] + target[i][2]) / 3,
                           "what set_initial_stress() promises: 1 % of p'")
           << i << c;
-  const auto start = std::chrono::steady_clock::now();
-  RveMaterial second(requests, settings, MPI_COMM_SELF);
+  RveMaterial second(requests, settings, MPI_COMM_SELF); // from the cache
   second.set_initial_stress(target);
-  const double fast = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(first.pack(), second.pack());
-  std::printf("three elements of 200 grains: %.2f s at first, %.3f s from the cache\n",
-              std::chrono::duration<double>(middle - begin).count(), fast);
-  EXPECT_BELOW_BECAUSE(fast, 0.3 * std::chrono::duration<double>(middle - begin).count(),
-                       "three packings are read, not brought to their stress; a factor of three on a busy machine");
   const auto entries = list_library(settings.cache);
   ASSERT_EQ(entries.size(), 3u);
   EXPECT_THAT(entries[0].text("source"), testing::StartsWith("s000"));
