@@ -36,6 +36,7 @@ std::pair<std::string, std::string> read_session(const fs::path &file)
   const std::size_t space = text.find(' ');
   return {text.substr(0, space), text.substr(std::min(space, text.size() - 1) + 1)};
 }
+
 /// @return whether the file was there: another process may be faster, or the file be withdrawn
 bool renamed(const fs::path &from, const fs::path &to)
 {

@@ -34,7 +34,7 @@ def parse():
     compare.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
     compare.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
     compare.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
-                         help="file that is written, or replaced (default: compare.html)")
+                         help="file that is written; a page that is there is replaced (default: compare.html)")
     return parser.parse_args()
 
 

@@ -189,11 +189,12 @@ void Recorder::append(std::span<const double> row)
 {
   assert(row.size() == columns_.size());
   for (std::size_t c = 0; c < row.size(); ++c)
+    if (!std::isfinite(row[c]))
+      throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or went on from a damaged "
+                                   "checkpoint. Take shorter steps, or start anew with --overwrite.",
+                                   csv_.string(), columns_[c].name, row[c], n_rows_ + 1));
+  for (std::size_t c = 0; c < row.size(); ++c)
     {
-      if (!std::isfinite(row[c]))
-        throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or went on from a damaged "
-                                     "checkpoint. Take shorter steps, or start anew with --overwrite.",
-                                     csv_.string(), columns_[c].name, row[c], n_rows_ + 1));
       waiting_.push_back(row[c] + 0.0); // -0 becomes 0
       add_number(waiting_lines_, waiting_.back(), c + 1 == row.size());
     }

@@ -90,10 +90,11 @@ class FailingRuns(AppTest):
                 for calls in (1, 0) if EVERY else ((i + k) % 2,):  # this call, or all from then on
                     with self.subTest(program=program, kind=kind, at=at, calls=calls):
                         self.empty()
-                        result, _ = self.run_failing(command, kind, at, calls)
+                        result, n_in_all = self.run_failing(command, kind, at, calls)
                         tried[kind] += 1
                         if harmless and result.returncode == 0:
-                            passed_over.add((kind, at))
+                            if n_in_all >= at:  # how often a leader looks at the files of the queue depends on time
+                                passed_over.add((kind, n_in_all - at))
                             self.assertEqual(results(self.folder / "out"), whole)
                             continue
                         self.assertIn(result.returncode, (1, 2), result.stderr)

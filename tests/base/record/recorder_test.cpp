@@ -70,6 +70,7 @@ TEST_F(RecorderFiles, NumbersThatAreInfiniteOrNoneEndTheRun)
   recorder.flush();
   EXPECT_EQ(recorder.n_rows(), 1u);
   EXPECT_EQ(stored("p"), std::vector<double>{1.0});
+  EXPECT_TRUE(csv().ends_with("\n0,1,2\n")) << csv();
 }
 
 TEST_F(RecorderFiles, LinesAppearWholeAndInTime)
