@@ -205,26 +205,28 @@ const std::filesystem::path &Group::file_path() const { return file_->path; }
 bool Group::has(const std::string &name) const
 {
   assert(file_->id >= 0);
-  return H5Lexists(file_->id, child(name).c_str(), within_file()) > 0;
+  return answer(*file_, child(name), H5Lexists(file_->id, child(name).c_str(), within_file()));
 }
 
 bool Group::has_attribute(const std::string &name, const std::string &item) const
 {
-  return H5Aexists(open_item(*file_, child(item)), name.c_str()) > 0;
+  return answer(*file_, child(item), H5Aexists(open_item(*file_, child(item)), name.c_str()));
 }
 
 std::vector<std::string> Group::names() const
 {
   std::vector<std::string> found;
-  H5Literate_by_name(file_->id, path_.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &found,
-                     within_file());
+  answer(*file_, path_,
+         H5Literate_by_name(file_->id, path_.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &found,
+                            within_file()));
   return found;
 }
 
 std::vector<std::string> Group::attribute_names() const
 {
   std::vector<std::string> found;
-  H5Aiterate2(open_item(*file_, path_), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &found);
+  answer(*file_, path_,
+         H5Aiterate2(open_item(*file_, path_), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &found));
   return found;
 }
 

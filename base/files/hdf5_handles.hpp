@@ -60,4 +60,13 @@ inline Handle checked(hid_t id, Handle::Close close, const FileState &file, cons
     fail(file, item, what);
   return {id, close};
 }
+
+/// Yes or no of a function that has a negative number for "I cannot say", as when memory runs out.
+/// @throws as fail() then
+inline bool answer(const FileState &file, const std::string &item, herr_t said)
+{
+  if (said < 0)
+    fail(file, item, "it cannot be looked at");
+  return said > 0;
+}
 } // namespace isostat::hdf5
