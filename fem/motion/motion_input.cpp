@@ -21,7 +21,7 @@ void check(bool good, const std::string &message)
     throw InputError(message);
 }
 
-constexpr double strongest = 1e5;               ///< acceleration, m/s2
+constexpr double strongest = 1e6;               ///< acceleration, m/s2
 constexpr double shortest = 1e-5, longest = 10; ///< intervals, s
 
 /// An interval that shows the wave: lines between ten samples in a period miss 5 % of a crest at most.

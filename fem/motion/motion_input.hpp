@@ -18,7 +18,7 @@ public:
   static constexpr double most_samples = 1e8; ///< of a record or a formula
 
   Motion() = default; ///< rest
-  /// @param accelerations  m/s2, two at least, within 1e5 m/s2   @param interval  1e-5 s to 10 s
+  /// @param accelerations  m/s2, two at least, within 1e6 m/s2   @param interval  1e-5 s to 10 s
   /// @throws InputError for fewer than two samples, a value or an interval beyond these
   Motion(std::vector<double> accelerations, double interval);
 
