@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
+#include <new>
 #include <zlib.h>
 
 namespace isostat
@@ -42,6 +43,8 @@ std::string read_text(const fs::path &path)
   gzerror(file, &code);
   const std::string reason = code == Z_ERRNO ? std::strerror(errno) : "";
   const int closed = gzclose(file);
+  if (code == Z_MEM_ERROR)
+    throw std::bad_alloc();
   if (!reason.empty())
     throw InputError(fmt::format("{}: cannot be read: {}; check the disk, and copy the file again if that goes on",
                                  path.string(), reason));
