@@ -21,6 +21,6 @@ done
 gcovr "${options[@]}" --json build/coverage/coverage.json --html-details build/coverage/html/index.html
 gcovr --root . --add-tracefile build/coverage/coverage.json --sort-uncovered --txt build/coverage/coverage.txt
 for folder in base dem fem coupling; do
-  gcovr --root . --add-tracefile build/coverage/coverage.json --filter "$folder/" --print-summary --txt /dev/null |
+  gcovr --root . --add-tracefile build/coverage/coverage.json --filter "$folder/" --print-summary --txt "build/coverage/$folder.txt" |
     grep -E '^(lines|branches)' | sed "s/^/$folder: /"
 done
