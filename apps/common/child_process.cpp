@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
+constexpr int as_new_log = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW;
+
 /// What the new process does: never returns.
 [[noreturn]] void become(char *const *arguments, const char *log, int kept_open, pid_t parent)
 {
@@ -33,7 +35,7 @@ namespace
   if (getppid() != parent) // it died meanwhile
     _exit(1);
   unlink(log); // it may be a link to a file of somebody
-  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0644);
+  const int output = open(log, as_new_log, 0644);
   const int input = open("/dev/null", O_RDONLY);
   if (output < 0 || input < 0)
     _exit(126);
@@ -46,6 +48,16 @@ namespace
 }
 
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+/// @param lost  the code of a process of which the system does not know any more how it ended
+std::optional<int> code_if_ended(pid_t id, int lost)
+{
+  int status = 0;
+  const pid_t found = waitpid(id, &status, WNOHANG);
+  if (found == 0 || (found < 0 && errno == EINTR))
+    return std::nullopt;
+  return found < 0 ? lost : code_of(status);
+}
 
 volatile std::sig_atomic_t keyboard_signal = 0;
 
@@ -81,14 +93,14 @@ int wait_for(pid_t id)
 {
   const bool stopped_before = stop_requested();
   bool told = false;
-  int status = 0;
-  for (pid_t found = 0; (found = waitpid(id, &status, WNOHANG)) == 0 || (found < 0 && errno == EINTR);)
+  std::optional<int> code;
+  while (!(code = code_if_ended(id, 0)))
     {
       if (!told && (keyboard_signal != 0 || (stop_requested() && !stopped_before)))
         told = kill(id, SIGTERM) == 0;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-  return code_of(status);
+  return *code;
 }
 
 pid_t start(const ChildRun &run, int kept_open)
@@ -117,14 +129,7 @@ std::vector<char *> pointers_to(std::vector<std::string> &words)
 
 ChildProcess::ChildProcess(const ChildRun &run, int kept_open) : id_(start(run, kept_open)) {}
 
-std::optional<int> ChildProcess::ended() const
-{
-  int status = 0;
-  const pid_t found = waitpid(id_, &status, WNOHANG);
-  if (found == 0 || (found < 0 && errno == EINTR))
-    return std::nullopt;
-  return found < 0 ? 1 : code_of(status);
-}
+std::optional<int> ChildProcess::ended() const { return code_if_ended(id_, 1); }
 
 void ChildProcess::stop() const { kill(id_, SIGTERM); }
 
@@ -135,7 +140,7 @@ int run_program(std::vector<std::string> command, const fs::path &log)
   unlink(log.c_str());       // it may be a link to a file of somebody
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0644);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), as_new_log, 0644);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   pid_t id = 0;
   const int failure = posix_spawn(&id, arguments[0], &files, nullptr, arguments.data(), environ);

@@ -37,16 +37,6 @@ std::string quoted(const fs::path &path)
   return word + "'";
 }
 
-/// Whether there is nothing else in the folder, but what was being written of it when a program was killed.
-bool holds_only(const fs::path &folder, const std::vector<fs::path> &names)
-{
-  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry &entry) {
-    const fs::path name = entry.path().filename();
-    return std::ranges::any_of(names,
-                               [&](const fs::path &known) { return name == known || name == known.string() + ".tmp"; });
-  });
-}
-
 /// @throws InputError  a program is at work in the folder
 void expect_free(const fs::path &folder)
 {
@@ -75,7 +65,15 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-bool is_unused(const fs::path &folder) { return !folder_exists(folder) || holds_only(folder, first_files); }
+bool is_unused(const fs::path &folder)
+{
+  const auto is_known = [](const fs::directory_entry &entry) {
+    const fs::path name = entry.path().filename();
+    return std::ranges::any_of(first_files,
+                               [&](const fs::path &known) { return name == known || name == known.string() + ".tmp"; });
+  };
+  return !folder_exists(folder) || std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), is_known);
+}
 
 void expect_results(const fs::path &folder)
 {

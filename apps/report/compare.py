@@ -10,7 +10,6 @@ from .quantities import converted, is_number, named
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
-GENERATOR = b'<meta name="generator" content="Isostat">'  # of the head of every page (html.py)
 
 
 def flat(value, name=""):
@@ -138,7 +137,7 @@ def leave(first, second, output):
     check(pair)
     if output.is_dir() or not output.absolute().parent.is_dir():
         raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
-    if output.exists() and not (output.is_file() and GENERATOR in output.read_bytes()[:1000]):
+    if output.exists() and not (output.is_file() and html.GENERATOR.encode() in output.read_bytes()[:1000]):
         raise NoResults(f"{output}: is there, and no page of Isostat. Give another --output, or move it away.")
     text = page(pair)
     try:

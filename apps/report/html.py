@@ -7,6 +7,7 @@ import pathlib
 from . import narrow, svg
 
 HERE = pathlib.Path(__file__).resolve().parent
+GENERATOR = '<meta name="generator" content="Isostat">'  # of every page
 LARGEST = 1.7  # pixels of the page for a point of a figure: 9 pt are then as large as a heading
 WIDE = 560  # width in points from which a figure takes the whole width of the page
 HINT = ("Select a figure with a click, a touch or the tab key. Then turn the wheel, pinch, or press + and - to zoom; "
@@ -81,8 +82,8 @@ def page(title, subtitle, sections):
     """The whole file, with style and script in it."""
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "zoom.js"))
     return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(title)}</title>\n'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="generator" '
-            f'content="Isostat">\n<style>\n{style}</style>\n</head>\n<body>\n<header>\n<h1>{escape(title)}</h1>\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            f'{GENERATOR}\n<style>\n{style}</style>\n</head>\n<body>\n<header>\n<h1>{escape(title)}</h1>\n'
             f'{paragraph(subtitle)}\n</header>\n<main>\n{"".join(sections)}</main>\n<script>\n{script}</script>\n'
             '</body>\n</html>\n')
 
