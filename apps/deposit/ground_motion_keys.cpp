@@ -65,7 +65,7 @@ constexpr Key keys[] = {
    .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency.",
    .field = [](ColumnMotion &m) -> Field { return &m.centre; }},
   {.path = "interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "1 ms", .range = {1e-5, 10},
+   .presence = Presence::optional, .value = "1 ms", .range = {Motion::shortest_interval, Motion::longest_interval},
    .reason = "because ground does not shake as fast or as slowly", .kinds = harmonic | ricker,
    .text = "Time between samples, straight in between; left out: 1 / (500 frequency), and 1e-5 s at least.",
    .field = [](ColumnMotion &m) -> Field { return &m.interval; }},

@@ -111,10 +111,11 @@ struct ColumnMotion
   std::optional<double> again;    ///< start of the same motion for the second time, s
 
   double peak_time() const { return centre.value_or(1.5 / frequency); } ///< of a ricker, s
+  /// Not of a record, s.
   double sample_interval() const
   {
-    return interval.value_or(std::max(1e-5, 1 / (500 * frequency)));
-  } ///< not of a record, s
+    return interval.value_or(std::max(Motion::shortest_interval, 1 / (500 * frequency)));
+  }
 
   bool operator==(const ColumnMotion &) const = default;
 };

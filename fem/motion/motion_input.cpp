@@ -21,9 +21,6 @@ void check(bool good, const std::string &message)
     throw InputError(message);
 }
 
-constexpr double strongest = 1e6;               ///< acceleration, m/s2
-constexpr double shortest = 1e-5, longest = 10; ///< intervals, s
-
 /// An interval that shows the wave: lines between ten samples in a period miss 5 % of a crest at most.
 void check_sampling(double amplitude, double frequency, double interval)
 {
@@ -87,8 +84,9 @@ Motion::Motion(std::vector<double> accelerations, double interval)
 {
   const std::size_t n = accelerations_.size();
   check(n >= 2, fmt::format("a motion of {} samples; needs two at least", n));
-  check(interval >= shortest && interval <= longest,
-        fmt::format("interval = {} s; must be in [{}, {}] s. Are its times in seconds?", interval, shortest, longest));
+  check(interval >= shortest_interval && interval <= longest_interval,
+        fmt::format("interval = {} s; must be in [{}, {}] s. Are its times in seconds?", interval, shortest_interval,
+                    longest_interval));
   velocities_.resize(n);
   displacements_.resize(n);
   for (std::size_t i = 0; i < n; ++i)

@@ -15,11 +15,13 @@ namespace isostat
 class Motion
 {
 public:
-  static constexpr double most_samples = 1e8; ///< of a record or a formula
+  static constexpr double most_samples = 1e8;                              ///< of a record or a formula
+  static constexpr double shortest_interval = 1e-5, longest_interval = 10; ///< between samples, s
+  static constexpr double strongest = 1e6;                                 ///< acceleration, m/s2
 
   Motion() = default; ///< rest
-  /// @param accelerations  m/s2, two at least, within 1e6 m/s2   @param interval  1e-5 s to 10 s
-  /// @throws InputError for fewer than two samples, a value or an interval beyond these
+  /// @param accelerations  m/s2, two at least   @param interval  s
+  /// @throws InputError for fewer than two samples, a value or an interval beyond the bounds above
   Motion(std::vector<double> accelerations, double interval);
 
   double acceleration(double t) const; ///< m/s2, t in s
