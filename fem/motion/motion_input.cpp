@@ -48,7 +48,9 @@ double envelope(double t, double duration, double ramp)
   const double inside = std::min(t, duration - t);
   if (inside < -1e-9 * duration)
     return 0;
-  return inside < ramp ? 0.5 * (1 - std::cos(pi * std::max(0.0, inside) / ramp)) : 1;
+  if (inside >= ramp || ramp == 0) // the last sample may lie a round-off behind the end
+    return 1;
+  return 0.5 * (1 - std::cos(pi * std::max(0.0, inside) / ramp));
 }
 
 /// a - sum_k c_k (t/T)^k, k = 1, 2, each power without its mean: the velocity at the end does not change.

@@ -163,6 +163,25 @@ TEST(Harmonic, DurationThatIsNoMultipleOfTheInterval)
   EXPECT_NEAR_BECAUSE(m.accelerations()[25], 1, crest);
 }
 
+/// 812 x (1/(500 4.06)) s is 0.4 s and a last bit: without a ramp, the envelope there is 1, not 0/0.
+TEST(Harmonic, LastSampleARoundOffBehindTheEnd)
+{
+  int behind = 0;
+  for (int hundredths = 100; hundredths <= 2000; ++hundredths)
+    {
+      const double frequency = hundredths / 100.0, interval = 1 / (500 * frequency);
+      for (const double duration : {0.3, 0.4, 0.7, 1.0})
+        {
+          const Motion m = harmonic_motion(1, frequency, duration, 0, interval);
+          const double last = (m.accelerations().size() - 1) * interval;
+          behind += last > duration && last < duration * (1 + 1e-12);
+          const double wave = last < duration * (1 + 1e-9) ? std::sin(2 * pi * frequency * last) : 0;
+          EXPECT_EQ(m.accelerations().back(), wave) << frequency << " Hz for " << duration << " s";
+        }
+    }
+  EXPECT_GT(behind, 10);
+}
+
 std::array<double, 3> ricker_errors(double dt)
 {
   const double amplitude = 2, f = 2, t0 = 1; // exp(-(pi f t0)^2) = 7e-18 is cut off
