@@ -70,6 +70,22 @@ class SharedFolder(AppTest):
     def test_soil_column(self):
         self.share("soil_column", self.write("column.toml", COLUMN), *SAVED)
 
+    def test_programs_that_start_at_once_share_no_session_of_mpi(self):
+        """Open MPI removes the folder that they share, now and then while another one starts in it."""
+        temporary, column = self.folder / "temporary", self.write("column.toml", COLUMN)
+        temporary.mkdir()
+        seen, environment = set(), {name: text for name, text in os.environ.items() if "tmpdir_base" not in name}
+        runs = [subprocess.Popen(self.command("soil_column", column, "-o", out, "--no-figures", "-q"), cwd=self.folder,
+                                 stdout=subprocess.DEVNULL, env=environment | {"TMPDIR": str(temporary)})
+                for out in ("one", "other")]
+        while any(run.poll() is None for run in runs):
+            seen |= {path.name for path in temporary.iterdir()}
+            time.sleep(0.002)
+        self.assertEqual([run.wait() for run in runs], [0, 0])
+        self.assertEqual(len([name for name in seen if name.startswith("isostat-mpi-")]), 2, seen)
+        self.assertFalse([name for name in seen if name.startswith("ompi.")], seen)
+        self.assertEqual(list(temporary.iterdir()), [], "what was temporary is gone")
+
     def test_a_folder_with_nothing_but_a_lock_is_free(self):
         scene = self.write("scene.toml", tiny_scene(stages="# none"))
         (self.folder / "out").mkdir()
