@@ -17,7 +17,7 @@ NAMES = {
     "OMPI": ("openmpi", "openmpi"), "PETSC": ("petsc", None), "PUGIXML": ("pugixml", "pugixml"),
     "ZLIB": ("zlib-api", "zlib"),
 }
-OF_THE_COMPILER = {"OpenMP", "PkgConfig", "Threads"}
+OF_THE_COMPILER = {"PkgConfig", "Threads"}
 NO_CMAKE_FILE = {"random123": "random123", "tomlplusplus": "tomlplusplus"}  # headers that are found without CMake
 
 

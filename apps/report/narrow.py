@@ -29,7 +29,9 @@ def side_by_side(figure):
 
 def stack_legend(figure, legend):
     """The legend of the figure in as many columns as fit. Returns the layout's rectangle beside it."""
-    handles, labels = legend.legendHandles, [text.get_text() for text in legend.get_texts()]
+    # the handles have another name before matplotlib 3.7
+    handles = legend.legend_handles if hasattr(legend, "legend_handles") else legend.legendHandles
+    labels = [text.get_text() for text in legend.get_texts()]
     share = legend.get_window_extent().width / figure.bbox.width
     columns = max(1, min(len(labels), int(len(labels) * 0.95 / share)))
     taken = (LEGEND_ROW * math.ceil(len(labels) / columns) + LEGEND_EDGE) / figure.get_figheight()

@@ -2,6 +2,7 @@
 #include "base/scene/document.hpp"
 
 #include "base/error.hpp"
+#include "base/scene/toml_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -71,34 +72,16 @@ std::string value_text(const toml::node &node, bool inside = false)
   return stream.str();
 }
 
-/// The first line with which the text makes toml++ give up without saying where.
-std::size_t line_of_assertion(const std::string &text)
-{
-  std::size_t line = 1;
-  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1), ++line)
-    try
-      {
-        [[maybe_unused]] const toml::table table = toml::parse(std::string_view(text).substr(0, end + 1));
-      }
-    catch (const toml::parse_error &)
-      {}
-    catch (const TomlAssertion &)
-      {
-        break;
-      }
-  return line;
-}
-
 /// A value of --set: TOML if it is that, plain text if not.
 toml::table parse_override(const std::string &value)
 {
   try
     {
-      toml::table holder = toml::parse("value = " + value);
+      toml::table holder = parse_toml("value = " + value, "");
       if (holder.size() == 1) // more: the text holds line breaks
         return holder;
     }
-  catch (const toml::parse_error &)
+  catch (const InputError &)
     {}
   toml::table holder;
   holder.insert_or_assign("value", value);
@@ -108,22 +91,8 @@ toml::table parse_override(const std::string &value)
 
 SceneDocument::SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                              const std::vector<std::string> &overrides)
-    : schema_(schema), name_(name)
+    : schema_(schema), name_(name), root_(parse_toml(text, name))
 {
-  try
-    {
-      root_ = toml::parse(text, name);
-    }
-  catch (const toml::parse_error &error)
-    {
-      throw InputError(
-          fmt::format("{}:{}: is not valid TOML: {}.", name, error.source().begin.line, error.description()));
-    }
-  catch (const TomlAssertion &)
-    {
-      throw InputError(fmt::format("{}:{}: is not valid TOML: a key or table header is cut off here.", name,
-                                   line_of_assertion(text)));
-    }
   for (const std::string &override : overrides)
     apply(override);
 }

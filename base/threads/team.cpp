@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/threads/team.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <hwy/cache_control.h>
 #include <optional>
+#include <sched.h>
 #include <unistd.h>
 #include <utility>
 
@@ -24,6 +27,16 @@ void wait_for_change(const std::atomic<std::uint64_t> &value, std::uint64_t old)
   value.wait(old, std::memory_order_acquire);
 }
 } // namespace
+
+int default_threads()
+{
+  const char *asked = std::getenv("OMP_NUM_THREADS"); // "4", or "4,2" for nested teams
+  if (const int n = asked ? std::atoi(asked) : 0; n > 0)
+    return std::min(n, 1024);
+  cpu_set_t usable;
+  const bool known = sched_getaffinity(0, sizeof usable, &usable) == 0; // not on more than 1,024 processors
+  return std::max(1, known ? CPU_COUNT(&usable) : static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 Team &Team::of(int n)
 {

@@ -10,10 +10,13 @@
 
 namespace isostat
 {
+/// Threads that a run may have if its settings leave the number open: OMP_NUM_THREADS, by which users set it for other
+/// programs, too; without it the processors that this process may use.
+int default_threads();
+
 /// Threads that wait for short pieces of work, a step of a packing or an element of a column. Whoever waits spins for
 /// some 50 microseconds, about as long as waking a thread takes, and then sleeps. So a machine that is busy with
-/// other work is not made busier by
-/// waiting, which the waiting policies of OpenMP, set for a whole process by its environment, do not offer.
+/// other work is not made busier by waiting.
 /// cost: 0.5 to 1 microsecond for each run() between two cores
 /// tested: tests/base/threads/team_test.cpp
 class Team

@@ -11,13 +11,12 @@
 #include <map>
 #include <mutex>
 #include <numeric>
-#include <omp.h>
 #include <utility>
 
 namespace isostat
 {
 ElementBatch::ElementBatch(const Realisations &points, const ElementSettings &settings, int threads, MPI_Comm comm)
-    : points_(points), settings_(settings), threads_(threads == 0 ? omp_get_max_threads() : threads), exchange_(comm),
+    : points_(points), settings_(settings), threads_(threads == 0 ? default_threads() : threads), exchange_(comm),
       all_(points.n_elements()), elements_(all_.size()), rows_(all_.size()), trial_(all_.size()),
       committed_(all_.size())
 {

@@ -2,7 +2,6 @@
 #include "dem/assembly/contact_forces-inl.hpp"
 
 #include <algorithm>
-#include <omp.h>
 
 namespace isostat
 {
@@ -17,7 +16,7 @@ int ContactForces::available_threads(const StepSettings &settings) const
   const int n_chunks = static_cast<int>(list_.partition().n_chunks);
   if (settings.threads > 0)
     return std::min(settings.threads, n_chunks);
-  return std::clamp(n_chunks / 4, 1, omp_get_max_threads()); // four chunks pay for a thread
+  return std::clamp(n_chunks / 4, 1, default_threads()); // four chunks pay for a thread
 }
 
 void ContactForces::resize(const Input &in)

@@ -92,9 +92,8 @@ void Unknowns<dim>::tie_faces(const Supports &supports)
       const int id = boundary_id<dim>(tie.face);
       if (id < 0)
         throw InputError("supports: a face of an axis that is not meshed; remove it");
-      dealii::IndexSet on_face;
-      dealii::DoFTools::extract_boundary_dofs(nodes_, dealii::ComponentMask(), on_face,
-                                              {static_cast<dealii::types::boundary_id>(id)});
+      const dealii::IndexSet on_face = dealii::DoFTools::extract_boundary_dofs(
+          nodes_, dealii::ComponentMask(), {static_cast<dealii::types::boundary_id>(id)});
       Masters &masters = masters_[tie.component];
       Index minimum = nodes_.n_dofs();
       for (Index node : on_face)

@@ -12,7 +12,7 @@ namespace
 std::vector<Member> members_of(hid_t file)
 {
   std::vector<Member> all;
-  const auto visit = [](hid_t, const char *name, const H5O_info_t *, void *out) -> herr_t {
+  const auto visit = [](hid_t, const char *name, const auto *, void *out) -> herr_t {
     static_cast<std::vector<Member> *>(out)->push_back({name, {}});
     return 0;
   };

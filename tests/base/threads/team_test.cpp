@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/threads/team.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <numeric>
+#include <sched.h>
 #include <stdexcept>
 #include <string>
 #include <sys/wait.h>
@@ -12,6 +15,31 @@
 
 namespace isostat
 {
+TEST(DefaultThreads, AreThoseThatAreAskedForOrTheProcessors)
+{
+  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  ::setenv("OMP_NUM_THREADS", "3", 1);
+  EXPECT_EQ(default_threads(), 3);
+  ::setenv("OMP_NUM_THREADS", "5,2", 1);
+  EXPECT_EQ(default_threads(), 5);
+  for (const char *no_number : {"", "many", "0", "-2"})
+    {
+      ::setenv("OMP_NUM_THREADS", no_number, 1);
+      EXPECT_THAT(default_threads(), testing::AllOf(testing::Ge(1), testing::Le(all)));
+    }
+  std::thread([all] { // bound to one processor, as mpirun does
+    cpu_set_t one;
+    sched_getaffinity(0, sizeof one, &one);
+    for (int cpu = 0, kept = 0; cpu < CPU_SETSIZE; ++cpu)
+      if (CPU_ISSET(cpu, &one) && kept++ > 0)
+        CPU_CLR(cpu, &one);
+    sched_setaffinity(0, sizeof one, &one);
+    EXPECT_EQ(default_threads(), 1);
+  })
+      .join();
+  ::unsetenv("OMP_NUM_THREADS");
+}
+
 TEST(Team, EveryThreadDoesItsPartOfEveryRound)
 {
   for (int n : {1, 2, 3, 7})
