@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Isostat, YADE, LAMMPS and LIGGGHTS on the same packing, law and cores, interleaved: ratios of steps per second.
 
-    side_by_side.py SPECIMEN... [--peers yade,lammps,liggghts] [--threads 1,2] [--rounds 5] [--cores 0,1]
+    side_by_side.py SPECIMEN... [--peers yade,lammps,liggghts] [--debian trixie] [--native] [--threads 1,2] [--rounds 5]
 
 SPECIMEN is what `whole_step` reads: a specimen (.h5), text of spheres (x y z r, box in a comment), or a folder of
 tables comp_{particles,contacts,walls}_step0. It is exported as text, and every code starts from that text: no contact
 has a history. Each shears the packing at constant volume, at the same rate and time step; the first --warm-up steps are
 not timed.
-Peers are Debian packages, installed if they are missing (apt-get, as root or with sudo).
+Peers are Debian packages, installed if they are missing (apt-get, as root or with sudo). YADE and LAMMPS can also be
+those of other Debians (--debian trixie: yade@trixie, lammps@trixie), each run in a folder that holds that system
+(scripts/other_debian.sh), and LAMMPS also one built from Debian's source for this processor (--native: lammps-native).
 
   yade      grains stored by size, as generated; and `yade-morton`, stored along a space-filling curve as ours are
+  --no-twisting  leaves twisting moments out of all codes: YADE 2025.2 has none without a limit (docs/theory.md)
   yade-state  (with --yade-state) YADE from its own saved state, ours from the folder of tables, both with history
   lammps    pair_style granular, one constant stiffness matched to the mean stress of the packing
   liggghts  hooke/stiffness with epsd2, likewise; and `liggghts-static`: rate 0 in both codes, walls at rest, because
@@ -37,7 +40,7 @@ from peers import packing as packings
 from peers import report
 from peers.codes import Isostat, Test, Yade, together
 from peers.lammps import Lammps, Liggghts, LiggghtsStatic
-from peers.process import PeerError
+from peers.process import PeerError, System
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PEERS = ("yade", "lammps", "liggghts")
@@ -63,7 +66,10 @@ def parse_arguments():
     add("--steps", type=int, default=1000, help="timed steps (default: 1000)")
     add("--yade-state", action="append", default=[], metavar="FILE.yade.bz2",
         help="state of YADE that belongs to a folder of tables; once per folder, in their order")
+    add("--debian", default="", help="other suites of Debian whose YADE and LAMMPS run as well, such as trixie")
+    add("--native", action="store_true", help="LAMMPS also from each Debian's source, -O3 -march=native (minutes)")
     add("--twisting", choices=("sds", "marshall"), default="sds", help="twisting model of LAMMPS (default: sds)")
+    add("--no-twisting", action="store_true", help="no twisting moments in any code; not with liggghts")
     add("--skin", type=float, default=0.05, help="skin of LAMMPS and LIGGGHTS, in mean radii (default: 0.05)")
     add("--report", default=str(ROOT / "docs" / "results" / "side_by_side.md"),
         help="page of results, written when all rounds are done (default: docs/results/side_by_side.md)")
@@ -87,6 +93,9 @@ def check(options):
     for peer in options.peers:
         if peer not in PEERS:
             raise BadInput(f"--peers {peer}: expected some of {','.join(PEERS)}")
+    options.systems = [System()] + [System(suite) for suite in options.debian.split(",") if suite]
+    if options.no_twisting and ("liggghts" in options.peers or options.yade_state):
+        raise BadInput("--no-twisting: LIGGGHTS's rolling and a saved state of YADE have twisting; leave them out")
     options.threads = numbers(options.threads, "--threads", 1)
     options.cores = numbers(options.cores, "--cores", 0)
     if max(options.threads) > len(options.cores):
@@ -115,21 +124,29 @@ def check(options):
     return isostat
 
 
+def codes_of(peer, options, isostat, morton=None):
+    """The codes of a peer: of each Debian, and as they are compared."""
+    undamped, twisting = isostat.has("--damping"), not options.no_twisting
+    for system in options.systems:
+        if peer == "yade":
+            yield Yade("yade", None, system, twisting)
+            yield Yade("yade-morton", morton, system, twisting)
+        elif peer == "lammps":
+            for native in (False, True) if options.native else (False,):
+                yield Lammps(undamped, options.skin, options.twisting if twisting else "none", system, native)
+    if peer == "liggghts":
+        yield Liggghts(undamped, options.skin)
+        yield LiggghtsStatic(undamped, options.skin)
+
+
 def peers_on(specimen, options, isostat, folder, morton):
     """(code, what whole_step reads, its damping) of every comparison on one specimen."""
-    undamped = isostat.has("--damping")
-    damping = 0 if undamped else None
     for peer in options.peers:
-        if peer == "yade":
-            yield Yade(), folder / "packing.txt", None
-            yield Yade("yade-morton", morton), folder / "packing.txt", None
-            if specimen in options.state_of:
-                yield Yade("yade-state", options.state_of[specimen]), specimen, None
-        elif peer == "lammps":
-            yield Lammps(undamped, options.skin, options.twisting), folder / "packing.txt", damping
-        else:
-            yield Liggghts(undamped, options.skin), folder / "packing.txt", damping
-            yield LiggghtsStatic(undamped, options.skin), folder / "packing.txt", damping
+        damping = 0 if peer != "yade" and isostat.has("--damping") else None
+        for code in codes_of(peer, options, isostat, morton):
+            yield code, folder / "packing.txt", damping
+        if peer == "yade" and specimen in options.state_of:
+            yield Yade("yade-state", options.state_of[specimen]), specimen, None
 
 
 def export(isostat, specimen, morton, options):
@@ -159,9 +176,9 @@ def compare_on(specimen, options, isostat, folder):
         for number in range(1, options.rounds + 1):
             for comparison, (code, source, damping) in zip(comparisons, runs):
                 shared = dataclasses.replace(test, rate=0.0) if code.at_rest else test
-                before = isostat.run(shared, source, damping)
+                before = isostat.run(shared, source, damping, not options.no_twisting)
                 peer = code.run(shared)
-                after = isostat.run(shared, source, damping)
+                after = isostat.run(shared, source, damping, not options.no_twisting)
                 comparison.rounds.append(report.Round(together([before, after]), peer))
                 print(report.round_line(number, options.rounds, comparison, comparison.rounds[-1]), flush=True)
                 for line in report.warnings(comparison, comparison.rounds[-1]):
@@ -197,8 +214,8 @@ def run(options):
     with tempfile.TemporaryDirectory() as scratch:
         for number, specimen in enumerate(options.specimens):  # all can be read, before hours are spent on the first
             export(isostat, specimen, pathlib.Path(scratch) / f"check{number}.txt", options)
-        for code in {"yade": Yade(), "lammps": Lammps(False), "liggghts": Liggghts(False)}.values():
-            if code.name in options.peers:
+        for peer in options.peers:
+            for code in codes_of(peer, options, isostat):
                 code.install(max(options.threads))
         comparisons = []
         for number, specimen in enumerate(options.specimens):

@@ -34,7 +34,7 @@ struct Options
   double rate = 5, time_step = 4.8e-8, friction_degrees = 18, damping = 0.2, contact_damping = 0,
          free_grain_damping = 0;
   std::size_t copies = 1;
-  bool carry_grains = false, fixed_threads = false;
+  bool carry_grains = false, fixed_threads = false, no_twisting = false;
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
@@ -42,6 +42,7 @@ Snapshot load(const Options &options)
 {
   LinearRolling law;
   law.friction = std::tan(options.friction_degrees * M_PI / 180);
+  law.twisting = !options.no_twisting;
   const fs::path path = options.packing;
   if (path.extension() == ".h5")
     {
@@ -149,6 +150,7 @@ int main(int argc, char **argv)
   line.add_option("--rate", options.rate, "axial strain rate, 1/s");
   line.add_option("--time-step", options.time_step, "s");
   line.add_option("--friction", options.friction_degrees, "degrees");
+  line.add_flag("--no-twisting", options.no_twisting, "leave twisting moments out of the law");
   line.add_option("--damping", options.damping, "local damping");
   line.add_option("--contact-damping", options.contact_damping, "share of critical damping of dashpots in contacts");
   line.add_option("--free-grain-damping", options.free_grain_damping, "share that free grains lose");

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what Isostat needs on Debian 12. Run it as often as you like: nothing happens, and the network is not
-# touched, when every package is there.
+# Installs what Isostat needs on Debian 12 or 13. Run it as often as you like: nothing happens, and the network is not
+# touched, when every package is installed.
 #
 #   scripts/setup.sh            what building, testing and drawing need
 #   scripts/setup.sh --gates    and what scripts/check_all.sh needs
@@ -12,16 +12,18 @@
 set -euo pipefail
 
 packages=(
-  git g++ gfortran cmake ninja-build pkg-config
+  git g++ gfortran cmake make ninja-build pkg-config
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev librandom123-dev
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev libnlopt-cxx-dev
   libdeal.ii-dev libpetsc-real-dev openmpi-bin
-  python3 python3-matplotlib python3-numpy python3-h5py
+  python3 python3-matplotlib python3-numpy python3-h5py python3-scipy
   python3-dev pybind11-dev python3-pip python3-setuptools python3-wheel
 )
+clang=19
+if [[ "$(. /etc/os-release && echo "${VERSION_ID:-}")" == 12 ]]; then clang=14; fi
 case "${1:-}" in
   --gates) packages+=(clang-format clang-tidy chromium) ;;
-  --fuzz) packages+=(clang libclang-rt-14-dev libomp-14-dev) ;;
+  --fuzz) packages+=(clang "libclang-rt-$clang-dev") ;;
   --coverage) packages+=(gcovr) ;;
   --packages) packages+=(help2man dpkg-dev fakeroot file) ;;
   --docs) packages+=(python3-sphinx python3-myst-parser furo doxygen libjs-mathjax) ;;

@@ -65,7 +65,7 @@ class Recipes(unittest.TestCase):
         text = (PACKAGING / "Containerfile").read_text(encoding="utf-8")
         for part in ("FROM debian:12", "scripts/setup.sh", "cmake --preset release", "cmake --install"):
             self.assertIn(part, text)
-        for python in ("python3-numpy", "python3-matplotlib", "python3-h5py"):
+        for python in ("python3-numpy", "python3-matplotlib", "python3-h5py", "python3-scipy"):
             self.assertIn(python, text)
 
 

@@ -59,8 +59,8 @@ public:
   std::size_t at() const { return std::min(at_, text_.size()); }
 
 private:
-  /// From an opening quote to the last closing one. toml++ asks of the first letter behind a backslash, or behind the line
-  /// break that a backslash hides, whether it is a blank: false if that letter is not ASCII.
+  /// From an opening quote to the last closing one. toml++ asks of the first letter behind a backslash, or behind the
+  /// line break that a backslash hides, whether it is a blank: false if that letter is not ASCII.
   bool skip_string(char quote)
   {
     const bool multi_line = text_.substr(at_, 3) == std::string(3, quote);

@@ -6,7 +6,7 @@ import json
 import pathlib
 
 from . import packing as packings
-from .process import PeerError, execute, install, installed_version, last_lines
+from .process import PeerError, System, execute, last_lines
 
 HERE = pathlib.Path(__file__).resolve().parent
 MIN_SECONDS, MAX_RUNS = 0.5, 20  # a block is repeated, from the same start, until its timed seconds reach this
@@ -78,12 +78,13 @@ class Isostat:
         execute([self.program, specimen, "--export", path], [core], None)
         return packings.read_packing(path)
 
-    def run(self, test, source, damping=None):
+    def run(self, test, source, damping=None, twisting=True):
         """`source` is what whole_step reads: text of spheres, or a folder of tables with contact history."""
         command = [self.program, source, "--rate", test.rate, "--time-step", test.time_step, "--steps", test.steps,
                    "--warm-up", test.warm_up]
         command += ["--threads", test.threads] if test.threads > 1 else []
         command += ["--damping", damping] if damping is not None else []
+        command += [] if twisting else ["--no-twisting"]
 
         def once():
             out, f = timed([*command, "--times"], test)
@@ -93,13 +94,13 @@ class Isostat:
 
 
 class Yade:
-    name, program, package = "yade", "yade", "yade"
+    program, package = "yade", "yade"
     tolerance = 0.01
     at_rest = False
 
-    def __init__(self, name="yade", file=None):
+    def __init__(self, name="yade", file=None, system=System(), twisting=True):
         """`file` is a packing that is not the main one, or a state saved by YADE."""
-        self.name, self.file = name, file
+        self.name, self.file, self.system, self.twisting = system.label(name), file, system, twisting
         self.differs = {
             "yade": "Grains are stored by size, largest first, the order in which a packing is generated; contacts "
                     "start without history in both codes. Law, damping, walls, rate and step are the same.",
@@ -109,12 +110,14 @@ class Yade:
                           "step after it has loaded a state than for the same packing built in the running program, "
                           "whatever the order of its grains.",
         }[name]
+        if not twisting:
+            self.differs += " Neither code has twisting moments."
 
     def version(self):
-        return "YADE " + installed_version(self.package)
+        return "YADE " + self.system.version(self.package)
 
     def install(self, threads):
-        install(self.program, self.package)
+        self.system.install(self.program, self.package)
 
     def run(self, test):
         path = self.file
@@ -122,8 +125,8 @@ class Yade:
             path = test.folder / "by_size.txt"
             packings.write_packing(path, test.packing)
         command = ["yade", "-n", "-x", f"-j{test.threads}", HERE / "yade_shear.py", path, test.rate, test.time_step,
-                   test.warm_up, test.steps]
-        _, f = timed(command, test)
+                   test.warm_up, test.steps, int(self.twisting)]
+        _, f = timed(self.system.inside(command), test)
         if f.get("grains") != len(test.packing.spheres):
             raise PeerError(f"{path} has {f.get('grains', 0):.0f} grains, the specimen has {len(test.packing.spheres)}")
         return Figures(f["steps_per_s"], f["p_kPa"], f["q_kPa"], f["contacts"], f["cores"])

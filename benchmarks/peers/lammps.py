@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """LAMMPS and its descendant LIGGGHTS in the comparison; see codes.py for what a code is here."""
 import math
+import os
 import re
 
 from . import packing as packings
 from .codes import HERE, Figures, repeated
-from .process import PeerError, execute, install, installed_version, last_lines, under_mpi
+from .process import PeerError, System, execute, last_lines, under_mpi
 
+BUILD = HERE.parents[1] / "build"
 WALLS = ("xl", "xu", "yl", "yu", "zl", "zu")
 
 
 class Lammps:
     """One constant stiffness; see packing.matched_stiffness and lammps_shear.in."""
-    name, program, package = "lammps", "lmp", "lammps"
+    kind, program, package = "lammps", "lmp", "lammps"
     tolerance = 0.05
     at_rest = False
     deck = "lammps_shear.in"
@@ -25,30 +27,39 @@ class Lammps:
     damping = ("No damping in both codes.", "Damping is viscous along the contact normal, with the loss per cycle of "
                "the local damping 0.2 in Isostat; give whole_step an option --damping and both run without.")
 
-    def __init__(self, undamped, skin=0.05, twisting="sds"):
-        self.undamped, self.skin, self.twisting = undamped, skin, twisting
+    def __init__(self, undamped, skin=0.05, twisting="sds", system=System(), native=False):
+        """`native`: built from Debian's source for this processor (lammps_native.sh)."""
+        self.undamped, self.skin, self.twisting, self.system = undamped, skin, twisting, system
+        self.native = BUILD / f"lammps-{system.suite or 'here'}" if native else None
+        self.name = system.label(self.kind + "-native" * native)
         self.differs = self.law.format(twisting=twisting) + self.ending + self.damping[0 if undamped else 1]
 
     def version(self):
-        return "LAMMPS " + installed_version(self.package)
+        found = f"{self.package.upper()} {self.system.version(self.package)}"
+        return f"{found}, from source with -O3 -march=native" if self.native else found
 
     def install(self, threads):
-        install(self.program, self.package)
+        self.system.install(self.program, self.package)
         if threads > 1:
-            install("mpirun", "openmpi-bin")
+            self.system.install("mpirun", "openmpi-bin")
+        if self.native:
+            print(f"building {self.name} from source", flush=True)
+            build = self.system.inside([HERE / "lammps_native.sh", self.native])
+            execute(build, sorted(os.sched_getaffinity(0)), BUILD)
 
     def run(self, test):
         stiffness = packings.matched_stiffness(test.packing)
         variables = self.write_input(test, stiffness)
-        command = [self.program, "-log", "none", "-in", HERE / self.deck]
+        program = self.native / self.program if self.native else self.program
+        command = [program, "-log", "none", "-in", HERE / self.deck]
         for name, value in variables.items():
             command += ["-var", name, value]
         return repeated(lambda: self.once(command, test, stiffness), test.steps)
 
     def once(self, command, test, stiffness):
-        final = test.folder / f"{self.name}_final"
+        final = test.folder / f"{self.kind}_final"
         final.unlink(missing_ok=True)
-        out = execute(under_mpi(command, test.threads), test.cores, test.folder)
+        out = execute(self.system.inside(under_mpi(command, test.threads)), test.cores, test.folder)
         loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", out.text.partition("timed block")[2])
         seconds = [float(s) for s, steps in loops if int(steps) == test.steps]
         if not seconds or not final.exists():
@@ -63,32 +74,30 @@ class Lammps:
         return Figures(test.steps / seconds[0], p, q, contacts, float(used[-1]) / 100 if used else float("nan"))
 
     def common(self, test, stiffness):
-        return {"data": f"{self.name}_data", "final": f"{self.name}_final", "kn": stiffness.normal,
+        return {"data": f"{self.kind}_data", "final": f"{self.kind}_final", "kn": stiffness.normal,
                 "kt": packings.STIFFNESS_RATIO * stiffness.normal, "mu": packings.FRICTION, "kwall": stiffness.wall,
                 "skin": self.skin * test.packing.mean_radius(), "dt": test.time_step, "warm": test.warm_up,
                 "steps": test.steps}
 
     def write_input(self, test, stiffness):
-        packings.write_lammps_data(test.folder / f"{self.name}_data", test.packing)
+        packings.write_lammps_data(test.folder / f"{self.kind}_data", test.packing)
         shear = packings.STIFFNESS_RATIO * stiffness.normal
-        twist = f"sds {packings.TWISTING * shear * stiffness.product} 0.0 1e3" if self.twisting == "sds" else "marshall"
+        sds = f"sds {packings.TWISTING * shear * stiffness.product} 0.0 1e3"
+        twist = sds if self.twisting == "sds" else self.twisting
         return self.common(test, stiffness) | {
             "gamma": 0.0 if self.undamped else stiffness.damping, "rate": test.rate,
             "kroll": packings.ROLLING * shear * stiffness.reduced, "twisting": twist}
 
 
 class Liggghts(Lammps):
-    name, program, package = "liggghts", "liggghts", "liggghts"
+    kind, program, package = "liggghts", "liggghts", "liggghts"
     deck = "liggghts_shear.in"
     law = ("Law: hooke/stiffness, tangential history, rolling epsd2 with torsion (rolling stiffness 0.83 of Isostat's, "
            "twist under the rolling limit); walls are meshes, a quarter of its time, that move uniformly, in "
            "Isostat exponentially (1e-7 of an edge apart after 1,500 steps). ")
 
-    def version(self):
-        return "LIGGGHTS " + installed_version(self.package)
-
     def write_input(self, test, stiffness):
-        packings.write_lammps_data(test.folder / f"{self.name}_data", widened(test.packing, 2), 2, "granular")
+        packings.write_lammps_data(test.folder / f"{self.kind}_data", widened(test.packing, 2), 2, "granular")
         mass = packings.DENSITY * 4 / 3 * math.pi * test.packing.mean_radius() ** 3
         return self.common(test, stiffness) | self.walls(test) | {
             "gamma": 0.0 if self.undamped else stiffness.damping / (mass / 2)}  # per effective mass, 1/s
@@ -103,7 +112,7 @@ class Liggghts(Lammps):
 
 
 class LiggghtsStatic(Liggghts):
-    name = "liggghts-static"
+    kind = "liggghts-static"
     at_rest = True
     law = Liggghts.law.partition("walls")[0] + "walls are planes at rest, rate 0 in both codes. "
 

@@ -2,11 +2,12 @@
 """Programs of others: installed where missing, run pinned to cores, their failures made readable."""
 import dataclasses
 import os
+import pathlib
 import resource
-import shutil
 import subprocess
 import time
 
+OTHER_DEBIAN = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "other_debian.sh"
 TIME_LIMIT = 3600  # s for one run; a peer that takes longer hangs
 
 
@@ -20,28 +21,41 @@ class Output:
     cores: float  # processor time over elapsed time: the cores it really had
 
 
-def installed_version(package):
-    query = subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], capture_output=True, text=True)
-    return query.stdout.strip() if query.returncode == 0 else ""
+@dataclasses.dataclass(frozen=True)
+class System:
+    """The Debian whose packages are run: this one, or another in a folder of its own (scripts/other_debian.sh)."""
+    suite: str = ""
 
+    def inside(self, command):
+        return [OTHER_DEBIAN, self.suite, *command] if self.suite else command
 
-def install(program, package):
-    """Debian's package, when its program is not there yet."""
-    if shutil.which(program):
-        return
-    print(f"installing {package}", flush=True)
-    root = [] if os.geteuid() == 0 else ["sudo"]
-    commands = [["apt-get", "update", "-q"], ["apt-get", "install", "-q", "-y", "--no-install-recommends", package]]
-    for command in commands:
-        try:
-            done = subprocess.run(root + ["env", "DEBIAN_FRONTEND=noninteractive"] + command, capture_output=True,
-                                  text=True)
-        except FileNotFoundError as error:
-            raise PeerError(f"{package} is not installed, and {error.filename} is not there to install it") from error
-        if done.returncode != 0:
-            raise PeerError(f"{' '.join(command)} failed:\n{last_lines(done.stdout + done.stderr)}")
-    if not shutil.which(program):
-        raise PeerError(f"package {package} is installed but brings no program {program}")
+    def label(self, name):
+        return f"{name}@{self.suite}" if self.suite else name
+
+    def asks(self, *command):
+        """Standard output of a program, empty if it fails."""
+        done = subprocess.run(self.inside(command), capture_output=True, text=True, check=False)
+        return done.stdout.strip() if done.returncode == 0 else ""
+
+    def version(self, package):
+        return self.asks("dpkg-query", "-W", "-f=${Version}", package)
+
+    def install(self, program, package):
+        """Debian's package, when its program is not there yet."""
+        if self.asks("sh", "-c", f"command -v {program}"):
+            return
+        print(f"installing {self.label(package)}", flush=True)
+        root = [] if os.geteuid() == 0 else ["sudo"]
+        root += self.inside(["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"])
+        for command in (["update", "-q"], ["install", "-q", "-y", "--no-install-recommends", package]):
+            try:
+                done = subprocess.run(root + command, capture_output=True, text=True)
+            except FileNotFoundError as error:
+                raise PeerError(f"{package} is not installed, nor is {error.filename} to install it") from error
+            if done.returncode != 0:
+                raise PeerError(f"apt-get {' '.join(command)} failed:\n{last_lines(done.stdout + done.stderr)}")
+        if not self.asks("sh", "-c", f"command -v {program}"):
+            raise PeerError(f"package {package} is installed but brings no program {program}")
 
 
 def last_lines(text, n=12):

@@ -4,7 +4,8 @@
 A packing is text, lines x y z r (m) with the box in a comment `# box xlo xhi ylo yhi zlo zhi`; bodies are stored in the
 order of the lines, contacts start without history. Or it is a state saved by YADE (.yade.bz2: six walls x- x+ y- y+
 z- z+, then spheres); contacts then keep their history. The law is the one of Isostat: CohFrictMat without cohesion,
-rolling limit, elastic twist, incremental form, frictionless walls, damping 0.2."""
+rolling limit, elastic twist, incremental form, frictionless walls, damping 0.2. YADE 2025.2 clips a twisting moment
+"without limit" (etaTwist = -1) to 0: it is the same law without twisting only."""
 import math
 
 try:
@@ -15,11 +16,11 @@ from yade import *
 from yade import utils
 
 
-def load(path):
+def load(path, twisting=True):
     if path.endswith(".yade.bz2"):
         O.load(path)
     else:
-        add_bodies(*read_text(path))
+        add_bodies(*read_text(path), twisting)
 
 
 def read_text(path):
@@ -33,8 +34,9 @@ def read_text(path):
     return box, spheres
 
 
-def add_bodies(box, spheres):
-    shared = dict(young=1e10, poisson=0.3, density=2650.0, alphaKr=0.3, alphaKtw=0.3, etaRoll=0.5, etaTwist=-1,
+def add_bodies(box, spheres, twisting):
+    shared = dict(young=1e10, poisson=0.3, density=2650.0, alphaKr=0.3, alphaKtw=0.3 * twisting,
+                  etaRoll=0.5, etaTwist=-1,
                   isCohesive=False, normalCohesion=0, shearCohesion=0)
     O.materials.append(CohFrictMat(frictionAngle=math.radians(18), momentRotationLaw=True, label="grain", **shared))
     O.materials.append(CohFrictMat(frictionAngle=0, momentRotationLaw=False, label="wall", **shared))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Constant-volume shear of a packing in YADE, timed.
 
-    yade -n -x -j1 yade_shear.py PACKING RATE TIME_STEP WARM_UP STEPS TIMES
+    yade -n -x -j1 yade_shear.py PACKING RATE TIME_STEP WARM_UP STEPS TWISTING TIMES
 
-The packing and its law: yade_scene.py. The block of STEPS after WARM_UP untimed steps gives steps per second, contacts,
+The packing and its law: yade_scene.py; TWISTING is 1 or 0.
+The block of STEPS after WARM_UP untimed steps gives steps per second, contacts,
 p and q, written to the file TIMES as JSON."""
 import json
 import pathlib
@@ -13,8 +14,8 @@ import time
 sys.path.insert(0, str(pathlib.Path(next(a for a in sys.argv if a.endswith(".py"))).resolve().parent))
 from yade_scene import O, load, set_engines, wall_stress  # noqa: E402
 
-path, rate, dt, warm_up, steps, times = [a for a in sys.argv[1:] if not a.endswith(".py")][:6]
-load(path)
+path, rate, dt, warm_up, steps, twisting, times = [a for a in sys.argv[1:] if not a.endswith(".py")][:7]
+load(path, twisting=bool(int(twisting)))
 set_engines(float(rate), float(dt))
 O.run(int(warm_up), True)
 begin, used = time.perf_counter(), time.process_time()

@@ -38,7 +38,7 @@ class Isostat(CMakePackage):
     depends_on("petsc+mpi", when="+fem")
     depends_on("python@3.11:", type=("build", "link", "run"), when="+python")
     depends_on("py-pybind11@2.10:", type="build", when="+python")
-    for package in ("py-numpy", "py-matplotlib", "py-h5py"):
+    for package in ("py-numpy", "py-matplotlib", "py-h5py", "py-scipy"):
         depends_on(package, type="run", when="+python")
 
     @run_before("cmake")
