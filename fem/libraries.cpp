@@ -4,27 +4,29 @@
 #include <cstdlib>
 #include <deal.II/base/mpi.h>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace isostat
 {
 namespace
 {
-constexpr const char *base_of_sessions = "OMPI_MCA_orte_tmpdir_base";
-
-/// A temporary folder for Open MPI 4 alone, of a program that mpirun has not started. Such programs share
-/// ompi.HOST.USER otherwise, which each removes where it is empty: now and then one that starts at that moment fails.
+/// A temporary folder for Open MPI alone, of a program that mpirun has not started. Such programs share ompi.HOST.USER
+/// otherwise: with Open MPI 4 each removes it where it is empty, and now and then one that starts at that moment fails;
+/// Open MPI 5 leaves it.
 class SessionFolder
 {
 public:
   SessionFolder()
   {
-    if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv(base_of_sessions))
+    if (std::getenv("OMPI_COMM_WORLD_SIZE"))
       return;
     std::error_code none;
     path_ = (std::filesystem::temp_directory_path(none) / "isostat-mpi-XXXXXX").string();
+    if (const char *before = std::getenv("TMPDIR"))
+      before_ = before;
     if (!none && mkdtemp(path_.data()))
-      setenv(base_of_sessions, path_.c_str(), 1);
+      setenv("TMPDIR", path_.c_str(), 1);
     else
       path_.clear(); // then where the others are
   }
@@ -37,15 +39,18 @@ public:
   SessionFolder(const SessionFolder &) = delete;
   SessionFolder &operator=(const SessionFolder &) = delete;
 
-  /// Programs that this one starts have folders of their own.
+  /// For all but the start of MPI, which remembers it, temporary files are where they were.
   void hide() const
   {
-    if (!path_.empty())
-      unsetenv(base_of_sessions);
+    if (before_)
+      setenv("TMPDIR", before_->c_str(), 1);
+    else if (!path_.empty())
+      unsetenv("TMPDIR");
   }
 
 private:
   std::string path_;
+  std::optional<std::string> before_; ///< TMPDIR
 };
 } // namespace
 

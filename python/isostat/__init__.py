@@ -10,9 +10,21 @@
 SI units. Stress and strain tensors are tension positive; p', q and the strains of a history compression positive.
 A contact law of one's own is written in C++ (CONTRIBUTING.md): Python would be called for every contact.
 """
-from isostat._core import (__version__, InputError, Law, Moment, RunFailure, Rve, RveResponse, RveState, Snapshot, Specimen, convert,
-                           default_scene, import_tables, measure_units, read_packing, read_snapshot, read_specimen,
-                           scene_manual, write_force_chains_vtp, write_packing, write_specimen, write_vtp)
+import pathlib
+import sys
+
+try:
+    import numpy  # noqa: F401  that it is missing is said here, not somewhere inside
+    from isostat._core import (__version__, InputError, Law, Moment, RunFailure, Rve, RveResponse, RveState, Snapshot,
+                               Specimen, convert, default_scene, import_tables, measure_units, read_packing,
+                               read_snapshot, read_specimen, scene_manual, write_force_chains_vtp, write_packing,
+                               write_specimen, write_vtp)
+except ModuleNotFoundError as error:
+    built = sorted(file.name.split(".")[1] for file in pathlib.Path(__file__).parent.glob("_core.*.so"))
+    raise ImportError(
+        f"{error}. This isostat was built for {' and '.join(built) or 'no Python: its compiled part is missing'}; this "
+        f"is {sys.implementation.cache_tag}, {sys.executable}. Run the Python that it was built for, on Debian "
+        "/usr/bin/python3 with python3-numpy, or build it for this one (-DPython_EXECUTABLE=...)") from error
 from isostat.results import History, Results, draw, read
 from isostat.running import prepare, run
 from isostat.scene import Scene

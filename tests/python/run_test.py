@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs from Python: the same bits as element_test, callbacks, stopping and resuming, results as arrays."""
+import os
 import pathlib
 import shutil
 import subprocess
@@ -37,6 +38,15 @@ class RunTest(ToleranceTest):
 
     def run_scene(self, *arguments, **keywords):
         return isostat.run(self.scene, *arguments, cache=self.cache, **keywords)
+
+    def test_another_python_is_told_which_one_the_package_is_for(self):
+        """Without site packages NumPy is missing, as under most other Pythons."""
+        environment = {**os.environ, "PYTHONPATH": str(BINARIES.parent / "python")}
+        done = subprocess.run([sys.executable, "-S", "-c", "import isostat"], capture_output=True, text=True,
+                              env=environment, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "No module named 'numpy'. This isostat was built for cpython-3[0-9]+-.*; this is "
+                                      f"{sys.implementation.cache_tag}, .*python.*/usr/bin/python3 with python3-numpy")
 
     def test_history_is_that_of_the_program_to_the_bit(self):
         scene = self.folder / "small.toml"

@@ -13,7 +13,7 @@ OWN = {"__init__", "__bool__", "__len__"}  # special names that a stub may have
 
 
 def is_own(name):
-    return name in OWN or not name.startswith("__")
+    return name in OWN or not name.startswith(("__", "_pybind11"))
 
 
 def compiled_modules():
