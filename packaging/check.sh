@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# check.sh ROOT PACKAGES: makes a Debian 12 in the folder ROOT if there is none, installs the packages with their
+# check.sh ROOT PACKAGES: makes a system of this Debian in the folder ROOT if there is none, installs the packages with their
 # dependencies, and uses them as one does who has no sources.
 set -euo pipefail
 root=$1 packages=$2
 if [[ ! -e $root/bin/sh ]]; then
-  debootstrap --variant=minbase bookworm "$root" "${MIRROR:-http://deb.debian.org/debian}" >/dev/null
+  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+  mmdebstrap --quiet --variant=minbase "$suite" "$root" "${MIRROR:-http://deb.debian.org/debian}"
 fi
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
 for name in apt/apt.conf.d/01proxy resolv.conf; do

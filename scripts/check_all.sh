@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The gates beside the tests of the release preset. All are tried, and the last lines say what each found.
 #
-#   scripts/check_all.sh             the whole tree, with fem, coupling and MPI: more than an hour on two cores
+#   scripts/check_all.sh             the whole tree, with fem, coupling and MPI, and Debian 13: some two hours on two cores
 #   scripts/check_all.sh --grains    base and dem alone: some 25 minutes
 #   scripts/check_all.sh [--grains] GATE...    only these of the gates
 #
@@ -16,6 +16,7 @@
 #               what the sanitizers put in
 #   fuzz        each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each time: those of the grains
 #               as the sanitizers have built them, all others of the release preset
+#   debian13    not of the grains: scripts/other_debian.sh, which needs the rights of root
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -29,7 +30,10 @@ if [[ "${1:-}" == --grains ]]; then
   shift
 fi
 gates=("$@")
-((${#gates[@]})) || gates=(format docs tidy sanitizers fuzz)
+if ((${#gates[@]} == 0)); then
+  gates=(format docs tidy sanitizers fuzz)
+  [[ $preset == asan-grains ]] || gates+=(debian13)
+fi
 
 format() {
   git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror
@@ -72,6 +76,10 @@ fuzz() {
     printf '%s\0' "cd build && xargs ../$target --seconds 60 --seed $seed <../${target%/bin/*}/fuzz/$name.seeds 2>&1 |
       tail -n 5 | sed 's/^/$name: /' && exit \${PIPESTATUS[0]}"
   done | xargs -0 --max-procs="$(nproc)" -I{} bash -c {}
+}
+
+debian13() {
+  scripts/other_debian.sh trixie
 }
 
 failed=0

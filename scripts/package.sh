@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Debian packages of the programs, the libraries, the Python module and the documentation, in build/package/packages.
-# `scripts/package.sh --check FOLDER` also installs them in a new Debian 12 below FOLDER (root, network, some minutes) and
+# `scripts/package.sh --check FOLDER` also installs them in a new system of this Debian below FOLDER (root, network, some minutes) and
 # runs there: a drained test from Python with its figure, a program built with find_package, every --version and manual.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

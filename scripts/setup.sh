@@ -25,7 +25,7 @@ case "${1:-}" in
   --gates) packages+=(clang-format clang-tidy chromium) ;;
   --fuzz) packages+=(clang "libclang-rt-$clang-dev") ;;
   --coverage) packages+=(gcovr) ;;
-  --packages) packages+=(help2man dpkg-dev fakeroot file) ;;
+  --packages) packages+=(help2man dpkg-dev fakeroot file mmdebstrap) ;;
   --docs) packages+=(python3-sphinx python3-myst-parser furo doxygen libjs-mathjax) ;;
 esac
 
