@@ -67,7 +67,7 @@ def parse_arguments():
     add("--yade-state", action="append", default=[], metavar="FILE.yade.bz2",
         help="state of YADE that belongs to a folder of tables; once per folder, in their order")
     add("--debian", default="", help="other suites of Debian whose YADE and LAMMPS run as well, such as trixie")
-    add("--native", action="store_true", help="LAMMPS also from each Debian's source, -O3 -march=native (minutes)")
+    add("--native", action="store_true", help="LAMMPS also from this Debian's source, -O3 -march=native (minutes)")
     add("--twisting", choices=("sds", "marshall"), default="sds", help="twisting model of LAMMPS (default: sds)")
     add("--no-twisting", action="store_true", help="no twisting moments in any code; not with liggghts")
     add("--skin", type=float, default=0.05, help="skin of LAMMPS and LIGGGHTS, in mean radii (default: 0.05)")
@@ -132,8 +132,10 @@ def codes_of(peer, options, isostat, morton=None):
             yield Yade("yade", None, system, twisting)
             yield Yade("yade-morton", morton, system, twisting)
         elif peer == "lammps":
-            for native in (False, True) if options.native else (False,):
-                yield Lammps(undamped, options.skin, options.twisting if twisting else "none", system, native)
+            model = options.twisting if twisting else "none"
+            yield Lammps(undamped, options.skin, model, system)
+            if options.native and not system.suite:
+                yield Lammps(undamped, options.skin, model, native=True)
     if peer == "liggghts":
         yield Liggghts(undamped, options.skin)
         yield LiggghtsStatic(undamped, options.skin)

@@ -30,7 +30,7 @@ class Lammps:
     def __init__(self, undamped, skin=0.05, twisting="sds", system=System(), native=False):
         """`native`: built from Debian's source for this processor (lammps_native.sh)."""
         self.undamped, self.skin, self.twisting, self.system = undamped, skin, twisting, system
-        self.native = BUILD / f"lammps-{system.suite or 'here'}" if native else None
+        self.native = BUILD / "lammps-native" if native else None
         self.name = system.label(self.kind + "-native" * native)
         self.differs = self.law.format(twisting=twisting) + self.ending + self.damping[0 if undamped else 1]
 
