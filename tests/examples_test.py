@@ -18,7 +18,7 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
 
 def run(*command, cwd=None):
     result = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False,
-                            timeout=200 * support.PATIENCE)
+                            timeout=support.TIME_LIMIT)
     if result.returncode != 0:
         raise AssertionError(f"{command} returned {result.returncode}\n{result.stdout}{result.stderr}")
     return result.stdout

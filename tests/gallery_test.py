@@ -26,7 +26,7 @@ class Gallery(unittest.TestCase):
                     if script.name == "soil_column.py" and not (support.BIN / "soil_column").exists():
                         continue
                     done = subprocess.run(["/usr/bin/python3", script, "--small", "--output", folder], env=environment,
-                                          capture_output=True, text=True, check=False, timeout=60 * support.PATIENCE)
+                                          capture_output=True, text=True, check=False, timeout=support.TIME_LIMIT)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                     self.assertGreater((pathlib.Path(folder) / f"{script.stem}.png").stat().st_size, 10_000)
 

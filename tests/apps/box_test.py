@@ -6,14 +6,12 @@ import json
 import re
 import shutil
 import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
 
 from column_support import ColumnTest, settings
-from support import PATIENCE, main
+from support import main
 
 BOX = """title = "slope in a box"
 [mesh]
@@ -123,16 +121,12 @@ class Box(ColumnTest):
         scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
         options = settings(mesh__distributed="true", analysis__duration="1 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(scene, "-o", "whole", *options))
+        last = self.folder / "parts/checkpoint/last.h5"
         for n, then in ((1, 2), (2, 3), (3, 1)):
             shutil.rmtree(self.folder / "parts", ignore_errors=True)  # its checkpoint is none of the next run
-            with subprocess.Popen(["mpirun", "--oversubscribe", "-n", str(n), *self.command(
-                    "soil_column", scene, "-o", "parts", "--no-figures", *options)], cwd=self.folder,
-                                  stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
-                end = time.time() + 60 * PATIENCE
-                while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
-                    time.sleep(0.005)
-                process.send_signal(signal.SIGUSR1)
-                self.assertEqual(process.wait(timeout=60 * PATIENCE), 130, "stopped before its end")
+            code, said = self.stop_when(last.exists, last, signal.SIGUSR1,
+                                        self.command_on_ranks(n, scene, "-o", "parts", *options))
+            self.assertEqual(code, 130, said)
             self.assert_done(self.run_on_ranks(then, scene, "-o", "parts", "--resume", *options))
             one, other = (json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
                           for name in ("whole", "parts"))

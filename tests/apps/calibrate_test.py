@@ -6,12 +6,10 @@ import csv
 import json
 import re
 import signal
-import subprocess
-import time
 
 import numpy as np
 
-from support import AppTest, PATIENCE, contents, main, tiny_scene
+from support import AppTest, contents, main, tiny_scene
 
 STAGES = '[[stage]]\nkind = "drained"\nstrain = 0.02\n'
 SCENE = tiny_scene(stages=STAGES, motion='inertial_number = 4e-3')
@@ -184,15 +182,15 @@ class Results(Calibrate):
 
 
 class Resume(Calibrate):
+    def stop(self, happened, what, with_signal):
+        """The exit code of a calibration that gets a signal."""
+        return self.stop_when(happened, what, with_signal,
+                              self.command("calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"))[0]
+
     def test_sigkill(self):
         self.assert_done(self.run_it("-o", "whole", "--no-figures"))
-        with subprocess.Popen(self.command("calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"),
-                              cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while len(self.finish_times("parts")) < 5 and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGKILL)
-            self.assertEqual(process.wait(timeout=60 * PATIENCE), -signal.SIGKILL)
+        code = self.stop(lambda: len(self.finish_times("parts")) >= 5, "five runs", signal.SIGKILL)
+        self.assertEqual(code, -signal.SIGKILL)
         self.assertFalse((self.folder / "parts/calibrate.json").exists())
         before = self.finish_times("parts")
         self.assertLess(len(before), len(self.finish_times("whole")))
@@ -201,13 +199,7 @@ class Resume(Calibrate):
         self.assert_same_calibration("whole", "parts")
 
     def test_sigint_leaves_what_there_is(self):
-        with subprocess.Popen(self.command("calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"),
-                              cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while not (self.folder / "parts/trials.csv").exists() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=60 * PATIENCE), 130)
+        self.assertEqual(self.stop((self.folder / "parts/trials.csv").exists, "trials.csv", signal.SIGINT), 130)
         self.assertIn("interrupted", self.result("parts")["ending"])
         self.assert_done(self.run_it("-o", "parts", "--no-figures"))
         self.assert_done(self.run_it("-o", "whole", "--no-figures"))

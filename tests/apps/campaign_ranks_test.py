@@ -4,19 +4,16 @@
 helpers that are killed, a leader that is stopped or killed. The tables are those of one process."""
 import contextlib
 import os
-import pathlib
 import signal
 import subprocess
-import time
 
 from calibrate_test import LABORATORY, SCENE as DRAINED, plan_text
 from liquefaction_resistance_test import SHEAR
 from specimen_library_test import NARROW, SCENE as LIBRARY
-from support import AppTest, PATIENCE, main, table
+from support import TIME_LIMIT, AppTest, children, main, table, wait_until
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 RATIOS = ("--ratios", "0.12,0.16,0.25", "-n", "2", "--cycles", "15", "--no-figures")
-DEADLINE = 90 * PATIENCE
 
 
 class CampaignRanks(AppTest):
@@ -38,7 +35,7 @@ class CampaignRanks(AppTest):
 
     def ended(self, process):
         """Exit code, and what it said."""
-        out, err = process.communicate(timeout=DEADLINE)
+        out, err = process.communicate(timeout=TIME_LIMIT)
         return process.returncode, out + err
 
     def alone(self):
@@ -49,16 +46,9 @@ class CampaignRanks(AppTest):
             kept.write_bytes((self.folder / "alone/resistance.csv").read_bytes())
         return table(kept)
 
-    def wait_for(self, what):
-        end = time.time() + DEADLINE
-        while not what() and time.time() < end:
-            time.sleep(0.002)
-        self.assertTrue(what())
-
-    def children(self, process):
-        with contextlib.suppress(FileNotFoundError):
-            return pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii").split()
-        return []
+    def wait_for_a_run(self, process):
+        wait_until(lambda: children(process), "a run of its own", process)
+        self.assertTrue(children(process))
 
     def test_ranks(self):
         code, said = self.ended(self.start(["mpirun", "--oversubscribe", "-n", "3", *self.campaign("out")]))
@@ -95,14 +85,14 @@ class CampaignRanks(AppTest):
         leader, killed = self.start(self.campaign("out")), 0
         while leader.poll() is None and killed < 4:
             helper = self.start(self.campaign("out", "--helper"))
-            self.wait_for(lambda: self.children(helper) or helper.poll() is not None or leader.poll() is not None)
-            run = self.children(helper)
+            wait_until(lambda: children(helper) or leader.poll() is not None, "a run of the helper", helper)
+            run = children(helper)
             helper.kill()
             if run:
                 killed += 1
                 if killed % 2:
                     with contextlib.suppress(ProcessLookupError):
-                        os.kill(int(run[0]), signal.SIGKILL)
+                        os.kill(run[0], signal.SIGKILL)
         self.assertGreaterEqual(killed, 2)
         code, said = self.ended(leader)
         self.assertEqual(code, 0, said)
@@ -112,7 +102,7 @@ class CampaignRanks(AppTest):
         """Its helpers end, too, and the same command goes on."""
         for with_signal, expected in ((signal.SIGUSR1, 130), (signal.SIGKILL, -signal.SIGKILL)):
             leader, helper = self.start(self.campaign("out")), self.start(self.campaign("out", "--helper"))
-            self.wait_for(lambda: self.children(helper))
+            self.wait_for_a_run(helper)
             leader.send_signal(with_signal)
             self.assertEqual(self.ended(leader)[0], expected)
             code, said = self.ended(helper)
@@ -127,7 +117,7 @@ class CampaignRanks(AppTest):
 
     def test_second_leader(self):
         leader = self.start(self.campaign("out"))
-        self.wait_for(lambda: self.children(leader))
+        self.wait_for_a_run(leader)
         leader.send_signal(signal.SIGSTOP)
         self.assert_refused(self.run_app("liquefaction_resistance", self.scene, *RATIOS, "-o", "out"), "at work", "out")
         leader.send_signal(signal.SIGCONT)

@@ -8,13 +8,12 @@ import pathlib
 import re
 import shutil
 import signal
-import subprocess
 
 import h5py
 import numpy as np
 
 from column_support import ColumnTest, settings
-from support import PATIENCE, contents, main
+from support import contents, main
 
 SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
 GRAINS = """title = "few grains"
@@ -112,9 +111,7 @@ class Ensemble(ColumnTest):
         self.ensemble("one")
         self.ensemble("two", "-j", 2)
         self.assert_same_ensemble("one", "two")
-        result = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", *self.command(
-            "soil_column", self.scene, "--ensemble", 3, "-o", "ranks", "-q", "--no-figures")], cwd=self.folder,
-                                capture_output=True, text=True, timeout=120 * PATIENCE, check=False)
+        result = self.run_on_ranks(2, self.scene, "--ensemble", 3, "-o", "ranks", "-q")
         self.assert_done(result)
         self.assertIn("by this helper", result.stdout)
         self.assert_same_ensemble("one", "ranks")

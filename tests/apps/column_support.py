@@ -3,13 +3,11 @@
 import json
 import os
 import pathlib
-import subprocess
-import time
 
 import h5py
 import numpy as np
 
-from support import AppTest, PATIENCE, contents
+from support import AppTest, contents
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
                   OMP_NUM_THREADS="1")
@@ -76,20 +74,17 @@ class ColumnTest(AppTest):
         folder = self.folder / name
         return history(folder), json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
+    def command_on_ranks(self, n, *arguments):
+        return ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
+
     def run_on_ranks(self, n, *arguments):
-        command = ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
-                              check=False)
+        return self.run_command(self.command_on_ranks(n, *arguments))
 
     def stop_when_saved(self, scene, how, *options, program="soil_column"):
         """Starts `parts`, sends it a signal once it has a checkpoint, and returns what it said on stderr."""
-        with subprocess.Popen(self.command(program, scene, "-o", "parts", "--no-figures", *options),
-                              cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while not (self.folder / "parts/checkpoint/last.h5").exists() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(how)
-            return process.communicate(timeout=30 * PATIENCE)[1]
+        last = self.folder / "parts/checkpoint/last.h5"
+        return self.stop_when(last.exists, last, how,
+                              self.command(program, scene, "-o", "parts", "--no-figures", *options))[1]
 
     def assert_same_files(self, one, other):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""

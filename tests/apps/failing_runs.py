@@ -5,9 +5,8 @@ import errno
 import os
 import pathlib
 import shutil
-import subprocess
 
-from support import BIN, CYCLIC, PATIENCE, AppTest, results, tiny_scene
+from support import BIN, CYCLIC, AppTest, results, tiny_scene
 
 KINDS = ("open", "write", "fsync", "rename", "mkdir")
 LIBRARY = BIN.parent / "tests/libfailing_calls.so"
@@ -44,8 +43,7 @@ class FailingRuns(AppTest):
         plan = {"LD_PRELOAD": LIBRARY, "FAILING_KIND": kind, "FAILING_PROGRAM": pathlib.Path(command[0]).name,
                 "FAILING_UNDER": self.folder / "out", "FAILING_AT": at,
                 "FAILING_CALLS": calls, "FAILING_CODE": code, "FAILING_COUNT": count}
-        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120 * PATIENCE,
-                                check=False, env=os.environ | {name: str(value) for name, value in plan.items()})
+        result = self.run_command(command, env=os.environ | {name: str(value) for name, value in plan.items()})
         return result, int(count.read_text(encoding="utf-8")) if count.exists() else None
 
     def empty(self):

@@ -1,14 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C while figures are drawn: the run has finished, and the next call draws what is missing."""
-import contextlib
 import os
 import signal
-import subprocess
-import time
 
 from column_support import ColumnTest, settings
-from support import BIN, PATIENCE, MONOTONIC, contents, main, tiny_scene
+from support import MONOTONIC, contents, main, tiny_scene
 
 
 class Interrupted(ColumnTest):
@@ -16,16 +13,9 @@ class Interrupted(ColumnTest):
         """Runs it in a terminal of its own, and stops all in it (os.killpg) or the program alone (os.kill) some seconds
         after the figures have been begun. Returns what it said on stderr."""
         log = self.folder / "out/figures.log"
-        with subprocess.Popen(self.command(*command, "-o", "out", "-q"), cwd=self.folder, start_new_session=True,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-            end = time.time() + 60 * PATIENCE
-            while process.poll() is None and not log.exists() and time.time() < end:
-                time.sleep(0.005)
-            time.sleep(after)
-            with contextlib.suppress(ProcessLookupError):
-                stop(process.pid, with_signal)
-            said = process.communicate(timeout=60 * PATIENCE)[1]
-        self.assertEqual(process.returncode, 130, said)
+        code, said = self.stop_when(log.exists, log, with_signal, self.command(*command, "-o", "out", "-q"), after,
+                                    lambda process, number: stop(process.pid, number), start_new_session=True)
+        self.assertEqual(code, 130, said)
         self.assertIn("interrupted while its figures were drawn; all other results are complete", said)
         self.assertIn("isostat report 'out'", said)
         self.assertFalse((self.folder / "out/report.html").exists())
@@ -69,8 +59,7 @@ class Interrupted(ColumnTest):
 
     def test_the_command_it_names(self):
         self.stop_drawing("soil_column", self.scene, *settings(analysis__duration="0.05 s"))
-        self.assert_done(subprocess.run([BIN / "isostat", "report", "out"], cwd=self.folder, capture_output=True,
-                                        text=True, timeout=120 * PATIENCE, check=False))
+        self.assert_done(self.run_app("isostat", "report", "out"))
         self.assertTrue((self.folder / "out/report.html").exists())
 
     def test_ensemble(self):

@@ -23,7 +23,7 @@ from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum
 from figures.column_results import Column, quantity  # noqa: E402
 from figures.column_grains import first  # noqa: E402
 from figures.column_soil import outline  # noqa: E402
-from support import PATIENCE, ToleranceTest, main  # noqa: E402
+from support import TIME_LIMIT, ToleranceTest, main  # noqa: E402
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
 
@@ -125,7 +125,7 @@ class Figures(ToleranceTest):
     def draw(self, folder, *arguments):
         return subprocess.run([sys.executable, "-m", "figures", "soil_column", str(folder), *arguments],
                               env={**os.environ, "PYTHONPATH": str(APPS)}, capture_output=True, text=True,
-                              timeout=120 * PATIENCE, check=False)
+                              timeout=TIME_LIMIT, check=False)
 
     def expect(self, folder, *names):
         result = self.draw(folder)

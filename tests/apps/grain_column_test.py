@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with packings of grains at its Gauss points: a few of 250 grains, shaken until they liquefy in 0.3 s."""
-import contextlib
 import errno
 import json
 import os
@@ -18,7 +17,7 @@ import h5py
 import numpy as np
 
 from column_support import NO_FILES, ColumnTest, history, settings
-from support import PATIENCE, contents, main
+from support import TIME_LIMIT, children, contents, main, wait_until, written_since
 
 SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
 GRAINS = """title = "grains"
@@ -79,9 +78,6 @@ class GrainColumnTest(ColumnTest):
             self.assert_done(self.run_column(self.scene, "-o", self.cache / "whole", "-q"))
         shutil.copytree(self.cache / "whole", self.folder / "whole")
 
-    def command_on_ranks(self, n, *arguments):
-        return ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
-
     def files(self, folder):
         """Bytes of all results. An older checkpoint may be there or not."""
         return {name: data for name, data in contents(self.folder / folder).items()
@@ -134,19 +130,13 @@ class Bits(GrainColumnTest):
     def stop(self, n, with_signal, wait, *more, to_mpirun=False):
         """Starts n ranks; one of them, or mpirun, gets a signal `wait` s after the first checkpoint of this run."""
         last, begin = self.folder / "parts/checkpoint/last.h5", time.time()
-        with subprocess.Popen(self.command_on_ranks(n, self.scene, "-o", "parts", "-q", *more), cwd=self.folder,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-            while process.poll() is None and time.time() < begin + 60 * PATIENCE:
-                with contextlib.suppress(FileNotFoundError):
-                    if last.stat().st_mtime > begin:
-                        break
-                time.sleep(0.002)
-            time.sleep(wait)
-            with contextlib.suppress(ProcessLookupError, FileNotFoundError):
-                ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
-                os.kill(process.pid if to_mpirun else int(ranks.split()[-1]), with_signal)
-            _, message = process.communicate(timeout=60 * PATIENCE)
-        return process.returncode, message
+
+        def send(mpirun, number):
+            for process in [mpirun.pid] if to_mpirun else children(mpirun)[-1:]:
+                os.kill(process, number)
+
+        return self.stop_when(lambda: written_since(last, begin), last, with_signal,
+                              self.command_on_ranks(n, self.scene, "-o", "parts", "-q", *more), wait, send)
 
     def test_kills_and_other_ranks(self):
         self.whole()
@@ -264,18 +254,16 @@ class Failures(GrainColumnTest):
 
     def fill_while_running(self, n, disk):
         run = ("-o", "disk/out", "-q")
-        with subprocess.Popen(self.command_on_ranks(n, self.scene, *run, "--overwrite"), cwd=self.folder,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-            last, end = disk / "out/checkpoint/last.h5", time.time() + 60 * PATIENCE
-            while process.poll() is None and time.time() < end and not last.exists():
-                time.sleep(0.002)
+        with self.started(self.command_on_ranks(n, self.scene, *run, "--overwrite")) as process:
+            last = disk / "out/checkpoint/last.h5"
+            wait_until(last.exists, last, process)
             with open(disk / "filler", "wb", buffering=0) as filler:
                 try:
                     while True:
                         filler.write(b"\0" * 4096)
                 except OSError as error:
                     self.assertEqual(error.errno, errno.ENOSPC)
-            _, message = process.communicate(timeout=60 * PATIENCE)
+            _, message = process.communicate(timeout=TIME_LIMIT)
         self.assertEqual(process.returncode, 1, message)
         self.assertEqual(message.count("failed: "), 1, message)
         self.assertRegex(message, r"failed: step \d+ \(t = [\d.]+ s\): disk/out/.*free space")

@@ -5,12 +5,11 @@ with another set than its checkpoint was written with says so."""
 import os
 import re
 import signal
-import subprocess
 
 import numpy as np
 
 from column_support import history
-from support import CYCLIC, PATIENCE, AppTest, main, results, tiny_scene
+from support import CYCLIC, AppTest, main, results, tiny_scene
 
 SAVED = ("--set", "output.checkpoint=1e-9 min", "--no-figures", "-q")
 
@@ -61,9 +60,7 @@ class InstructionSets(AppTest):
 
     def test_other_programs(self):
         os.environ["ISOSTAT_INSTRUCTION_SET"] = "MMX"
-        result = subprocess.run(self.command("isostat", "convert", "a", "b"), capture_output=True, text=True,
-                                timeout=60 * PATIENCE, check=False)
-        self.assert_refused(result, "MMX", *self.sets)
+        self.assert_refused(self.run_app("isostat", "convert", "a", "b"), "MMX", *self.sets)
 
 
 if __name__ == "__main__":

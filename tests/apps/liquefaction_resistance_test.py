@@ -5,12 +5,10 @@ interrupted, and its refusals."""
 import csv
 import json
 import signal
-import subprocess
-import time
 
 import numpy as np
 
-from support import AppTest, MONOTONIC, PATIENCE, contents, main, tiny_scene
+from support import AppTest, MONOTONIC, contents, main, tiny_scene
 
 STAGE = '[[stage]]\nkind = "{}"\nuntil = {{ strain = 0.05 }}\nliquefaction_ratio = 0.3\n'
 CELL = 'domain = "periodic-cell"\npreparation_friction = "14 deg"'
@@ -114,13 +112,9 @@ class LiquefactionResistance(AppTest):
 
     def test_interrupt(self):
         arguments = (self.scene, "--ratios", "0.1,0.15,0.25", "-n", "1", "--cycles", "15", "--no-figures", "-o")
-        with subprocess.Popen(self.command("liquefaction_resistance", *arguments, "out"), cwd=self.folder,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while "csr0.25_seed1" not in self.finish_times() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=60 * PATIENCE), 130)
+        code, said = self.stop_when(lambda: "csr0.25_seed1" in self.finish_times(), "csr0.25_seed1", signal.SIGINT,
+                                    self.command("liquefaction_resistance", *arguments, "out"))
+        self.assertEqual(code, 130, said)
         self.assertEqual(self.table()[0]["status"], "liquefied")
         self.assertEqual(self.table()[-1]["status"], "missing")
         before = self.finish_times()
@@ -134,13 +128,9 @@ class LiquefactionResistance(AppTest):
         arguments = (self.scene, "--ratios", "0.1", "-n", "1", "--cycles", "15", "--no-figures", "-o", "out",
                      "--set", "output.checkpoint=1e-9 min")
         checkpoint = self.folder / "out/runs/csr0.1_seed1/checkpoint"
-        with subprocess.Popen(self.command("liquefaction_resistance", *arguments), cwd=self.folder,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            end = time.time() + 60 * PATIENCE
-            while not (checkpoint / "previous.h5").exists() and time.time() < end:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=60 * PATIENCE), 130)
+        code, said = self.stop_when((checkpoint / "previous.h5").exists, "two checkpoints", signal.SIGINT,
+                                    self.command("liquefaction_resistance", *arguments))
+        self.assertEqual(code, 130, said)
         (checkpoint / "last.h5").rename(checkpoint / "fresh.h5")
         self.assert_done(self.run_app("liquefaction_resistance", *arguments))
         self.assertIn("--resume", (checkpoint.parent / "provenance.txt").read_text(encoding="utf-8"))

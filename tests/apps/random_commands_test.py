@@ -12,7 +12,7 @@ import signal
 import subprocess
 
 from failing_runs import COLUMN
-from support import BIN, CYCLIC, AppTest, contents, main, tiny_scene
+from support import BIN, CYCLIC, TIME_LIMIT, AppTest, contents, main, tiny_scene
 
 COMMANDS = int(os.environ.get("ISOSTAT_COMMANDS", "25"))
 SEED = int(os.environ.get("ISOSTAT_SEED", "1"))
@@ -44,13 +44,13 @@ class RandomCommands(AppTest):
 
     def call(self, program, words):
         """Exit code and what it said."""
-        with subprocess.Popen(self.command(program, *words), cwd=self.folder, stdin=subprocess.DEVNULL, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace") as process:
+        with self.started(self.command(program, *words), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          errors="replace") as process:
             try:
                 said = process.communicate(timeout=PATIENCE_OF_ONE)
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGTERM)
-                said = process.communicate(timeout=120)
+                said = process.communicate(timeout=TIME_LIMIT)
                 if process.returncode == -signal.SIGTERM:
                     return 130, "told to end before it had begun"
         return process.returncode, said[0] + said[1]

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-from support import BIN, PATIENCE, AppTest, tiny_scene
+from support import BIN, TIME_LIMIT, AppTest, tiny_scene
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
@@ -29,7 +29,7 @@ class ReportTest(AppTest):
     def make(cls, program, name, scene, *arguments):
         command = [str(BIN / program), str(scene), "-o", name, "-q", *arguments]
         result = subprocess.run(command, cwd=cls.runs, capture_output=True, text=True, check=False,
-                                timeout=120 * PATIENCE)
+                                timeout=TIME_LIMIT)
         if result.returncode != 0:
             raise AssertionError(result.stderr)
         return result

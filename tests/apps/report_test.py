@@ -16,7 +16,7 @@ from report import narrow  # noqa: E402
 from report.folder import find_results  # noqa: E402
 from report.run import calls, captions  # noqa: E402
 from report_support import SCENES, ReportTest  # noqa: E402
-from support import BIN, CYCLIC, PATIENCE, contents, main, tiny_scene  # noqa: E402
+from support import BIN, CYCLIC, TIME_LIMIT, contents, main, tiny_scene  # noqa: E402
 
 BROWSER = shutil.which("chromium")
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
@@ -253,7 +253,7 @@ class Reports(ReportTest):
             command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},900",
                        f"--user-data-dir={self.folder / 'user'}"]
             dom = subprocess.run([*command, "--dump-dom", page.as_uri()], capture_output=True, text=True, check=True,
-                                 timeout=120 * PATIENCE).stdout
+                                 timeout=TIME_LIMIT).stdout
             content, window, cut, before, *others = re.search(r'data-probe="([^"]*)"', dom)[1].split("|")
             alone, wheel, key, after = others
             self.assertLessEqual(int(content), int(window))
@@ -265,7 +265,7 @@ class Reports(ReportTest):
             image = self.folder / f"{width}.png"
             report = (self.runs / "cyclic/report.html").as_uri()
             subprocess.run([*command, f"--screenshot={image}", report], capture_output=True, check=True,
-                           timeout=120 * PATIENCE)
+                           timeout=TIME_LIMIT)
             self.assertGreater(image.stat().st_size, 20000)
 
 

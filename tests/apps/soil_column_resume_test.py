@@ -5,17 +5,15 @@ import contextlib
 import os
 import random
 import re
-import shlex
 import shutil
 import signal
-import subprocess
 import time
 
 import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, history, settings
-from support import PATIENCE, contents, main
+from support import TIME_LIMIT, contents, main, wait_until
 
 
 class Resume(ColumnTest):
@@ -108,27 +106,17 @@ class Resume(ColumnTest):
 class MPIRanks(ColumnTest):
     DISTRIBUTED = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=3)
 
-    def start_ranks(self, n, *more):
-        """A run into out/. Each rank leaves its process number in pid0, pid1 ..."""
-        program = shlex.join(self.command("soil_column", self.scene, "-o", "out", "--no-figures", *more))
-        process = subprocess.Popen(
-            ["mpirun", "--oversubscribe", "-n", str(n), "sh", "-c",
-             f"echo $$ > pid$OMPI_COMM_WORLD_RANK; exec {program}"],
-            cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.terminate)
-        return process
+    def ranks(self, n, *more):
+        """The command of a run into out/. Each rank leaves its process number in pid0, pid1 ..."""
+        return ["mpirun", "--oversubscribe", "-n", str(n), "sh", "-c",
+                'echo $$ > pid$OMPI_COMM_WORLD_RANK; exec "$0" "$@"',
+                *self.command("soil_column", self.scene, "-o", "out", "--no-figures", *more)]
 
     def pid(self, rank):
-        """Of a rank whose run has begun."""
-        end = time.time() + 60 * PATIENCE
-        while not (self.folder / "out/history.csv").exists() and time.time() < end:
-            time.sleep(0.005)
         return int((self.folder / f"pid{rank}").read_text(encoding="utf-8"))
 
     def message_of(self, process):
-        message = process.communicate(timeout=30 * PATIENCE)[1]  # a hang is a failure
+        message = process.communicate(timeout=TIME_LIMIT)[1]
         self.assertNotEqual(process.returncode, 0)
         for name in ("out", "away"):
             shutil.rmtree(self.folder / name, ignore_errors=True)
@@ -137,12 +125,14 @@ class MPIRanks(ColumnTest):
     def test_signals_at_different_times(self):
         for more in settings(output__checkpoint="1e-9 min"), self.DISTRIBUTED:
             with self.subTest(more):
-                process = self.start_ranks(2, *settings(analysis__duration="100000 s"), *more)
-                for rank in (1, 0):
-                    with contextlib.suppress(ProcessLookupError):  # all have stopped already
-                        os.kill(self.pid(rank), signal.SIGINT)
-                    time.sleep(0.3)
-                message = self.message_of(process)
+                history_file = self.folder / "out/history.csv"
+                with self.started(self.ranks(2, *settings(analysis__duration="100000 s"), *more)) as process:
+                    wait_until(history_file.exists, history_file, process)
+                    for rank in (1, 0):
+                        with contextlib.suppress(ProcessLookupError):  # all have stopped already
+                            os.kill(self.pid(rank), signal.SIGINT)
+                        time.sleep(0.3)
+                    message = self.message_of(process)
                 self.assertIn("interrupted at step", message)
                 self.assertIn("go on with --resume", message)
 
@@ -150,15 +140,14 @@ class MPIRanks(ColumnTest):
         """In the midst of a step, which waits for all ranks: the others end too, and the run goes on."""
         options = settings(analysis__duration="8 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "whole", *options))
+        checkpoint = self.folder / "out/checkpoint/previous.h5"
         for more in self.DISTRIBUTED + settings(analysis__duration="100000 s"), options:
             with self.subTest(more):
-                process = self.start_ranks(3, *more, *settings(output__checkpoint="1e-9 min"))
-                checkpoint, end = self.folder / "out/checkpoint/previous.h5", time.time() + 60 * PATIENCE
-                while not checkpoint.exists() and time.time() < end:
-                    time.sleep(0.005)
-                os.kill(self.pid(1), signal.SIGKILL)
-                message = process.communicate(timeout=60 * PATIENCE)[1]
-                self.assertNotEqual(process.returncode, 0)
+                code, message = self.stop_when(
+                    checkpoint.exists, checkpoint, signal.SIGKILL,
+                    self.ranks(3, *more, *settings(output__checkpoint="1e-9 min")),
+                    send=lambda _, number: os.kill(self.pid(1), number))
+                self.assertNotEqual(code, 0)
                 self.assertIn("signal 9", message)
                 if more is not options:
                     shutil.rmtree(self.folder / "out")
@@ -166,12 +155,12 @@ class MPIRanks(ColumnTest):
         self.assert_same_files("whole", "out")
 
     def test_first_rank_cannot_write_its_last_rows(self):
-        for more in (settings(analysis__duration="600 s", output__history_interval="10 s"),
-                     self.DISTRIBUTED + settings(analysis__duration="10 s", output__history_interval="1 s")):
-            with self.subTest(more):
-                process = self.start_ranks(2, *more)
-                self.pid(0)
-                time.sleep(0.3)  # its files are open
+        for last_file, more in (
+                ("profiles.h5", settings(analysis__duration="600 s", output__history_interval="10 s")),
+                ("history.h5", self.DISTRIBUTED + settings(analysis__duration="10 s", output__history_interval="1 s"))):
+            with self.subTest(more), self.started(self.ranks(2, *more)) as process:
+                wait_until((self.folder / "out" / last_file).exists, last_file, process)
+                time.sleep(0.3)  # it has begun
                 (self.folder / "out").rename(self.folder / "away")
                 self.assertRegex(self.message_of(process), r"failed: step \d+ \(t = [\d.]+ s\): out/history")
 
@@ -211,12 +200,10 @@ class MPIRanks(ColumnTest):
 
     def go_on_from_a_checkpoint(self, options):
         self.assert_done(self.run_on_ranks(2, self.scene, "-o", "whole", *options))
-        process = self.start_ranks(2, *options)
-        checkpoint, end = self.folder / "out/checkpoint/last.h5", time.time() + 60 * PATIENCE
-        while not checkpoint.exists() and time.time() < end:
-            time.sleep(0.005)
-        os.kill(self.pid(0), signal.SIGTERM)
-        self.assertIn("go on with --resume", process.communicate(timeout=30 * PATIENCE)[1])
+        checkpoint = self.folder / "out/checkpoint/last.h5"
+        _, said = self.stop_when(checkpoint.exists, checkpoint, signal.SIGTERM, self.ranks(2, *options),
+                                 send=lambda _, number: os.kill(self.pid(0), number))
+        self.assertIn("go on with --resume", said)
         whole = history(self.folder / "whole")
         with h5py.File(checkpoint) as file:
             self.assertGreaterEqual(file.attrs["step"], 256)

@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program specimen_library on a few grains: what it makes, goes on with, and refuses; a test from an entry."""
 import signal
-import subprocess
-import time
 
 import h5py
 
-from support import AppTest, PATIENCE, main, tiny_scene
+from support import AppTest, main, tiny_scene
 
 # a narrow grading, so that so few grains fill a cell wider than two of the largest
 CELL = 'domain = "periodic-cell"\npressure = "50 kPa"\n'
@@ -103,14 +101,9 @@ class Library(AppTest):
             old.unlink()
         scene = self.write("rve.toml", SCENE)
         command = self.command("specimen_library", scene, *NARROW, "-n", "40", "-j", "1", "-o", "library.h5", "-q")
-        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                              text=True) as process:
-            end = time.time() + 60 * PATIENCE
-            while len(list(self.cache.glob("*.h5"))) < 2 and time.time() < end and process.poll() is None:
-                time.sleep(0.005)
-            process.send_signal(signal.SIGINT)
-            _, message = process.communicate(timeout=60 * PATIENCE)
-        self.assertEqual(process.returncode, 130, message)
+        code, message = self.stop_when(lambda: len(list(self.cache.glob("*.h5"))) >= 2, "two specimens", signal.SIGINT,
+                                       command)
+        self.assertEqual(code, 130, message)
         self.assertIn("of 40 specimens are in", message)
         self.assertFalse((self.folder / "library.h5").exists())
         kept = len(list(self.cache.glob("*.h5")))

@@ -5,14 +5,13 @@ calendar that jumps, and a program that draws figures and is killed."""
 import contextlib
 import errno
 import os
-import pathlib
 import resource
 import signal
 import subprocess
 import time
 
 from failing_runs import OUTPUT, SAVED, SHORT_TEST, FailingRuns
-from support import PATIENCE, contents, main, results
+from support import TIME_LIMIT, children, contents, main, results, wait_until
 
 
 class SystemLimits(FailingRuns):
@@ -46,9 +45,8 @@ class SystemLimits(FailingRuns):
             with self.subTest(share=share):
                 self.empty()
                 limit = int(share * largest)
-                result = subprocess.run(
-                    self.command("element_test", *self.arguments, *OUTPUT), cwd=self.folder, capture_output=True,
-                    text=True, timeout=120 * PATIENCE, check=False,
+                result = self.run_command(
+                    self.command("element_test", *self.arguments, *OUTPUT),
                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
                 self.assertIn(result.returncode, (1, 2), result.stderr)
                 self.assertIn(os.strerror(errno.EFBIG), result.stderr)
@@ -103,17 +101,13 @@ class SystemLimits(FailingRuns):
 
     def test_drawing_is_killed(self):
         log = self.folder / "out/figures.log"
-        with subprocess.Popen(self.command("element_test", self.scene, "-o", "out"), cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-            end = time.time() + 60 * PATIENCE
-            while process.poll() is None and not log.exists() and time.time() < end:
-                time.sleep(0.005)
+        with self.started(self.command("element_test", self.scene, "-o", "out"), stdout=subprocess.PIPE) as process:
+            wait_until(log.exists, log, process)
             time.sleep(0.2)
-            children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
-            for child in children.split():
+            for child in children(process):
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(int(child), signal.SIGKILL)
-            said = process.communicate(timeout=60 * PATIENCE)[0]
+                    os.kill(child, signal.SIGKILL)
+            said = process.communicate(timeout=TIME_LIMIT)[0]
         self.assertEqual(process.returncode, 0, "the run itself has finished")
         self.assertIn("figures were not drawn: the program that draws them was ended by signal 9. Draw them with: "
                       "isostat report 'out'", said)

@@ -22,7 +22,7 @@ from calibrate_test import LABORATORY, SCENE, plan_text  # noqa: E402
 from column_support import settings  # noqa: E402
 from failing_runs import COLUMN, SAVED  # noqa: E402
 from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
-from support import CYCLIC, AppTest, main, results, tiny_scene  # noqa: E402
+from support import CYCLIC, AppTest, children, main, results, tiny_scene  # noqa: E402
 
 KILLS = int(os.environ.get("ISOSTAT_KILLS", "20"))
 SEED = int(os.environ.get("ISOSTAT_SEED", time.time_ns() % 1000000))
@@ -43,11 +43,11 @@ class Kills(AppTest):
             try:
                 said = process.communicate(timeout=wait or None)[1]
             except subprocess.TimeoutExpired:
-                ranks = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
+                ranks = children(process) if command[0] == "mpirun" else []  # which gives each a group of its own
                 os.killpg(process.pid, signal.SIGKILL)
-                for rank in ranks.split() if command[0] == "mpirun" else ():  # which gives each a group of its own
+                for rank in ranks:
                     with contextlib.suppress(ProcessLookupError):
-                        os.kill(int(rank), signal.SIGKILL)
+                        os.kill(rank, signal.SIGKILL)
                 process.communicate()
                 return True
         self.assertEqual(process.returncode, 0, f"ISOSTAT_SEED={SEED}\n{said}")

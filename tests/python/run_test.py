@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 
-from package import BINARIES, ToleranceTest, isostat
+from package import BINARIES, TIME_LIMIT, ToleranceTest, isostat
 
 SCENE = """title = "small"
 [grading]
@@ -177,7 +177,7 @@ times = 2
                    f"    isostat.run(isostat.Scene({SCENE!r}), {str(self.folder / 'killed')!r},\n"
                    f"                cache={str(self.cache)!r}, on_step=once, every=100)\n"
                    f"except KeyboardInterrupt:\n    print('stopped')\n")
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=TIME_LIMIT)
         self.assertEqual(done.stdout.strip(), "stopped", done.stderr)
         resumed = self.run_scene(self.folder / "killed", resume=True)
         np.testing.assert_array_equal(resumed.snapshot.positions, self.run_scene().snapshot.positions)
