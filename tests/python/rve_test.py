@@ -75,7 +75,7 @@ class RveTest(ToleranceTest):
         self.assertTrue(rve.advance(np.diag([0.0, -1e-5, 0.0])))
 
     def test_one_thread_at_a_time(self):
-        rve, refused = isostat.Rve(self.packing, min_steps=3000), []
+        rve, refused = isostat.Rve(self.packing, min_steps=10000), []
         other = threading.Thread(target=rve.advance, args=(np.diag([0.0, -1e-5, 0.0]),))
         other.start()
         while other.is_alive():  # the stress alone until it is refused: what works without the GIL would come first
@@ -88,7 +88,7 @@ class RveTest(ToleranceTest):
         other.join()
         self.assertGreater(len(refused), 3)
         self.assertIn("in use by another thread", refused[0])
-        alone = isostat.Rve(self.packing, min_steps=3000)
+        alone = isostat.Rve(self.packing, min_steps=10000)
         alone.advance(np.diag([0.0, -1e-5, 0.0]))
         np.testing.assert_array_equal(rve.stress, alone.stress)
 

@@ -60,7 +60,7 @@ Result run(const Stage &stage, const Snapshot &initial, std::uint64_t records = 
 
 TEST(Specimen, IsAtItsPressureAndInBalance)
 {
-  const Snapshot &s = test::specimen(1000, 10);
+  const Snapshot s = test::specimen(1000, 10);
   const Vec3 stress = -wall_stress(s);
   for (int k = 0; k < 3; ++k)
     EXPECT_NEAR_BECAUSE(stress[k] / 200e3, 1, 3e-3, "the servo of the preparation stops within 0.3 %");
@@ -136,7 +136,7 @@ TEST(ServoStages, ComeToRestWithLittleDamping)
 
 TEST(Hold, EndsAtRestWithTheBoxUnchanged)
 {
-  const Snapshot &start = test::specimen(1000, 10);
+  const Snapshot start = test::specimen(1000, 10);
   const Result result = run(Hold(), start);
   EXPECT_EQ(result.end.box.upper, start.box.upper);
   EXPECT_EQ(result.end.box.lower, start.box.lower);
