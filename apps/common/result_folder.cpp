@@ -26,7 +26,7 @@ constexpr int without_report = 3; ///< exit code of `report leave`: figures are 
 constexpr const char *lock_name = ".lock", *scene_name = "scene.toml", *provenance_name = "provenance.txt",
                      *probe_name = ".writable";
 /// What a program leaves that is killed before its scene.toml is there.
-const std::vector<fs::path> first_files = {lock_name, probe_name, provenance_name, scene_name + std::string(".tmp")};
+const std::vector<std::string> first_files = {lock_name, probe_name, provenance_name};
 
 /// As one word of a shell command, for messages.
 std::string quoted(const fs::path &path)
@@ -68,9 +68,13 @@ fs::path output_folder(const fs::path &requested, const fs::path &of_scene)
 bool is_unused(const fs::path &folder)
 {
   const auto is_known = [](const fs::directory_entry &entry) {
-    const fs::path name = entry.path().filename();
-    return std::ranges::any_of(first_files,
-                               [&](const fs::path &known) { return name == known || name == known.string() + ".tmp"; });
+    const std::string name = entry.path().filename().string();
+    const auto is_aside_of = [&](const std::string &known) {
+      return name.starts_with(known + ".") && name.ends_with(".tmp");
+    };
+    return is_aside_of(scene_name) || std::ranges::any_of(first_files, [&](const std::string &known) {
+             return name == known || is_aside_of(known);
+           });
   };
   return !folder_exists(folder) || std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), is_known);
 }

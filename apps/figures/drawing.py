@@ -6,6 +6,7 @@ import textwrap
 import typing
 
 from .common import BadInput, plain, plt, use_style
+from .files import replacing
 
 # What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
 KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil",
@@ -66,6 +67,6 @@ class Drawing:
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
         path = out / f"{name}.png"
-        path.unlink(missing_ok=True)  # a link there would lead to a file of somebody
-        figure.savefig(path)
+        with replacing(path) as aside:
+            figure.savefig(aside, format="png")
         print(path)

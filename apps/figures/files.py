@@ -1,11 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables that a run has left as text, JSON or TOML. Needs nothing but Python: figures, reports and the module isostat
 read them here.   tested: tests/apps/damaged_files_test.py"""
+import contextlib
+import itertools
 import json
+import os
 import re
 
 REMEDY = ("Restore it from a copy, or delete it and finish the run anew: its command is in provenance.txt, and "
           "--resume goes on from a checkpoint.")
+
+
+NUMBERS = itertools.count()
+
+
+@contextlib.contextmanager
+def replacing(path):
+    """A path beside `path` that no other writer has; what is written there becomes `path` at the end, in one step."""
+    aside = path.with_name(f"{path.name}.{os.getpid()}-{next(NUMBERS)}.tmp")
+    aside.unlink(missing_ok=True)
+    try:
+        yield aside
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
 
 
 class Damaged(ValueError):

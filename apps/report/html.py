@@ -4,6 +4,8 @@ import html
 import os
 import pathlib
 
+from figures.files import replacing
+
 from . import narrow, svg
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -89,11 +91,8 @@ def page(title, subtitle, sections):
 
 
 def write_replacing(path, text):
-    """Writes aside, brings it to the disk and renames: whoever reads sees the old content or the new."""
-    aside = path.with_name(path.name + ".tmp")
-    aside.unlink(missing_ok=True)  # a link there would lead to a file of somebody
-    with open(aside, "w", encoding="utf-8") as file:
+    """Writes beside it, brings that to the disk and renames: a reader sees the old content or the new."""
+    with replacing(path) as aside, open(aside, "x", encoding="utf-8") as file:
         file.write(text)
         file.flush()
         os.fsync(file.fileno())
-    os.replace(aside, path)

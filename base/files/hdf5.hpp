@@ -86,7 +86,7 @@ private:
 
 /// An open HDF5 file; closed when it and its groups are gone.
 ///
-/// What is written stays in memory; commit() brings it to the disk as `path`.tmp, which it renames to `path` in one
+/// What is written stays in memory; commit() brings it to the disk beside `path` and renames it to `path` in one
 /// step. A reader sees the old file or the new one, never half a file. Destroyed without commit(), it is as before.
 class File
 {

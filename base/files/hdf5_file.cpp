@@ -7,7 +7,6 @@
 #include "base/files/replace_file.hpp"
 #include "base/files/seal.hpp"
 
-#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -59,7 +58,7 @@ void open_existing(FileState &state, const std::string &name, unsigned mode, hid
 /// A name that no other file in memory has, by which HDF5 tells them apart.
 std::string name_in_memory()
 {
-  static std::atomic<unsigned long> n{0};
+  static unsigned long n = 0;
   return fmt::format("memory-{}", n++);
 }
 
@@ -128,6 +127,7 @@ void bring_in_order(FileState &file)
 
 void require_hdf5(const fs::path &path)
 {
+  const Turn turn;
   silence();
   std::error_code error;
   const std::string name = path.string();
@@ -144,6 +144,12 @@ void require_hdf5(const fs::path &path)
 }
 } // namespace
 
+std::recursive_mutex &Turn::mutex()
+{
+  static auto *const one = new std::recursive_mutex;
+  return *one;
+}
+
 void fail(const FileState &file, const std::string &item, const std::string &what)
 {
   if (file.writing)
@@ -158,6 +164,7 @@ File File::open(const fs::path &path)
 {
   require_hdf5(path);
   check_seal(path);
+  const Turn turn;
   auto state = std::make_shared<FileState>(path, false);
   open_existing(*state, path, H5F_ACC_RDONLY, H5P_DEFAULT);
   return File(state);
@@ -165,6 +172,7 @@ File File::open(const fs::path &path)
 
 File File::create(const fs::path &path)
 {
+  const Turn turn;
   silence();
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
@@ -181,6 +189,7 @@ File File::update(const fs::path &path)
   require_hdf5(path);
   auto state = std::make_shared<FileState>(path, true);
   std::string bytes(unsealed(read_text(path), path));
+  const Turn turn;
   const Handle access = memory_access(*state);
   if (H5Pset_file_image(access, bytes.data(), bytes.size()) < 0)
     fail(*state, "a copy of it", "no memory");
@@ -192,10 +201,14 @@ void File::commit()
 {
   FileState &file = *state_;
   assert(file.writing && file.id >= 0);
-  if (file.grows)
-    bring_in_order(file);
-  const std::string bytes = bytes_of(file);
-  file.close();
+  std::string bytes;
+  {
+    const Turn turn;
+    if (file.grows)
+      bring_in_order(file);
+    bytes = bytes_of(file);
+    file.close();
+  }
   write_replacing(file.path, sealed(bytes));
 }
 } // namespace isostat::hdf5

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -93,7 +92,7 @@ bool write_values(std::span<const T> values, const Transfer &transfer)
     return transfer(type, static_cast<const void *>(values.data())) >= 0;
 }
 
-bool left_file = false; ///< an external link was met
+bool left_file = false; ///< an external link was met in this turn
 
 /// Properties of access to items by which no link to another file is followed: a file of a stranger could name any.
 hid_t within_file()
@@ -204,17 +203,20 @@ const std::filesystem::path &Group::file_path() const { return file_->path; }
 
 bool Group::has(const std::string &name) const
 {
+  const Turn turn;
   assert(file_->id >= 0);
   return answer(*file_, child(name), H5Lexists(file_->id, child(name).c_str(), within_file()));
 }
 
 bool Group::has_attribute(const std::string &name, const std::string &item) const
 {
+  const Turn turn;
   return answer(*file_, child(item), H5Aexists(open_item(*file_, child(item)), name.c_str()));
 }
 
 std::vector<std::string> Group::names() const
 {
+  const Turn turn;
   std::vector<std::string> found;
   answer(*file_, path_,
          H5Literate_by_name(file_->id, path_.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &found,
@@ -224,6 +226,7 @@ std::vector<std::string> Group::names() const
 
 std::vector<std::string> Group::attribute_names() const
 {
+  const Turn turn;
   std::vector<std::string> found;
   answer(*file_, path_,
          H5Aiterate2(open_item(*file_, path_), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &found));
@@ -232,6 +235,7 @@ std::vector<std::string> Group::attribute_names() const
 
 Group Group::group(const std::string &name) const
 {
+  const Turn turn;
   constexpr const char *missing = "there is no such group";
   if (H5Iget_type(open_item(*file_, child(name), missing)) != H5I_GROUP)
     fail(*file_, child(name), missing);
@@ -240,17 +244,23 @@ Group Group::group(const std::string &name) const
 
 Group Group::create_group(const std::string &name)
 {
+  const Turn turn;
   assert(file_->id >= 0 && file_->writing);
   const Handle made = checked(H5Gcreate2(file_->id, child(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                               H5Gclose, *file_, child(name), "creating the group failed (does it exist already?)");
   return {file_, child(name)};
 }
 
-Shape Group::shape(const std::string &name) const { return extent(open_stored(*file_, child(name))); }
+Shape Group::shape(const std::string &name) const
+{
+  const Turn turn;
+  return extent(open_stored(*file_, child(name)));
+}
 
 template <typename T>
 std::vector<T> Group::read(const std::string &name) const
 {
+  const Turn turn;
   const Handle dataset = open_stored(*file_, child(name));
   const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
   return read_values<T>(*file_, child(name), type, space, [id = hid_t(dataset)](hid_t memory, void *buffer) {
@@ -269,6 +279,7 @@ std::vector<T> Group::read(const std::string &name, const Shape &expected) const
 
 std::vector<double> Group::rows(const std::string &name, std::size_t first, std::size_t n_rows) const
 {
+  const Turn turn;
   const Handle dataset = open_stored(*file_, child(name)), type(H5Dget_type(dataset), H5Tclose);
   if (extent(dataset).size() > 2)
     fail(*file_, child(name), "it is no series of rows");
@@ -281,6 +292,7 @@ std::vector<double> Group::rows(const std::string &name, std::size_t first, std:
 template <typename T>
 T Group::attribute(const std::string &name, const std::string &item) const
 {
+  const Turn turn;
   const std::string full = child(item) + "@" + name;
   const Handle owner = open_item(*file_, child(item));
   const Handle attribute =
@@ -295,6 +307,7 @@ T Group::attribute(const std::string &name, const std::string &item) const
 void Group::set_attribute(const std::string &name, const std::variant<double, std::uint64_t, std::string> &value,
                           const std::string &item)
 {
+  const Turn turn;
   const std::string full = child(item) + "@" + name;
   const Handle owner = open_item(*file_, child(item)), space(H5Screate(H5S_SCALAR), H5Sclose);
   if (H5Aexists(owner, name.c_str()) > 0)
@@ -312,6 +325,7 @@ void Group::set_attribute(const std::string &name, const std::variant<double, st
 template <typename T>
 void Group::put(const std::string &name, std::span<const T> values, const std::string &unit, std::size_t n_columns)
 {
+  const Turn turn;
   assert(file_->id >= 0 && file_->writing && n_columns > 0 && values.size() % n_columns == 0);
   const hsize_t dims[2] = {values.size() / n_columns, n_columns};
   const Handle space(H5Screate_simple(n_columns == 1 ? 1 : 2, dims, nullptr), H5Sclose),
@@ -328,6 +342,7 @@ void Group::put(const std::string &name, std::span<const T> values, const std::s
 void Group::create_series(const std::string &name, const std::string &unit, std::size_t n_columns,
                           std::size_t rows_per_chunk)
 {
+  const Turn turn;
   assert(file_->id >= 0 && file_->writing && n_columns > 0 && rows_per_chunk > 0);
   const hsize_t dims[2] = {0, n_columns}, limits[2] = {H5S_UNLIMITED, n_columns},
                 chunk[2] = {rows_per_chunk, n_columns};
@@ -341,6 +356,7 @@ void Group::create_series(const std::string &name, const std::string &unit, std:
 
 void Group::append(const std::string &name, std::span<const double> values)
 {
+  const Turn turn;
   const Handle dataset = open_dataset(*file_, child(name));
   const Shape before = extent(dataset);
   const std::size_t n_columns = before.size() == 2 ? before[1] : 1, n_rows = values.size() / n_columns;
@@ -356,6 +372,7 @@ void Group::append(const std::string &name, std::span<const double> values)
 
 void Group::resize(const std::string &name, std::size_t n_rows)
 {
+  const Turn turn;
   const Handle dataset = open_dataset(*file_, child(name));
   const Shape now = extent(dataset);
   const hsize_t target[2] = {n_rows, now.size() == 2 ? now[1] : 1};
@@ -373,26 +390,4 @@ ISOSTAT_INSTANTIATE(std::uint64_t)
 ISOSTAT_INSTANTIATE(std::uint32_t)
 ISOSTAT_INSTANTIATE(std::string)
 #undef ISOSTAT_INSTANTIATE
-
-void write_bytes(Group group, const std::string &name, std::span<const std::byte> bytes)
-{
-  std::vector<std::uint64_t> words((bytes.size() + 7) / 8, 0);
-  if (!bytes.empty())
-    std::memcpy(words.data(), bytes.data(), bytes.size());
-  group.write(name, words, "-");
-  group.set_attribute("bytes", static_cast<std::uint64_t>(bytes.size()), name);
-}
-
-std::vector<std::byte> read_bytes(const Group &group, const std::string &name)
-{
-  const auto words = group.read<std::uint64_t>(name);
-  const auto n = group.attribute<std::uint64_t>("bytes", name);
-  if (n > words.size() * 8)
-    throw InputError(
-        fmt::format("{}: {} holds {} bytes of {}: it is cut off", group.where(), name, words.size() * 8, n));
-  std::vector<std::byte> bytes(n);
-  if (n > 0)
-    std::memcpy(bytes.data(), words.data(), n);
-  return bytes;
-}
 } // namespace isostat::hdf5

@@ -4,10 +4,24 @@
 #include "base/files/hdf5.hpp"
 
 #include <hdf5.h>
+#include <mutex>
 #include <utility>
 
 namespace isostat::hdf5
 {
+/// Held by every function that calls HDF5: Debian's build of it serves one thread at a time. What a thread may do in
+/// between is as if others had their turn; files that both use are no matter of it.
+/// tested: tests/base/files/hdf5_threads_test.cpp, tests/python/threads_test.py
+class Turn
+{
+public:
+  Turn() : lock_(mutex()) {}
+
+private:
+  static std::recursive_mutex &mutex(); ///< never destroyed: threads may outlive the end of main()
+  std::lock_guard<std::recursive_mutex> lock_;
+};
+
 /// An open file. HDF5 1.10 cannot close a file whose last bytes it could not write, and crashes on it later. So it
 /// writes to memory alone, and File::commit() brings the bytes to the disk: a disk that fails is no matter of HDF5's.
 /// tested: tests/base/files/hdf5_test.cpp, tests/apps/failures_test.py
@@ -23,6 +37,7 @@ struct FileState
   ~FileState() { close(); }
   void close()
   {
+    const Turn turn;
     if (id >= 0)
       H5Fclose(id);
     id = -1;

@@ -10,7 +10,7 @@ namespace isostat
 /// builds or reads a value includes <nlohmann/json.hpp>, in a .cpp because that header is long.
 using Json = nlohmann::ordered_json;
 
-/// Writes `value` to `path`.tmp, then replaces `path`. A number is written with the fewest digits that read back as the
+/// Writes `value` aside, then replaces `path`. A number is written with the fewest digits that read back as the
 /// same double; nan and infinity, which JSON does not know, become null; bytes that are not UTF-8 become U+FFFD.
 /// Throws RunFailure and leaves `path` as it was if it cannot be written.
 void write_json(const std::filesystem::path &path, const Json &value);

@@ -3,10 +3,14 @@
 
 #include "base/files/file_failure.hpp"
 
+#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <regex>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace isostat
@@ -48,43 +52,94 @@ void expect_replaceable(const fs::path &path)
                                  path.string()));
 }
 
-/// @return errno; 0 if all of it is on the disk
-int bring_to_disk(const fs::path &path, const std::function<void(std::ostream &)> &write)
+/// A new file beside `path`, `path`.PROCESS-NUMBER.tmp, which no other writer has, in this process, in another, or on
+/// another machine that sees the folder. It is locked as long as it is written, and gone after that unless it has
+/// become `path`.
+class FileAside
 {
-  errno = 0;
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  write(out);
-  out.close();
-  if (!out)
-    return errno ? errno : EIO;
-  return synced(path);
+public:
+  explicit FileAside(const fs::path &path)
+  {
+    static std::atomic<unsigned> number{0};
+    do
+      {
+        path_ = fmt::format("{}.{}-{}.tmp", path.string(), ::getpid(), number++);
+        file_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+      }
+    while (file_ < 0 && errno == EEXIST);
+    if (file_ < 0)
+      code_ = errno;
+    else
+      ::flock(file_, LOCK_EX | LOCK_NB); // remove_leftovers() lets it be; without locks it goes by age
+  }
+  ~FileAside()
+  {
+    std::error_code ignored;
+    if (file_ < 0)
+      return;
+    if (!renamed_)
+      fs::remove(path_, ignored);
+    ::close(file_);
+  }
+  FileAside(const FileAside &) = delete;
+  FileAside &operator=(const FileAside &) = delete;
+
+  /// Writes it, brings it to the disk and gives it the name `path`.   @return errno; 0 if all of that is done
+  int become(const fs::path &path, const std::function<void(std::ostream &)> &write)
+  {
+    if (code_ != 0)
+      return code_;
+    errno = 0;
+    std::ofstream out(path_, std::ios::binary);
+    write(out);
+    out.close();
+    if (!out)
+      return errno ? errno : EIO;
+    if (const int code = synced(path_); code != 0)
+      return code;
+    if (::rename(path_.c_str(), path.c_str()) != 0)
+      return errno;
+    renamed_ = true;
+    return name_synced(path);
+  }
+
+private:
+  fs::path path_;
+  int file_ = -1, code_ = 0;
+  bool renamed_ = false;
+};
+
+/// Whether a name is one of FileAside.
+bool is_aside(const std::string &name)
+{
+  static const std::regex form(R"(.+\.[0-9]+-[0-9]+\.tmp)");
+  return std::regex_match(name, form);
 }
 } // namespace
 
+void remove_leftovers(const fs::path &folder)
+{
+  constexpr auto younger_may_not_be_locked_yet = std::chrono::minutes(1);
+  std::error_code ignored;
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder, ignored))
+    {
+      if (!is_aside(entry.path().filename().string()) || !fs::is_regular_file(entry.symlink_status(ignored)))
+        continue;
+      const int file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+      const bool is_written = file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      const auto age = fs::file_time_type::clock::now() - entry.last_write_time(ignored);
+      if (file >= 0 && !is_written && age > younger_may_not_be_locked_yet)
+        fs::remove(entry.path(), ignored);
+      if (file >= 0)
+        ::close(file);
+    }
+}
+
 void write_replacing(const fs::path &path, const std::function<void(std::ostream &)> &write)
 {
-  const fs::path aside = path.string() + ".tmp";
-  std::error_code ignored;
-  int code = 0;
   expect_replaceable(path);
-  fs::remove(aside, ignored); // a link there would lead to a file of somebody, a pipe would wait for a reader
-  try
-    {
-      code = bring_to_disk(aside, write);
-    }
-  catch (...)
-    {
-      fs::remove(aside, ignored);
-      throw;
-    }
-  if (code == 0 && ::rename(aside.c_str(), path.c_str()) != 0)
-    code = errno;
-  if (code == 0)
-    code = name_synced(path);
-  if (code == 0)
-    return;
-  fs::remove(aside, ignored);
-  fail(path, "written", std::strerror(code));
+  if (const int code = FileAside(path).become(path, write); code != 0)
+    fail(path, "written", std::strerror(code));
 }
 
 void write_replacing(const fs::path &path, std::string_view text)

@@ -9,15 +9,18 @@
 
 namespace isostat
 {
-/// Writes `text` to `path`.tmp, brings it to the disk (fsync) and gives it the name `path` in one step: whoever reads
-/// `path` sees the old content or the new, never a part; the name is on the disk, too, when it returns. Throws
-/// RunFailure if that fails: `path` is whole then, the old content or the new, and `path`.tmp gone. A link or a pipe by
-/// the name of `path`.tmp is removed: nothing is written to where it leads.
+/// Writes `text` to a new file beside `path`, brings it to the disk (fsync) and gives it the name `path` in one step:
+/// a reader of `path` sees the old content or the new, never a part; the name is on the disk, too, when it returns.
+/// Any number of threads and processes may write the same `path` at once: the last one stays. Throws RunFailure if it
+/// fails: `path` is whole then, the old content or the new, and the file beside it gone.
 void write_replacing(const std::filesystem::path &path, std::string_view text);
 
 /// The same for what is too long to be had at once.
 /// @param write  writes it, piece by piece; what it throws goes on, and the old content stays
 void write_replacing(const std::filesystem::path &path, const std::function<void(std::ostream &)> &write);
+
+/// Removes from a folder what writers that were killed have left beside their files a minute ago or longer.
+void remove_leftovers(const std::filesystem::path &folder);
 
 /// Gives a file another name of the same folder, in one step.   @throws RunFailure  it cannot be done
 void rename_file(const std::filesystem::path &from, const std::filesystem::path &to);

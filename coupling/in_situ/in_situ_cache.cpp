@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupling/in_situ/in_situ_cache.hpp"
 
+#include "base/error.hpp"
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
 #include "base/record/file_format.hpp"
@@ -105,13 +106,32 @@ std::optional<Snapshot> InSituCache::find(const std::string &recipe) const
       std::find_if(entries_.begin(), entries_.end(), [&](const LibraryEntry &e) { return e.name == name; });
   if (found == entries_.end() || found->text("recipe") != recipe)
     return std::nullopt;
-  return read_library_entry(path_, name).state;
+  try
+    {
+      return read_library_entry(path_, name).state;
+    }
+  catch (const InputError &) // another program has replaced the cache meanwhile
+    {
+      return std::nullopt;
+    }
 }
 
 void InSituCache::add(const std::vector<InSituState> &states) const
 {
   if (path_.empty() || states.empty())
     return;
+  try
+    {
+      write(states);
+    }
+  catch (const std::exception &error) // the run has its states
+    {
+      tell(fmt::format("warning: states in situ are not kept, and will be made again next time: {}\n", error.what()));
+    }
+}
+
+void InSituCache::write(const std::vector<InSituState> &states) const
+{
   if (std::filesystem::exists(path_) && is_damaged(path_))
     {
       const std::string aside = path_.string() + ".damaged";

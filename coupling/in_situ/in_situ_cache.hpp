@@ -32,10 +32,12 @@ public:
 
   std::optional<Snapshot> find(const std::string &recipe) const;
   /// Adds what is not there yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
-  /// stderr says so.   @throws RunFailure  cannot be written: the file is as before
+  /// stderr says so. So does one that cannot be written, which is as before: the run has its states.
   void add(const std::vector<InSituState> &states) const;
 
 private:
+  void write(const std::vector<InSituState> &states) const;
+
   std::filesystem::path path_;
   std::vector<LibraryEntry> entries_;
 };

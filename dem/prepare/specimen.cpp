@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <mutex>
 #include <numbers>
 
 namespace isostat
@@ -27,8 +26,6 @@ constexpr int recipe_version = 2;
 // The same in a periodic cell; 3: shear stresses are brought to zero; 4: but not where nothing is in contact; 5: as 2.
 constexpr int cell_recipe_version = 5;
 constexpr int density_attempts = 3;
-
-std::mutex hdf5_access; // HDF5 serves one thread at a time
 
 void describe(const Scene &scene, Specimen &specimen)
 {
@@ -247,10 +244,26 @@ void note_friction(const Scene &scene, RunObserver &observer)
                                degrees(made_with), degrees(friction)));
 }
 
+/// Keeps it in the cache. The run has its specimen: that the cache cannot be written is said, and no reason to end it.
+void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserver &observer)
+{
+  try
+    {
+      make_folder(path.parent_path());
+      remove_leftovers(path.parent_path());
+      write_specimen(path, specimen);
+      observer.event("specimen kept in " + path.string());
+    }
+  catch (const std::exception &error)
+    {
+      observer.event(
+          fmt::format("warning: the specimen is not kept, and will be prepared again next time: {}", error.what()));
+    }
+}
+
 /// What the cache holds of the recipe; a damaged file is as good as none, since it is made anew.
 std::optional<Specimen> from_cache(const std::filesystem::path &path, const std::string &recipe, RunObserver &observer)
 {
-  const std::lock_guard lock(hdf5_access);
   if (!std::filesystem::exists(path))
     return {};
   try
@@ -294,10 +307,7 @@ Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observe
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)
 {
   if (!scene.specimen.file.empty())
-    {
-      const std::lock_guard lock(hdf5_access);
-      return import(scene, observer);
-    }
+    return import(scene, observer);
   note_friction(scene, observer);
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
@@ -309,12 +319,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       return *cached;
     }
   Specimen specimen = prepare(scene, observer, threads);
-  {
-    const std::lock_guard lock(hdf5_access);
-    make_folder(cache);
-    write_specimen(path, specimen);
-  }
-  observer.event("specimen kept in " + path.string());
+  keep(specimen, path, observer);
   return specimen;
 }
 } // namespace isostat

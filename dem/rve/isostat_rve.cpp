@@ -11,7 +11,6 @@
 #include <cstring>
 #include <exception>
 #include <fmt/format.h>
-#include <mutex>
 
 struct isostat_rve
 {
@@ -31,8 +30,6 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr int voigt_row[] = {0, 1, 2, 1, 0, 0}, voigt_column[] = {0, 1, 2, 2, 2, 1};
 
 thread_local char message[4096] = ""; // no memory is asked for where there may be none
-std::mutex hdf5_access;               // HDF5 serves one thread at a time
-
 isostat_status report(isostat_status status, const char *function, const char *what)
 {
   std::snprintf(message, sizeof message, "%s: %s", function, what);
@@ -116,7 +113,6 @@ RveSettings cpp_settings(const isostat_rve_settings *given_settings)
 Snapshot specimen_at(const std::string &place_text)
 {
   const SpecimenPlace place = specimen_place(place_text);
-  const std::lock_guard lock(hdf5_access);
   return read_stored_packing(place.path, place.entry).state;
 }
 

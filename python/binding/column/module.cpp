@@ -15,6 +15,7 @@
 #include <csignal>
 #include <fmt/format.h>
 #include <mpi.h>
+#include <mutex>
 
 namespace isostat::python
 {
@@ -74,6 +75,12 @@ UserMaterials user_materials(const py::dict &laws)
 void run(const ColumnScene &scene, const std::string &output, const py::dict &materials, bool overwrite, bool resume,
          int threads, bool quiet)
 {
+  static std::recursive_mutex columns; // PETSc, MPI and signals serve one thread at a time
+  std::unique_lock turn(columns, std::defer_lock);
+  {
+    const py::gil_scoped_release free;
+    turn.lock();
+  }
   start_libraries();
   SceneOptions options;
   options.output = output;

@@ -72,6 +72,15 @@ TEST_F(Start, ADamagedCacheIsMadeAnew)
   EXPECT_TRUE(start(InSituCache(path)).prepared().empty());
 }
 
+TEST_F(Start, ACacheThatCannotBeWrittenEndsNoRun)
+{
+  const std::vector<InSituState> prepared = start(InSituCache("")).prepared();
+  put("file", "in the way of a folder");
+  testing::internal::CaptureStderr();
+  InSituCache(folder / "file/cache.h5").add(prepared);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("states in situ are not kept"), std::string::npos);
+}
+
 TEST_F(Start, AFileOfAnotherKindIsNoDamagedCache)
 {
   const std::filesystem::path path = folder / "notes.txt";

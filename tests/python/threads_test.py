@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several threads, and several processes, call the package at once: no crash, and the bits of one that is alone.
+
+REPEATS in the environment makes it longer: 20 in place of 3."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+from package import BINARIES, CONTACT, isostat
+
+REPEATS = int(os.environ.get("REPEATS", "3"))
+SCENE = isostat.Scene(grading={"grains": 100, "cloud_edge": "2.2 mm"}, contact={**CONTACT, "young": "100 MPa"},
+                      specimen={"domain": "periodic-cell", "preparation_friction": "10 deg", "pressure": "50 kPa"},
+                      stage=[{"kind": "drained", "strain": 1e-4}])
+SHEAR = np.array([[0, 1e-5, 0], [0, 0, 0], [0, 0, 0]])
+COLUMN = """title = "a pulse"
+[water]
+drainage = "dry"
+[[layer]]
+name = "clay"
+thickness = "5 m"
+cells = 5
+material = "elastic"
+shear_velocity = "150 m/s"
+[[motion]]
+kind = "ricker"
+amplitude = "1 m/s2"
+frequency = "4 Hz"
+[analysis]
+duration = "0.2 s"
+"""
+
+
+def run(folder):
+    return isostat.run(SCENE, folder / "run", cache=folder / "cache", threads=1).history["p"]
+
+
+def prepare(folder):
+    return isostat.prepare(SCENE, cache=folder.parent / "shared_cache", threads=1).snapshot.positions.copy()
+
+
+def read(folder):
+    specimen = isostat.prepare(SCENE, cache=folder.parent / "shared_cache", threads=1)
+    isostat.write_packing(folder / "packing.h5", specimen)
+    return isostat.read_packing(folder / "packing.h5").snapshot.positions.copy()
+
+
+def rve(folder):
+    element = isostat.Rve(isostat.prepare(SCENE, cache=folder.parent / "shared_cache", threads=1).snapshot)
+    element.undrained(SHEAR)
+    return element.stress
+
+
+def column(folder):
+    from isostat import column as columns
+    shaken = columns.run(columns.ColumnScene(COLUMN), folder / "column")
+    return np.array([shaken.history[name] for name in sorted(shaken.history)])
+
+
+TASKS = {task.__name__: task for task in (run, prepare, read, rve, column)}
+if not list((BINARIES.parent / "python/isostat").glob("_column*.so")):  # built without finite elements
+    del TASKS["column"]
+
+
+def at_once(names, repeats):
+    """Each name is a thread that does its task so often; all must find what the first of their kind found."""
+    found, failures = [], []
+
+    def work(number, name):
+        try:
+            for repeat in range(repeats):
+                folder = top / f"{number}_{repeat}"
+                folder.mkdir()
+                found.append((name, TASKS[name](folder)))
+        except BaseException as failure:  # pylint: disable=broad-exception-caught
+            failures.append(f"{name}: {failure!r}")
+
+    with tempfile.TemporaryDirectory() as path:
+        top = pathlib.Path(path)
+        threads = [threading.Thread(target=work, args=item) for item in enumerate(names)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert not failures, failures
+    assert len(found) == repeats * len(names)
+    for name in set(names):
+        results = [result for other, result in found if other == name]
+        for result in results:
+            np.testing.assert_array_equal(result, results[0], strict=True)
+
+
+class ThreadsTest(unittest.TestCase):
+    def call(self, names):
+        """In a process of its own: a crash is its exit code."""
+        done = subprocess.run([sys.executable, __file__, BINARIES, "--at-once", *names], capture_output=True, text=True,
+                              check=False)
+        self.assertEqual(done.returncode, 0, f"{names}: {done.stderr[-2000:]}")
+
+    def test_threads_of_one_kind(self):
+        for name in TASKS:
+            for n in (2, 3, 4):
+                with self.subTest(name, threads=n):
+                    self.call([name] * n)
+
+    def test_threads_of_all_kinds(self):
+        self.call(list(TASKS))
+
+    def test_processes_that_need_the_same_new_specimen(self):
+        scene = SCENE.with_(grading={"seed": 77})
+        for repeat in range(REPEATS):
+            with self.subTest(repeat=repeat), tempfile.TemporaryDirectory() as path:
+                folder = pathlib.Path(path)
+                (folder / "scene.toml").write_text(str(scene), encoding="utf-8")
+                command = [BINARIES / "element_test", "scene.toml", "--no-figures", "-q", "-o"]
+                runs = [subprocess.Popen([*command, f"run{k}"], cwd=folder, stderr=subprocess.PIPE,
+                                         stdout=subprocess.DEVNULL) for k in range(8)]
+                said = [process.communicate()[1] for process in runs]
+                self.assertEqual([process.returncode for process in runs], [0] * 8, said)
+                first, *others = [(folder / f"run{k}/history.csv").read_bytes() for k in range(8)]
+                self.assertTrue(all(other == first for other in others))
+                self.assertEqual(list(folder.rglob("*.tmp")), [])
+
+
+if __name__ == "__main__":
+    if "--at-once" in sys.argv:
+        at_once(sys.argv[sys.argv.index("--at-once") + 1:], REPEATS)
+    else:
+        unittest.main()
