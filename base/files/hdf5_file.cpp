@@ -55,11 +55,12 @@ void open_existing(FileState &state, const std::string &name, unsigned mode, hid
                                  state.path.string(), library_reason()));
 }
 
-/// A name that no other file in memory has, by which HDF5 tells them apart.
+/// A name that no other file in memory has, of this or of another module that holds this library: HDF5 tells them apart
+/// by it.
 std::string name_in_memory()
 {
   static unsigned long n = 0;
-  return fmt::format("memory-{}", n++);
+  return fmt::format("memory-{}-{}", fmt::ptr(&n), n++);
 }
 
 /// To write to memory, in pieces of a megabyte; nothing is set aside for later, which would stay in the file.
@@ -143,12 +144,6 @@ void require_hdf5(const fs::path &path)
         fmt::format("{}: not an HDF5 file (its signature is missing); give a file that Isostat wrote (.h5)", name));
 }
 } // namespace
-
-std::recursive_mutex &Turn::mutex()
-{
-  static auto *const one = new std::recursive_mutex;
-  return *one;
-}
 
 void fail(const FileState &file, const std::string &item, const std::string &what)
 {

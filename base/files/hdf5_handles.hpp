@@ -18,7 +18,13 @@ public:
   Turn() : lock_(mutex()) {}
 
 private:
-  static std::recursive_mutex &mutex(); ///< never destroyed: threads may outlive the end of main()
+  /// One for the process, not for each module that holds this library, as those of Python do: the compiler makes such a
+  /// variable of an inline function unique (STB_GNU_UNIQUE). Never destroyed: threads may outlive the end of main().
+  static std::recursive_mutex &mutex()
+  {
+    static auto *const one = new std::recursive_mutex;
+    return *one;
+  }
   std::lock_guard<std::recursive_mutex> lock_;
 };
 
