@@ -69,7 +69,7 @@ std::vector<std::string> as_in_header(const PlanCurve &plan, std::vector<std::st
 {
   const std::string text = read_text(plan.path);
   const std::vector<std::string_view> lines = split_lines(text);
-  const std::vector<std::string_view> header = split_commas(lines.empty() ? "" : lines[0]);
+  const std::vector<std::string_view> header = CsvHeader(plan.path, lines.empty() ? "" : lines[0]).columns;
   for (std::string &column : columns)
     {
       const auto is_named_so = [&](std::string_view c) { return ColumnName(c).name == ColumnName(column).name; };

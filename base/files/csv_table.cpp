@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <limits>
 #include <new>
+#include <optional>
 #include <zlib.h>
 
 namespace isostat
@@ -23,6 +24,34 @@ void reject(const fs::path &file, std::size_t line, const std::string &what)
 {
   throw InputError(fmt::format("{}:{}: {}", file.string(), line, what));
 }
+
+namespace
+{
+/// By its byte-order mark; without one by the zeros next to the first two letters.
+bool is_utf16(std::string_view text)
+{
+  const auto is_ascii = [&](std::size_t i) { return text[i] > 0 && text[i] < 127; };
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") ||
+         (text.size() >= 4 && ((is_ascii(0) && text[1] == 0 && is_ascii(2) && text[3] == 0) ||
+                               (text[0] == 0 && is_ascii(1) && text[2] == 0 && is_ascii(3))));
+}
+
+/// What is in the quotes that open at `begin`, where one of `separators`, blanks or the end follow them; else nothing.
+std::optional<std::string_view> quoted_field(std::string_view line, std::size_t begin, std::string_view separators)
+{
+  if (begin >= line.size() || line[begin] != '"')
+    return {};
+  std::size_t end = line.find('"', begin + 1);
+  while (end != line.npos && end + 1 < line.size() && line[end + 1] == '"') // two of them are one of the text
+    end = line.find('"', end + 2);
+  if (end == line.npos)
+    return {};
+  const std::size_t next = line.find_first_not_of(' ', end + 1);
+  const bool is_whole = next == line.npos || separators.find(line[end + 1]) != separators.npos ||
+                        separators.find(line[next]) != separators.npos;
+  return is_whole ? std::optional(line.substr(begin + 1, end - begin - 1)) : std::nullopt;
+}
+} // namespace
 
 std::string read_text(const fs::path &path)
 {
@@ -53,6 +82,10 @@ std::string read_text(const fs::path &path)
                                  path.string(), text.size()));
   if (text.starts_with("\xEF\xBB\xBF")) // byte-order mark, as spreadsheets leave it
     text.erase(0, 3);
+  if (is_utf16(text))
+    throw InputError(fmt::format("{}:1: the text is UTF-16; only UTF-8 and ASCII are read. Save it as UTF-8 (in a "
+                                 "terminal: iconv -f UTF-16 -t UTF-8)",
+                                 path.string()));
   return text;
 }
 
@@ -77,8 +110,10 @@ std::vector<std::string_view> split_words(std::string_view line)
   std::vector<std::string_view> words;
   for (std::size_t begin = line.find_first_not_of(separators); begin != std::string_view::npos;)
     {
-      const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
-      words.push_back(line.substr(begin, end - begin));
+      const auto quoted = quoted_field(line, begin, separators);
+      const std::size_t end =
+          quoted ? begin + quoted->size() + 2 : std::min(line.find_first_of(separators, begin), line.size());
+      words.push_back(quoted ? *quoted : line.substr(begin, end - begin));
       begin = line.find_first_not_of(separators, end);
     }
   return words;
@@ -89,14 +124,44 @@ std::vector<std::string_view> split_commas(std::string_view line)
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1)
     {
+      begin = std::min(line.find_first_not_of(' ', begin), line.size());
+      if (const auto quoted = quoted_field(line, begin, ","))
+        {
+          fields.push_back(*quoted);
+          end = line.find(',', begin + quoted->size() + 2);
+          continue;
+        }
       end = line.find(',', begin);
       std::string_view field = line.substr(begin, end == std::string_view::npos ? end : end - begin);
-      while (!field.empty() && field.front() == ' ')
-        field.remove_prefix(1);
       while (!field.empty() && field.back() == ' ')
         field.remove_suffix(1);
       fields.push_back(field);
     }
+  return fields;
+}
+
+CsvHeader::CsvHeader(const fs::path &path, std::string_view line) : columns(split_commas(line))
+{
+  if (columns.size() == 1 && line.find_first_of(";\t") != line.npos)
+    reject(
+        path, 1,
+        fmt::format("\"{}\": columns are separated by {}; expected commas, and decimal points in the numbers. Save the "
+                    "table in that form",
+                    line, line.find(';') != line.npos ? "semicolons" : "tabs"));
+  unnamed_ = columns.size() > 1 && columns[0].empty();
+  columns.erase(columns.begin(), columns.begin() + (unnamed_ ? 1 : 0));
+}
+
+std::vector<std::string_view> CsvHeader::row(const fs::path &path, std::size_t line, std::string_view text) const
+{
+  std::vector<std::string_view> fields = split_commas(text);
+  const std::size_t n = fields.size(), start = text.find_first_not_of(' ');
+  if (unnamed_ || (n == columns.size() + 1 && start != text.npos && text[start] == '"'))
+    fields.erase(fields.begin());
+  if (fields.size() != columns.size())
+    reject(path, line,
+           fmt::format("{} values; the header names {} columns. Is the file cut off?", n,
+                       columns.size() + (unnamed_ ? 1 : 0)));
   return fields;
 }
 
@@ -123,12 +188,12 @@ CsvTable::CsvTable(const fs::path &path, const std::vector<std::string> &columns
   const std::vector<std::string_view> lines = split_lines(text);
   if (lines.empty())
     reject(path, 1, fmt::format("the file is empty; expected a header with the columns {}", fmt::join(columns, ",")));
-  const std::vector<std::string_view> header = split_commas(lines[0]);
+  const CsvHeader header(path, lines[0]);
   std::vector<std::size_t> place;
   for (const std::string &name : columns)
     {
-      place.push_back(std::find(header.begin(), header.end(), name) - header.begin());
-      if (place.back() == header.size())
+      place.push_back(std::ranges::find(header.columns, name) - header.columns.begin());
+      if (place.back() == header.columns.size())
         reject(path, 1,
                fmt::format("no column \"{}\"; expected {} in the first line, separated by commas", name,
                            fmt::join(columns, ",")));
@@ -137,11 +202,7 @@ CsvTable::CsvTable(const fs::path &path, const std::vector<std::string> &columns
     {
       if (split_words(lines[l]).empty())
         continue;
-      const std::vector<std::string_view> fields = split_commas(lines[l]);
-      if (fields.size() != header.size())
-        reject(
-            path, l + 1,
-            fmt::format("{} values; the header names {} columns. Is the file cut off?", fields.size(), header.size()));
+      const std::vector<std::string_view> fields = header.row(path, l + 1, lines[l]);
       lines_.push_back(l + 1);
       for (std::size_t c = 0; c < columns.size(); ++c)
         {

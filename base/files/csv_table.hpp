@@ -11,14 +11,31 @@ namespace isostat
 /// Throws an InputError that begins with file:line.
 [[noreturn]] void reject(const std::filesystem::path &file, std::size_t line, const std::string &what);
 
-/// All of a file, unpacked if it is gzipped. Throws InputError if it is missing or its gzip data are damaged.
+/// All of a file, unpacked if it is gzipped. Throws InputError if it is missing, if its gzip data are damaged, and if it
+/// is UTF-16.
 std::string read_text(const std::filesystem::path &path);
 /// Lines without their ends (\n or \r\n).
 std::vector<std::string_view> split_lines(std::string_view text);
-/// Words between blanks, tabs and commas.
+/// Words between blanks, tabs and commas; what is in quotes is one word, without them, and may be empty.
 std::vector<std::string_view> split_words(std::string_view line);
-/// Fields between commas, without blanks around them; empty ones count.
+/// Fields between commas, without blanks and quotes around them; empty ones count.
 std::vector<std::string_view> split_commas(std::string_view line);
+
+/// The first line of a comma separated table. Names of rows, as R and pandas write them, are left out: a first column
+/// without a name, or a first field in quotes that no column is left for.   tested: tests/base/files/csv_table_test.cpp
+class CsvHeader
+{
+public:
+  /// @throws InputError  for semicolons or tabs in place of commas
+  CsvHeader(const std::filesystem::path &path, std::string_view line);
+  std::vector<std::string_view> columns; ///< views of `line`
+  /// Fields of a row, one for each column.   @throws InputError  with file:line, for fewer or more
+  std::vector<std::string_view> row(const std::filesystem::path &path, std::size_t line, std::string_view text) const;
+
+private:
+  bool unnamed_ = false;
+};
+
 /// The number that a field spells out: the whole field, the same in every locale, to the last bit; otherwise false.
 bool parse(std::string_view field, double &value);
 /// The finite number that a field spells out.   @throws InputError  that begins with file:line

@@ -100,7 +100,7 @@ struct DataFile
 /// The name of a section, such as `Pair Coeffs`; empty for a line of the header or of numbers.
 std::string section_name(const Words &words)
 {
-  const char c = words[0].front();
+  const char c = words[0].empty() ? ' ' : words[0].front();
   return c >= 'A' && c <= 'Z' ? std::string(words[0]) : "";
 }
 

@@ -119,7 +119,9 @@ std::string SphereColumns::missing() const
 
 void SphereColumns::read(const fs::path &path, std::size_t line, std::string_view text, SphereTable &table) const
 {
-  const std::vector<std::string_view> words = split_words(text);
+  std::vector<std::string_view> words = split_words(text);
+  if (words.size() == n_columns_ + 1 && text.starts_with('"')) // the name of the row, as R writes it
+    words.erase(words.begin());
   if (words.size() != n_columns_)
     reject(path, line, fmt::format("\"{}\"; expected {} columns, as many as have a name", text, n_columns_));
   const auto number = [&](int column) {

@@ -79,14 +79,16 @@ SphereTable read_rows(const fs::path &path, const std::string &text, Bounds &bou
   const std::vector<std::string_view> lines = split_lines(text);
   for (std::size_t l = 0; l < lines.size(); ++l)
     {
-      const Words words = split_words(lines[l]);
+      Words words = split_words(lines[l]);
       if (words.empty())
         continue;
-      if (words[0].front() == '#')
+      if (words[0].starts_with('#'))
         read_comment(path, l + 1, lines[l], bounds);
       else if (table.centres.empty() && !header_seen && is_header(lines[l]))
         {
           header_seen = true;
+          if (lines[l].starts_with(',')) // a column without a name, as pandas writes it
+            words.insert(words.begin(), "");
           const SphereColumns of_header(words);
           missing = of_header.missing();
           named = missing.empty();

@@ -91,7 +91,8 @@ PathTable read_path_table(const std::filesystem::path &file)
 {
   const std::string text = read_text(file);
   const std::vector<std::string_view> lines = split_lines(text);
-  const std::vector<std::string_view> header = lines.empty() ? std::vector<std::string_view>() : split_commas(lines[0]);
+  const CsvHeader named(file, lines.empty() ? std::string_view() : lines[0]);
+  const std::vector<std::string_view> &header = named.columns;
   if (header.size() < 2 || (header[0] != "time (s)" && header[0] != "step (-)"))
     reject(file, 1,
            "a path has the columns \"time (s)\" or \"step (-)\", and then at least one stress or strain, as in \"step "
@@ -103,9 +104,7 @@ PathTable read_path_table(const std::filesystem::path &file)
     {
       if (split_words(lines[l]).empty())
         continue;
-      const std::vector<std::string_view> fields = split_commas(lines[l]);
-      if (fields.size() != header.size())
-        reject(file, l + 1, fmt::format("{} values; the header names {} columns", fields.size(), header.size()));
+      const std::vector<std::string_view> fields = named.row(file, l + 1, lines[l]);
       const double place = finite_number(file, l + 1, fields[0]);
       if (!(place > (table.at.empty() ? 0 : table.at.back())))
         reject(

@@ -63,6 +63,16 @@ TEST_F(LayerTables, RowsBecomeLayers)
   EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene) << "the scene of the results needs no table";
 }
 
+TEST_F(LayerTables, AsRWritesThem)
+{
+  write("profile.csv", "\"\",\"thickness (m)\",\"shear_velocity (m/s)\",\"density (kg/m3)\"\n\"1\",3,150,1800\n"
+                       "\"2\",12,320,2000\n");
+  const ColumnScene scene = read(profile);
+  ASSERT_EQ(scene.layers.size(), 2U);
+  EXPECT_EQ(scene.layers[1].thickness, 12);
+  EXPECT_EQ(scene.layers[1].density, 2000);
+}
+
 TEST_F(LayerTables, OverridesCountTheLayersOfTheFile)
 {
   write("profile.csv", header + "1800,1,2,150\n1900,2,3,200\n");

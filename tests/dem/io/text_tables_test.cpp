@@ -75,6 +75,17 @@ TEST_F(TextTables, GrainsBoxAndContacts)
   EXPECT_TRUE(s.wall_contacts[1].wall == 1 && s.wall_contacts[1].grain == 1 && s.wall_contacts[1].overlap == 0.05);
 }
 
+TEST_F(TextTables, SpheresWithRowNames)
+{
+  for (const std::string text : {"\"\",\"x\",\"y\",\"z\",\"r\"\n\"1\",0.5,1,1.5,0.25\n", ",x,y,z,r\n0,0.5,1,1.5,0.25\n",
+                                 "\"x\" \"y\" \"z\" \"r\"\n\"1\" 0.5 1 1.5 0.25\n"})
+    {
+      const Snapshot s = import_tables(put("spheres.csv", text), LinearRolling{}, 2650);
+      ASSERT_EQ(s.grains.n_grains(), 1u) << text;
+      EXPECT_EQ(s.grains.centre(0), Vec3(0.5, 1, 1.5)) << text;
+    }
+}
+
 TEST_F(TextTables, GzippedTables)
 {
   const Snapshot plain = import();
