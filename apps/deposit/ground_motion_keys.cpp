@@ -11,7 +11,7 @@ using namespace ranges;
 
 constexpr const char *motion_axes[] = {"x", "y", "z"};
 constexpr const char *motion_choices[] = {"record", "harmonic", "ricker"};
-constexpr const char *unit_choices[] = {"m/s2", "cm/s2", "g"};
+constexpr const char *unit_choices[] = {"file", "m/s2", "cm/s2", "g"};
 constexpr const char *baseline_choices[] = {"none", "mean", "quadratic"};
 
 constexpr unsigned record = kind_bit(MotionKind::record);
@@ -28,11 +28,13 @@ constexpr Key keys[] = {
    .field = [](ColumnMotion &m) -> Field { return &m.kind; }},
   {.path = "file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
    .kinds = record,
-   .text = "The record: two columns of time (s) and acceleration, or PEER .AT2; counts from the folder of the scene file or "
-           "else from the working directory.",
+   .text = "The record: two columns of time (s) and acceleration, DEEPSOIL, PEER .AT2, K-NET ASCII or ESM ASCII; counts from "
+           "the folder of the scene file or else from the working directory. Records whose files have times keep the time "
+           "between them: the earliest first sample is at 0 s, and motions without times start at 0 s of that clock.",
    .field = [](ColumnMotion &m) -> Field { return &m.file; }},
-  {.path = "unit", .kind = Kind::choice, .value = "g", .choices = unit_choices, .kinds = record,
-   .text = "Unit of the accelerations in a file of two columns; AT2 is always in g.",
+  {.path = "unit", .kind = Kind::choice, .value = "file", .choices = unit_choices, .kinds = record,
+   .text = "Unit of the accelerations; file: the one that the header of the record states, else g. A unit that contradicts the "
+           "header is refused.",
    .field = [](ColumnMotion &m) -> Field { return &m.unit; }},
   {.path = "baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
    .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
@@ -71,7 +73,7 @@ constexpr Key keys[] = {
    .field = [](ColumnMotion &m) -> Field { return &m.interval; }},
   {.path = "again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "20 s", .range = positive,
-   .text = "Time at which the same motion starts for the second time; left out: it comes once.",
+   .text = "Time from the start of the motion to its start for the second time; left out: it comes once.",
    .field = [](ColumnMotion &m) -> Field { return &m.again; }},
 };
 // clang-format on

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 
 namespace isostat
@@ -39,20 +40,23 @@ void find_libraries(const SceneDocument &document, const std::string &path, Colu
       library = found_file(document, fmt::format("layer.{}.library", k), path, library);
 }
 
-Motion motion_of(const ColumnMotion &motion)
+/// Its first sample at t = 0.
+Record motion_of(const ColumnMotion &motion)
 {
   switch (motion.kind)
     {
     case MotionKind::record:
       {
-        const Motion record = corrected(read_motion(motion.file, motion.unit), motion.baseline);
-        return motion.peak ? scaled_to_peak(record, *motion.peak) : scaled(record, motion.factor);
+        const auto [read, start] = read_record(motion.file, motion.unit);
+        const Motion record = corrected(read, motion.baseline);
+        return {motion.peak ? scaled_to_peak(record, *motion.peak) : scaled(record, motion.factor), start};
       }
     case MotionKind::harmonic:
-      return harmonic_motion(motion.amplitude, motion.frequency, motion.duration, motion.ramp,
-                             motion.sample_interval());
+      return {
+          harmonic_motion(motion.amplitude, motion.frequency, motion.duration, motion.ramp, motion.sample_interval()),
+          {}};
     case MotionKind::ricker:
-      return ricker_motion(motion.amplitude, motion.frequency, motion.peak_time(), motion.sample_interval());
+      return {ricker_motion(motion.amplitude, motion.frequency, motion.peak_time(), motion.sample_interval()), {}};
     }
   return {};
 }
@@ -171,14 +175,24 @@ MeshSpec mesh_spec(const ColumnScene &scene)
 
 std::array<Motion, 3> column_motions(const ColumnScene &scene)
 {
-  std::array<Motion, 3> motions;
+  std::vector<Record> records;
+  double origin = std::numeric_limits<double>::max(); // of the common clock: the earliest first sample
   for (const ColumnMotion &motion : scene.motions)
     {
-      const Motion once = motion_of(motion);
-      motions[static_cast<std::size_t>(motion.axis)] = motion.again ? repeated(once, *motion.again) : once;
+      records.push_back(motion_of(motion));
+      origin = std::min(origin, records.back().start.value_or(0));
+    }
+  std::array<Motion, 3> motions;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    {
+      const ColumnMotion &motion = scene.motions[k];
+      const Motion &once = records[k].motion;
+      motions[static_cast<std::size_t>(motion.axis)] =
+          (motion.again ? repeated(once, *motion.again) : once).delayed(records[k].start.value_or(0) - origin, origin);
     }
   return motions;
 }
+
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides)
 {

@@ -100,7 +100,7 @@ struct ColumnMotion
   Axis axis = Axis::x;
   MotionKind kind = MotionKind::record;
   std::string file; ///< after read_column_scene an absolute path
-  AccelerationUnit unit = AccelerationUnit::g;
+  AccelerationUnit unit = AccelerationUnit::stated;
   Baseline baseline = Baseline::none;
   double factor = 1;
   std::optional<double> peak; ///< instead of the factor
@@ -108,7 +108,7 @@ struct ColumnMotion
   double duration = 0, ramp = 0;  ///< harmonic
   std::optional<double> centre;   ///< ricker: time of its peak
   std::optional<double> interval; ///< between samples of harmonic and ricker
-  std::optional<double> again;    ///< start of the same motion for the second time, s
+  std::optional<double> again;    ///< from its start to that of the second time, s
 
   double peak_time() const { return centre.value_or(1.5 / frequency); } ///< of a ricker, s
   /// Not of a record, s.
@@ -231,7 +231,8 @@ GroundLine ground_line(const ColumnMesh &mesh);
 /// The mesh of a scene; its plate is patch 0.
 MeshSpec mesh_spec(const ColumnScene &scene);
 
-/// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given.
+/// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given. They have one clock:
+/// the earliest first sample is at t = 0, those of records without times and of formulas are at 0 of that clock.
 /// @throws InputError from the record's file
 std::array<Motion, 3> column_motions(const ColumnScene &scene);
 

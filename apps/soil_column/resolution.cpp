@@ -44,7 +44,56 @@ double share_above(const Motion &motion, double frequency)
     }
   return all > 0 ? 1 - low / all : 0;
 }
+/// Time of the last sample that is not 0, s.
+double end_of_shaking(const Motion &motion)
+{
+  const std::vector<double> &a = motion.accelerations();
+  const auto last = std::find_if(a.rbegin(), a.rend(), [](double value) { return value != 0; });
+  return motion.duration() - static_cast<double>(last - a.rbegin()) * motion.interval();
+}
+
+/// Whether a motion that ends with a velocity has gone far, or very far without.
+bool drifts(const Motion &motion)
+{
+  constexpr double share = 0.05, far = 0.3, very_far = 10; // of the largest velocity, m, m
+  const double end = motion.duration(), way = std::abs(motion.displacement(end));
+  double fastest = 0;
+  for (std::size_t i = 0; i < motion.accelerations().size(); ++i)
+    fastest = std::max(fastest, std::abs(motion.velocity(motion.delay() + static_cast<double>(i) * motion.interval())));
+  return way > very_far || (way > far && std::abs(motion.velocity(end)) > share * fastest);
+}
 } // namespace
+
+std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::array<Motion, 3> &motions)
+{
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)
+    {
+      const ColumnMotion &asked = scene.motions[k];
+      const Motion &motion = motions[static_cast<std::size_t>(asked.axis)];
+      const char axis = "xyz"[static_cast<std::size_t>(asked.axis)];
+      const double end = end_of_shaking(motion);
+      if (end > scene.analysis.duration + motion.interval())
+        warnings.push_back(fmt::format("the analysis ends at {:.4g} s, before the motion along {}, which lasts until "
+                                       "{:.4g} s. Set analysis.duration to that or more to have it all.",
+                                       scene.analysis.duration, axis, end));
+      if (drifts(motion))
+        warnings.push_back(fmt::format(
+            "the motion along {} ends {:.3g} m from where it began, with {:.3g} m/s: its baseline drifts. {}", axis,
+            std::abs(motion.displacement(motion.duration())), motion.velocity(motion.duration()),
+            asked.kind == MotionKind::harmonic ? fmt::format("Set motion.{}.ramp to a few periods.", k)
+            : asked.baseline == Baseline::none
+                ? fmt::format("Set motion.{}.baseline = \"quadratic\", or give a record that was filtered by "
+                              "a high-pass.",
+                              k)
+                : "Give a record that was filtered by a high-pass."));
+      if (std::abs(motion.origin()) > 1.5 * motion.interval() && motion.delay() == 0)
+        warnings.push_back(fmt::format("the record along {} begins at {:.4g} s of its own times; the analysis begins "
+                                       "there, so its 0 s are {:.4g} s of all records.",
+                                       axis, motion.origin(), motion.origin()));
+    }
+  return warnings;
+}
 
 double highest_frequency(const Motion &motion, double limit)
 {
@@ -104,7 +153,7 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
 std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
                                         const CellTables &mesh, const std::array<Motion, 3> &motions)
 {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = motion_warnings(scene, motions);
   if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
     warnings.push_back(std::move(coarse));
   const auto vertical = [](const ColumnMotion &motion) { return motion.axis == Axis::z; };

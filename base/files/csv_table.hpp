@@ -11,8 +11,7 @@ namespace isostat
 /// Throws an InputError that begins with file:line.
 [[noreturn]] void reject(const std::filesystem::path &file, std::size_t line, const std::string &what);
 
-/// All of a file, unpacked if it is gzipped. Throws InputError if it is missing, if its gzip data are damaged, and if it
-/// is UTF-16.
+/// All of a file, unpacked if it is gzipped. Throws InputError if it is missing, is UTF-16, or has damaged gzip data.
 std::string read_text(const std::filesystem::path &path);
 /// Lines without their ends (\n or \r\n).
 std::vector<std::string_view> split_lines(std::string_view text);

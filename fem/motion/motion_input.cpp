@@ -104,7 +104,15 @@ Motion::Motion(std::vector<double> accelerations, double interval)
     }
 }
 
-double Motion::duration() const { return at_rest() ? 0 : (accelerations_.size() - 1) * interval_; }
+double Motion::duration() const { return at_rest() ? 0 : delay_ + (accelerations_.size() - 1) * interval_; }
+
+Motion Motion::delayed(double delay, double origin) const
+{
+  Motion later = *this;
+  later.delay_ = delay;
+  later.origin_ = origin;
+  return later;
+}
 
 double Motion::peak() const
 {
@@ -123,29 +131,29 @@ Motion::Place Motion::place(double t) const
 
 double Motion::acceleration(double t) const
 {
-  if (at_rest() || t < 0 || t > duration())
+  if (at_rest() || t < delay_ || t > duration())
     return 0;
-  const auto [i, tau, slope] = place(t);
+  const auto [i, tau, slope] = place(t - delay_);
   return accelerations_[i] + tau * slope;
 }
 
 double Motion::velocity(double t) const
 {
-  if (at_rest() || t < 0)
+  if (at_rest() || t < delay_)
     return 0;
   if (t >= duration())
     return velocities_.back();
-  const auto [i, tau, slope] = place(t);
+  const auto [i, tau, slope] = place(t - delay_);
   return velocities_[i] + tau * (accelerations_[i] + tau * slope / 2);
 }
 
 double Motion::displacement(double t) const
 {
-  if (at_rest() || t < 0)
+  if (at_rest() || t < delay_)
     return 0;
   if (t >= duration())
     return displacements_.back() + velocities_.back() * (t - duration());
-  const auto [i, tau, slope] = place(t);
+  const auto [i, tau, slope] = place(t - delay_);
   return displacements_[i] + tau * (velocities_[i] + tau * (accelerations_[i] / 2 + tau * slope / 6));
 }
 

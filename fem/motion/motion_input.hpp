@@ -2,12 +2,13 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace isostat
 {
-/// A motion in one direction as equally spaced accelerations, m/s2, the first at t = 0. Between samples the
-/// acceleration is linear, so velocity and displacement are exact polynomials:
+/// A motion in one direction as equally spaced accelerations, m/s2, the first at t = 0 unless it is delayed.
+/// Between samples the acceleration is linear, so velocity and displacement are exact polynomials:
 ///   a = a_i + s tau,  v = v_i + a_i tau + s tau^2/2,  d = d_i + v_i tau + a_i tau^2/2 + s tau^3/6,  tau = t - t_i
 /// Before the first sample all is at rest. After the last the acceleration is 0: the velocity keeps its last value and
 /// the displacement runs away unless that value is 0. Records seldom end at rest; see `corrected`. tested:
@@ -29,13 +30,18 @@ public:
   double displacement(double t) const; ///< m
 
   bool at_rest() const { return accelerations_.empty(); }
+  double delay() const { return delay_; }       ///< time of the first sample, s
   double duration() const;                      ///< time of the last sample, s; 0 at rest
   double interval() const { return interval_; } ///< s; 0 at rest
   double peak() const;                          ///< largest |acceleration|, m/s2; 0 at rest
   const std::vector<double> &accelerations() const { return accelerations_; }
+  double origin() const { return origin_; } ///< time of the record's own clock at t = 0, s
+
+  /// The same motion later.   @param delay  s, >= 0   @param origin  origin()
+  Motion delayed(double delay, double origin = 0) const;
 
 private:
-  /// Where a time lies: the sample before it and the time since; @pre 0 <= t, not at rest
+  /// Where a time since the first sample lies: the sample before it and the time since that; @pre 0 <= t, not at rest
   struct Place
   {
     std::size_t sample;
@@ -44,12 +50,13 @@ private:
   Place place(double t) const;
 
   std::vector<double> accelerations_, velocities_, displacements_;
-  double interval_ = 0;
+  double interval_ = 0, delay_ = 0, origin_ = 0;
 };
 
 /// Unit of the accelerations in a file.
 enum class AccelerationUnit
 {
+  stated, ///< by the file, else g
   m_s2,
   cm_s2,
   g
@@ -58,18 +65,27 @@ enum class AccelerationUnit
 /// Standard acceleration of gravity, m/s2: what "g" in a record means.
 inline constexpr double standard_gravity = 9.80665;
 
+struct Record
+{
+  Motion motion;               ///< its first sample at t = 0
+  std::optional<double> start; ///< time of the first sample in the file, s; none: the file has no times
+};
+
 /// Reads a record. Formats, told apart by content:
 ///  - two columns, time (s) and acceleration, separated by blanks, tabs or commas; comment lines start with # or %, and
-///    one header line of words may come first. The times must rise by equal intervals (each to 1e-3 of the median); the
-///    first sample becomes t = 0, the interval is the mean one.
+///    one header line of words may come first (as R and pandas write it, too, with a column of row names). The times
+///    must rise by equal intervals (each to 1e-3 of the median); the interval is the mean one.
+///  - DEEPSOIL: the same below a line with the number of rows and the step
 ///  - PEER .AT2: a line with NPTS and DT among the first ten ("NPTS= 4000, DT= .005 SEC" or "4000 .005 NPTS, DT"), then
-///    NPTS accelerations in g, any number to a line
-/// Either may be gzipped.
-/// @param unit  of a two-column file; AT2 is always in g, `unit` is ignored
+///    NPTS accelerations, any number to a line
+///  - K-NET ASCII ("Sampling Freq(Hz)", "Duration Time(s)", "Scale Factor") and ESM ASCII ("SAMPLING_INTERVAL_S: ",
+///    "NDATA: ", "UNITS: ")
+/// Any may be gzipped. The unit is that of the header (see record_unit() of fem/motion/motion_header.hpp).
+/// @param unit  of a file that states none; must agree with one that does
 /// @throws InputError with file:line: missing file, text among the numbers, gaps or steps back in time, not-a-number,
-///         fewer or more values than NPTS, an AT2 file of velocities or displacements, fewer than two samples
+///         fewer or more values than announced, another unit, a quantity other than acceleration
 /// tested: tests/fem/motion/motion_file_test.cpp
-Motion read_motion(const std::filesystem::path &path, AccelerationUnit unit);
+Record read_record(const std::filesystem::path &path, AccelerationUnit unit);
 
 /// A w(t) sin(2 pi f t), 0 <= t <= duration. w rises as (1 - cos(pi t/ramp))/2 over the first `ramp` seconds and falls
 /// the same way over the last. Samples after `duration`, if it is no multiple of the interval, are 0. Without a ramp
@@ -88,7 +104,7 @@ Motion harmonic_motion(double amplitude, double frequency, double duration, doub
 /// tested: tests/fem/motion/motion_input_test.cpp
 Motion ricker_motion(double amplitude, double frequency, double t0, double interval);
 
-/// How a record is made ready.
+/// How a record is made ready. What follows takes motions that are not delayed.
 enum class Baseline
 {
   none,

@@ -184,7 +184,8 @@ std::vector<double> response_spectrum(const Motion &motion, const std::vector<do
   if (motion.at_rest())
     return std::vector<double>(periods.size(), 0.0);
   ResponseSpectrum spectrum(periods, damping, motion.interval());
-  for (std::size_t k = 0; k < motion.accelerations().size() && static_cast<double>(k) * motion.interval() <= end; ++k)
+  const auto time = [&](std::size_t k) { return motion.delay() + static_cast<double>(k) * motion.interval(); };
+  for (std::size_t k = 0; k < motion.accelerations().size() && time(k) <= end; ++k)
     spectrum.follow(motion.accelerations()[k]);
   return spectrum.peaks();
 }

@@ -68,5 +68,73 @@ class SurfaceMotion(ColumnTest):
                                   "the same values")
 
 
+class Records(ColumnTest):
+    """Times and units of records, whose values are read from the history and the summary of a short run."""
+    LAYER = """[water]
+drainage = "dry"
+[[layer]]
+thickness = "10 m"
+cells = 10
+density = "1900 kg/m3"
+material = "elastic"
+shear_velocity = "200 m/s"
+[output]
+history_interval = "0.005 s"
+"""
+    DT = 0.02
+    SIGNAL = [0.2 * np.sin(2 * np.pi * 2.5 * t * 0.02) * np.sin(np.pi * t / 200) ** 2 for t in range(201)]  # g
+
+    def table(self, name, start, values=None, header=""):
+        rows = [f"{start + self.DT * i:.2f} {a:.8f}" for i, a in enumerate(self.SIGNAL if values is None else values)]
+        self.write(name, header + "\n".join(rows) + "\n")
+
+    def run_motions(self, *motions, duration="7 s", name="run"):
+        text = self.LAYER + "".join(f'[[motion]]\naxis = "{axis}"\n{keys}\n' for axis, keys in motions)
+        return self.rows_of(text + f'[analysis]\nduration = "{duration}"\n', name)
+
+    @staticmethod
+    def record(name, more=""):
+        return f'kind = "record"\nfile = "{name}"\n{more}'
+
+    def test_two_records_have_one_clock(self):
+        once = 9.80665 * np.array(self.SIGNAL)
+        for k, (x, y) in enumerate(((0, 2), (2, 0), (-1, 1), (10, 12), (-3, -5))):
+            self.table("x.txt", x)
+            self.table("y.txt", y)
+            rows, summary = self.run_motions(("x", self.record("x.txt")), ("y", self.record("y.txt")), name=f"run{k}")
+            for axis, later in (("x", max(0, x - y)), ("y", max(0, y - x))):
+                expected = np.interp(rows["time"] - later, self.DT * np.arange(201), once, 0, 0)
+                self.assert_close(rows[f"input_a{axis}"], expected, 5e-3 * once.max(),
+                                  "rows are means over 12 intervals of 5 ms, of a signal of 2.5 Hz")
+            notes = [w for w in summary["warnings"] if "of its own times" in w]
+            self.assertEqual(len(notes), 0 if min(x, y) == 0 else 1, summary["warnings"])
+
+    def test_units_of_headers(self):
+        values = "\n".join(f"{980.665 * a:.6e}" for a in self.SIGNAL)
+        self.write("peer.txt", f"STATION\nCORRECTED ACCELERATION (CM/S/S)\nNPTS= 201, DT= .02 SEC\n{values}\n")
+        for k, more in enumerate(("", 'unit = "cm/s2"')):
+            rows, _ = self.run_motions(("x", self.record("peer.txt", more)), duration="4 s", name=f"run{k}")
+            self.assert_close(np.abs(rows["input_ax"]).max(), 9.80665 * np.abs(self.SIGNAL).max(), 0.01,
+                              "crests between rows")
+        self.write("g.toml", self.LAYER + "[[motion]]\n" + self.record("peer.txt", 'unit = "g"') +
+                   '\n[analysis]\nduration = "4 s"\n')
+        result = self.run_column("g.toml", "-o", "refused")
+        self.assert_refused(result, "peer.txt:2:", "says cm/s2", 'unit = "g"', "Take unit out of the scene")
+
+    def test_warnings(self):
+        self.table("short.txt", 0)
+        _, summary = self.run_motions(("x", self.record("short.txt")), duration="0.6 s", name="short")
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertIn("ends at 0.6 s, before the motion along x, which lasts until 3.98 s", summary["warnings"][0])
+        self.table("drift.txt", 0, [a + 0.1 for a in self.SIGNAL])
+        _, summary = self.run_motions(("x", self.record("drift.txt")), duration="4.1 s", name="drift")
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertRegex(summary["warnings"][0],
+                         r"along x ends 7\.\S+ m from where it began.*baseline drifts.*baseline = ")
+        _, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), duration="4.1 s",
+                                      name="level")
+        self.assertEqual(summary["warnings"], [])
+
+
 if __name__ == "__main__":
     main()

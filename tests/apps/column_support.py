@@ -67,6 +67,11 @@ class ColumnTest(AppTest):
     def run_column(self, *arguments):
         return self.run_app("soil_column", *arguments, "--no-figures")
 
+    def assert_no_warning(self, result, message=None):
+        """None but that a short analysis ends before its motion."""
+        self.assertEqual([line for line in result.stderr.splitlines() if "before the motion along" not in line], [],
+                         message)
+
     def rows_of(self, text, name="run"):
         """History and summary of a scene."""
         result = self.run_column(self.write(f"{name}.toml", text), "-o", name, "--quiet")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a record of a motion, in two columns or as PEER writes it, plain or gzipped: what is taken is finite.
+// Bytes as a record of a motion, in any layout, plain or gzipped: what is taken is finite.
 #include "fem/motion/motion_input.hpp"
 #include "tests/fuzz/input.hpp"
 
@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
 {
   using namespace isostat;
   const fuzz::MemoryFile file(fuzz::text_of(data, size));
-  const auto motion = fuzz::accepted([&] { return read_motion(file.path(), AccelerationUnit::m_s2); });
+  const auto motion = fuzz::accepted([&] { return read_record(file.path(), AccelerationUnit::stated).motion; });
   if (!motion)
     return 0;
   const std::vector<double> &samples = motion->accelerations();

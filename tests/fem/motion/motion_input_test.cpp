@@ -98,6 +98,21 @@ TEST(Motion, BeforeAndAfterTheRecord)
   EXPECT_EQ(rest.acceleration(1) + rest.velocity(1) + rest.displacement(1) + rest.peak() + rest.duration(), 0);
 }
 
+TEST(Motion, DelayedByNoWholeInterval)
+{
+  const Motion m({1, -2, 3}, 0.5), later = m.delayed(2.3, -1);
+  EXPECT_EQ(later.duration(), 3.3);
+  EXPECT_EQ(later.delay(), 2.3);
+  EXPECT_EQ(later.origin(), -1);
+  EXPECT_EQ(later.acceleration(2.29), 0);
+  EXPECT_EQ(later.displacement(2.3), 0);
+  for (const double t : {0.0, 0.2, 0.5, 0.9, 1.0, 1.5})
+    {
+      EXPECT_NEAR_BECAUSE(later.velocity(2.3 + t), m.velocity(t), 1e-14, "round-off of times of 3 s");
+      EXPECT_NEAR_BECAUSE(later.displacement(2.3 + t), m.displacement(t), 1e-14, "round-off of times of 3 s");
+    }
+}
+
 TEST(Motion, BadSamples)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
