@@ -88,9 +88,10 @@ std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::ar
                               k)
                 : "Give a record that was filtered by a high-pass."));
       if (std::abs(motion.origin()) > 1.5 * motion.interval() && motion.delay() == 0)
-        warnings.push_back(fmt::format("the record along {} begins at {:.4g} s of its own times; the analysis begins "
-                                       "there, so its 0 s are {:.4g} s of all records.",
-                                       axis, motion.origin(), motion.origin()));
+        warnings.push_back(
+            fmt::format("the record along {} begins at {:.4g} s of its own times, and the analysis begins "
+                        "there. Add {:.4g} s to times of the results to compare them with the record.",
+                        axis, motion.origin(), motion.origin()));
     }
   return warnings;
 }
