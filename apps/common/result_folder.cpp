@@ -225,9 +225,9 @@ void write_provenance(const fs::path &folder, const Scene &scene, const std::str
 
 std::vector<std::string> report_command(const std::vector<std::string> &words)
 {
-  // -P: modules of the working folder, whosever they are, are left alone
+  // -P: modules of the working folder are left alone. -u: the last line of the log is what was said last
   std::vector<std::string> command = {
-      "/usr/bin/env", "PYTHONPATH=" + shared_folder().string(), "/usr/bin/python3", "-B", "-P", "-m", "report"};
+      "/usr/bin/env", "PYTHONPATH=" + shared_folder().string(), "/usr/bin/python3", "-B", "-P", "-u", "-m", "report"};
   command.insert(command.end(), words.begin(), words.end());
   return command;
 }

@@ -20,6 +20,7 @@ import numpy as np
 
 BIN = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
 
+os.environ.pop("PYTHONUNBUFFERED", None)  # as in the shell of a user
 TIME_LIMIT = float(os.environ.get("ISOSTAT_TIME_LIMIT", "3600")) / 4  # s; a hang is reported before ctest ends the test
 ATTEMPTS = 5  # to stop a run, which may end first on a busy machine
 
