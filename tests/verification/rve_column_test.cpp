@@ -145,7 +145,8 @@ std::vector<std::complex<double>> transfer(const Discretisation<1> &space, Mater
   return surface;
 }
 
-/// Without contacts that slide or roll, of which a packing has more or fewer at a strain of 3e-7.
+/// Without contacts that slide or roll, of which a packing has more or fewer at a strain of 2e-6. At a tenth of it the
+/// residual motion of a packing, which does not depend on the strain, makes an error of up to 13 % at some frequency.
 Snapshot without_limits(Snapshot specimen)
 {
   auto law = dynamic_cast<const LinearRolling &>(static_cast<const ContactLaw &>(specimen.law));
@@ -168,19 +169,19 @@ TEST(RveColumn, TinyMotionMeetsTheStiffnessOfThePackings)
   GivenStiffness twin(stiffnesses, packings);
   const double step = 0.5 * Dynamics(space, twin, {.drainage = Drainage::undrained}).stable_step();
   double gamma = 0, gamma_of_twin = 0, worst = 0, peak = 0;
-  const auto elastic = transfer(space, twin, 1e-3, step, frequencies, gamma_of_twin);
-  const auto grains = transfer(space, packings, 1e-3, step, frequencies, gamma);
+  const auto elastic = transfer(space, twin, 1e-2, step, frequencies, gamma_of_twin);
+  const auto grains = transfer(space, packings, 1e-2, step, frequencies, gamma);
   for (std::size_t j = 0; j < frequencies.size(); ++j)
     {
       const double expected = std::abs(elastic[j]);
-      EXPECT_CLOSE_BECAUSE(std::abs(grains[j]), expected, 0.05,
-                           "contacts that open and close, and grains that find their places within 20 steps")
+      EXPECT_CLOSE_BECAUSE(std::abs(grains[j]), expected, 0.03,
+                           "contacts that open and close, and residual motion: 1.4 % with these packings")
           << frequencies[j] << " Hz";
       worst = std::max(worst, std::abs(std::abs(grains[j]) / expected - 1));
       peak = std::max(peak, expected);
     }
   std::printf("largest strain %.2g, amplification %.2f, worst difference %.2f %%\n", gamma, peak, 100 * worst);
-  EXPECT_BELOW_BECAUSE(gamma, 3e-7, "the strain below which packings are nearly elastic");
+  EXPECT_BELOW_BECAUSE(gamma, 3e-6, "the strain at which few contacts open or close");
   EXPECT_GT(peak, 3); // the resonance is among the frequencies
   EXPECT_CLOSE_BECAUSE(gamma_of_twin, gamma, 0.05, "as the amplification");
 }
