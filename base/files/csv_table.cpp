@@ -42,13 +42,14 @@ std::optional<std::string_view> quoted_field(std::string_view line, std::size_t 
   if (begin >= line.size() || line[begin] != '"')
     return {};
   std::size_t end = line.find('"', begin + 1);
-  while (end != line.npos && end + 1 < line.size() && line[end + 1] == '"') // two of them are one of the text
+  while (end != std::string_view::npos && end + 1 < line.size() &&
+         line[end + 1] == '"') // two of them are one of the text
     end = line.find('"', end + 2);
-  if (end == line.npos)
+  if (end == std::string_view::npos)
     return {};
   const std::size_t next = line.find_first_not_of(' ', end + 1);
-  const bool is_whole = next == line.npos || separators.find(line[end + 1]) != separators.npos ||
-                        separators.find(line[next]) != separators.npos;
+  const bool is_whole = next == std::string_view::npos || separators.find(line[end + 1]) != std::string_view::npos ||
+                        separators.find(line[next]) != std::string_view::npos;
   return is_whole ? std::optional(line.substr(begin + 1, end - begin - 1)) : std::nullopt;
 }
 } // namespace
@@ -142,12 +143,12 @@ std::vector<std::string_view> split_commas(std::string_view line)
 
 CsvHeader::CsvHeader(const fs::path &path, std::string_view line) : columns(split_commas(line))
 {
-  if (columns.size() == 1 && line.find_first_of(";\t") != line.npos)
+  if (columns.size() == 1 && line.find_first_of(";\t") != std::string_view::npos)
     reject(
         path, 1,
         fmt::format("\"{}\": columns are separated by {}; expected commas, and decimal points in the numbers. Save the "
                     "table in that form",
-                    line, line.find(';') != line.npos ? "semicolons" : "tabs"));
+                    line, line.find(';') != std::string_view::npos ? "semicolons" : "tabs"));
   unnamed_ = columns.size() > 1 && columns[0].empty();
   columns.erase(columns.begin(), columns.begin() + (unnamed_ ? 1 : 0));
 }
@@ -156,7 +157,7 @@ std::vector<std::string_view> CsvHeader::row(const fs::path &path, std::size_t l
 {
   std::vector<std::string_view> fields = split_commas(text);
   const std::size_t n = fields.size(), start = text.find_first_not_of(' ');
-  if (unnamed_ || (n == columns.size() + 1 && start != text.npos && text[start] == '"'))
+  if (unnamed_ || (n == columns.size() + 1 && start != std::string_view::npos && text[start] == '"'))
     fields.erase(fields.begin());
   if (fields.size() != columns.size())
     reject(path, line,

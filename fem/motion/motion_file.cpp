@@ -24,13 +24,13 @@ bool has_decimal_commas(std::string_view line)
 {
   constexpr std::string_view separators = " \t;";
   std::size_t n = 0;
-  for (std::size_t begin = line.find_first_not_of(separators); begin != line.npos; ++n)
+  for (std::size_t begin = line.find_first_not_of(separators); begin != std::string_view::npos; ++n)
     {
       const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
       std::string word(line.substr(begin, end - begin));
       const std::size_t comma = word.find(',');
       double value = 0;
-      if (comma == word.npos || comma + 1 == word.size() || word.find('.') != word.npos)
+      if (comma == std::string_view::npos || comma + 1 == word.size() || word.find('.') != std::string_view::npos)
         return false;
       word[comma] = '.';
       if (!parse(word, value))
@@ -48,7 +48,7 @@ bool has_decimal_commas(std::string_view line)
            fmt::format("\"{}\" has decimal commas; expected decimal points, as commas separate columns. Replace them "
                        "with points",
                        text));
-  if (text.find(';') != text.npos)
+  if (text.find(';') != std::string_view::npos)
     reject(path, line,
            fmt::format("\"{}\": columns are separated by semicolons; expected blanks, tabs or commas. Replace them",
                        text));
@@ -134,7 +134,7 @@ std::size_t npts_line(const Lines &lines)
 {
   for (std::size_t l = 0; l < std::min(at2_header_lines, lines.size()); ++l)
     if (const std::string text = upper_case(lines[l]);
-        !text.starts_with('#') && !text.starts_with('%') && text.find("NPTS") != text.npos)
+        !text.starts_with('#') && !text.starts_with('%') && text.find("NPTS") != std::string_view::npos)
       return l + 1;
   return 0;
 }
@@ -159,7 +159,7 @@ Block parse_npts(const fs::path &path, const Lines &lines, std::size_t line)
       if (parse(word, value))
         numbers.push_back(value);
     }
-  if (dt == text.npos || numbers.size() < 2)
+  if (dt == std::string_view::npos || numbers.size() < 2)
     reject(path, line,
            fmt::format("\"{}\" does not say how many values follow and at what interval; expected \"NPTS= 4000, DT= "
                        ".005 SEC\"",
@@ -231,8 +231,9 @@ Motion read_knet(const fs::path &path, const Lines &lines, AccelerationUnit unit
   const auto [line, text] = keyed_line(lines, "Scale Factor");
   const std::size_t open = text.find('('), close = text.find(')'), slash = text.find('/', std::min(close, text.size()));
   double divisor = 0;
-  if (open == text.npos || close == text.npos || open > close || slash == text.npos ||
-      !parse(text.substr(slash + 1), divisor) || !(divisor > 0 && std::isfinite(divisor)) || !(scale > 0))
+  if (open == std::string_view::npos || close == std::string_view::npos || open > close ||
+      slash == std::string_view::npos || !parse(text.substr(slash + 1), divisor) ||
+      !(divisor > 0 && std::isfinite(divisor)) || !(scale > 0))
     reject(path, line, fmt::format("\"{}\"; expected a scale factor as in 3920(gal)/6182761", text));
   const std::string in_units = fmt::format("UNITS OF {}", text.substr(open + 1, close - open - 1));
   Block block{keyed_line(lines, "Duration Time(s)").first,

@@ -111,10 +111,10 @@ std::vector<Token> tokens_of(std::string_view line)
   constexpr std::string_view separators = " \t,;:=()[]{}\"_|<>";
   std::string text = upper_case(line);
   for (const auto &[from, to] : spellings)
-    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);
   std::vector<Token> tokens;
-  for (std::size_t begin = text.find_first_not_of(separators); begin != text.npos;)
+  for (std::size_t begin = text.find_first_not_of(separators); begin != std::string_view::npos;)
     {
       const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
       Token token{text.substr(begin, end - begin)};
@@ -137,7 +137,8 @@ bool is_other_quantity(std::string_view word)
   word = word.substr(word.rfind('-') + 1);
   constexpr std::string_view beginnings[] = {"VELOC", "DISPL", "STRESS", "PRESSURE", "ROTATION",
                                              "JERK",  "TILT",  "FORCE",  "VOLTAGE",  "COUNT"};
-  return word == "VEL" || word == "DISP" || word == "KPA" || word == "MPA" || word.find("STRAIN") != word.npos ||
+  return word == "VEL" || word == "DISP" || word == "KPA" || word == "MPA" ||
+         word.find("STRAIN") != std::string_view::npos ||
          std::ranges::any_of(beginnings, [&](std::string_view b) { return word.starts_with(b); });
 }
 
