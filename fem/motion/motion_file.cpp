@@ -266,7 +266,7 @@ Motion read_esm(const fs::path &path, const Lines &lines, AccelerationUnit unit)
     reject(path, line, fmt::format("DATA_TYPE = {}; must be ACCELERATION. Give the file of accelerations", text));
   std::size_t first = 0; // behind the last line of the header
   for (std::size_t l = 0; l < std::min(header_lines, lines.size()); ++l)
-    if (lines[l].find(':') != lines[l].npos)
+    if (lines[l].find(':') != std::string_view::npos)
       first = l + 1;
   return read_block(path, lines, first, block, record_unit(path, block.header, unit));
 }
