@@ -189,6 +189,15 @@ FileLock open_result_folder(const fs::path &folder, FolderUse use)
         fmt::format("{}: another program has used it since this one began. Give another --output.", folder.string()));
   if (use == FolderUse::overwrite)
     empty_folder(folder);
+  if (use == FolderUse::resume)
+    {
+      std::vector<fs::path> folders = {folder};
+      for (const fs::directory_entry &entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_directory())
+          folders.push_back(entry.path());
+      for (const fs::path &each : folders)
+        remove_leftovers(each, std::chrono::seconds(0));
+    }
   return lock;
 }
 

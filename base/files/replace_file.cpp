@@ -117,9 +117,8 @@ bool is_aside(const std::string &name)
 }
 } // namespace
 
-void remove_leftovers(const fs::path &folder)
+void remove_leftovers(const fs::path &folder, std::chrono::seconds least_age)
 {
-  constexpr auto younger_may_not_be_locked_yet = std::chrono::minutes(1);
   std::error_code ignored;
   for (const fs::directory_entry &entry : fs::directory_iterator(folder, ignored))
     {
@@ -128,7 +127,7 @@ void remove_leftovers(const fs::path &folder)
       const int file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
       const bool is_written = file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
       const auto age = fs::file_time_type::clock::now() - entry.last_write_time(ignored);
-      if (file >= 0 && !is_written && age > younger_may_not_be_locked_yet)
+      if (file >= 0 && !is_written && age >= least_age)
         fs::remove(entry.path(), ignored);
       if (file >= 0)
         ::close(file);

@@ -2,6 +2,7 @@
 // Files and folders, made or told why not.
 // tested: tests/base/files/replace_file_test.cpp, tests/apps/kill_resume_test.py, tests/apps/failures_test.py
 #pragma once
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -19,8 +20,9 @@ void write_replacing(const std::filesystem::path &path, std::string_view text);
 /// @param write  writes it, piece by piece; what it throws goes on, and the old content stays
 void write_replacing(const std::filesystem::path &path, const std::function<void(std::ostream &)> &write);
 
-/// Removes from a folder what writers that were killed have left beside their files a minute ago or longer.
-void remove_leftovers(const std::filesystem::path &folder);
+/// Removes from a folder what writers that were killed have left beside their files.
+/// @param age  younger ones are left alone, which another writer may just have made; 0 s where there can be no other
+void remove_leftovers(const std::filesystem::path &folder, std::chrono::seconds age = std::chrono::minutes(1));
 
 /// Gives a file another name of the same folder, in one step.   @throws RunFailure  it cannot be done
 void rename_file(const std::filesystem::path &from, const std::filesystem::path &to);

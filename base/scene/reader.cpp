@@ -2,6 +2,7 @@
 #include "base/scene/reader.hpp"
 
 #include "base/error.hpp"
+#include "base/scene/toml_text.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -91,7 +92,7 @@ void fill_key(const SceneDocument &document, const Key &key, const std::string &
   else if (key.presence == Presence::required)
     document.refuse(path, fmt::format("is missing. Give for example {} = {}.", key.name(), example(key)));
   else if (key.presence == Presence::standard)
-    read_value(document, key, path, *toml::parse("value = " + example(key)).get("value"), field);
+    read_value(document, key, path, *parse_toml("value = " + example(key), "").get("value"), field);
 }
 
 /// One table: the kind first, since it says what else belongs there.

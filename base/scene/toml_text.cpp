@@ -1,4 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Some wrong texts ("[" at the end of a line, a date before a blank) are mistakes of its own to toml++: it aborts in
+// debug, and in release tells the compiler that they cannot happen. TOML_ASSERT, its option for what is done then,
+// counts without NDEBUG only. No other source calls its parser, or the linker could take another copy.
+#undef NDEBUG
+namespace
+{
+struct TomlAssertion
+{};
+
+constexpr void toml_assert(bool holds)
+{
+  if (!holds)
+    throw TomlAssertion{};
+}
+} // namespace
+#define TOML_ASSERT(condition) toml_assert(static_cast<bool>(condition))
 #include "base/scene/toml_text.hpp"
 
 #include "base/error.hpp"
@@ -10,57 +26,43 @@ namespace isostat
 {
 namespace
 {
-constexpr std::string_view blanks = " \t";
-constexpr std::string_view white_space = " \t\r\n";
-
-bool is_key_start(char c)
-{
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-         std::string_view("_-\"'").find(c) != std::string_view::npos;
-}
-
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
 
-/// Goes through a text once, knowing strings and comments only, and stops at what toml++ must not see.
+/// Goes through a text once, knowing strings and comments only, and stops at letters for which toml++ has undefined
+/// behaviour: it asks whether they are blanks, in a function that is defined for some of them.
 class Scan
 {
 public:
   explicit Scan(std::string_view text) : text_(text) {}
 
-  /// What is wrong, empty if nothing is; at() is where.
-  std::string_view problem()
+  /// Whether there is such a letter; at() is where.
+  bool finds_one()
   {
     for (at_ = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0; at_ < text_.size(); ++at_)
-      {
-        const char c = text_[at_];
-        if (c == '#')
-          at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
-        else if (c == '"' || c == '\'')
-          {
-            if (!skip_string(c))
-              return "a letter beyond ASCII after a backslash";
-          }
-        else if (!is_ascii(c))
-          return "a letter beyond ASCII outside of quotes";
-        else if (c == '[' && line_is_blank_ && depth_ == 0)
-          {
-            if (!skip_header_start())
-              return "a table header is cut off here";
-            in_header_ = true;
-          }
-        else if (!in_header_)
-          depth_ = std::max(0, depth_ + (c == '[' || c == '{') - (c == ']' || c == '}'));
-        in_header_ = in_header_ && c != '\n';
-        line_is_blank_ = c == '\n' || (line_is_blank_ && blanks.find(c) != std::string_view::npos);
-      }
-    return {};
+      if (const char c = text_[at_]; c == '#')
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      else if ((c == '"' || c == '\'') && string_may_begin())
+        {
+          if (!skip_string(c))
+            return true;
+        }
+      else if (!is_ascii(c))
+        return true;
+    return false;
   }
 
   std::size_t at() const { return std::min(at_, text_.size()); }
 
 private:
-  /// From an opening quote to the last closing one. toml++ asks of the first letter behind a backslash, or behind the
-  /// line break that a backslash hides, whether it is a blank: false if that letter is not ASCII.
+  /// Behind a word a quote is a letter of a wrong word, which toml++ reads on.
+  bool string_may_begin() const
+  {
+    return at_ == 0 || !is_ascii(text_[at_ - 1]) ||
+           std::string_view(" \t\r\n=,[{.").find(text_[at_ - 1]) != std::string_view::npos;
+  }
+
+  /// From an opening quote to the last closing one. The first letter behind a backslash, or behind the line break that
+  /// a backslash hides, is looked at as one outside of quotes: false if that letter is not ASCII.
   bool skip_string(char quote)
   {
     const bool multi_line = text_.substr(at_, 3) == std::string(3, quote);
@@ -69,7 +71,7 @@ private:
       {
         if (text_[at_] == '\\' && quote == '"')
           {
-            const std::size_t next = text_.find_first_not_of(white_space, at_ + 1);
+            const std::size_t next = text_.find_first_not_of(" \t\r\n\v\f", at_ + 1);
             if (multi_line && next != std::string_view::npos && !is_ascii(text_[next]))
               return false;
             ++at_;
@@ -87,37 +89,39 @@ private:
     return true;
   }
 
-  /// The brackets of "[table]" or "[[table]]", up to before the key: false if none begins there.
-  bool skip_header_start()
-  {
-    const std::size_t start = at_;
-    const auto next = [&] { return std::min(text_.find_first_not_of(blanks, at_ + 1), text_.size()); };
-    if (next() < text_.size() && text_[next()] == '[')
-      at_ = next();
-    const std::size_t key = next();
-    if (key == text_.size() || text_[key] == ']' || is_key_start(text_[key])) // of a missing key toml++ speaks itself
-      return true;
-    at_ = start;
-    return false;
-  }
-
   std::string_view text_;
   std::size_t at_ = 0;
-  int depth_ = 0; ///< open brackets of arrays and inline tables
-  bool in_header_ = false, line_is_blank_ = true;
 };
 
 [[noreturn]] void refuse(const std::string &name, std::size_t line, std::string_view problem)
 {
   throw InputError(fmt::format("{}:{}: is not valid TOML: {}.", name, line, problem));
 }
+
+/// The first line with which the text makes toml++ give up without saying where.
+std::size_t line_of_assertion(std::string_view text)
+{
+  std::size_t line = 1;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n', end + 1), ++line)
+    try
+      {
+        [[maybe_unused]] const toml::table table = toml::parse(text.substr(0, end + 1));
+      }
+    catch (const toml::parse_error &)
+      {}
+    catch (const TomlAssertion &)
+      {
+        break;
+      }
+  return line;
+}
 } // namespace
 
 toml::table parse_toml(std::string_view text, const std::string &name)
 {
-  Scan scan(text);
-  if (const std::string_view problem = scan.problem(); !problem.empty())
-    refuse(name, 1 + std::count(text.begin(), text.begin() + scan.at(), '\n'), problem);
+  if (Scan scan(text); scan.finds_one())
+    refuse(name, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(scan.at()), '\n'),
+           "a letter beyond ASCII outside of quotes, or after a backslash");
   try
     {
       return toml::parse(text, name);
@@ -125,6 +129,10 @@ toml::table parse_toml(std::string_view text, const std::string &name)
   catch (const toml::parse_error &error)
     {
       refuse(name, error.source().begin.line, error.description());
+    }
+  catch (const TomlAssertion &)
+    {
+      refuse(name, line_of_assertion(text), "a key, a value or a table header is cut off here");
     }
 }
 } // namespace isostat

@@ -6,8 +6,7 @@
 
 namespace isostat
 {
-/// The tree of a TOML text, for any bytes. For some wrong texts toml++ 3.3 and 3.4 abort, or are undefined behaviour:
-/// letters beyond ASCII outside of quotes, and a table header that is cut off. These are refused before it sees them.
+/// The tree of a TOML text, for any bytes: toml++ 3.3 and 3.4 alone abort or are undefined for some wrong ones.
 /// @param name  of the file, for messages and for the places of nodes
 /// @throws InputError "name:line: is not valid TOML: ..."
 /// tested: tests/base/scene/toml_text_test.cpp, tests/dem/scene/scene_error_test.cpp, tests/fuzz/scene.cpp

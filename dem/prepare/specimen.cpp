@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/files/hash.hpp"
 #include "base/files/replace_file.hpp"
+#include "base/tell.hpp"
 #include "dem/io/packing_files.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
@@ -256,8 +257,7 @@ void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserv
     }
   catch (const std::exception &error)
     {
-      observer.event(
-          fmt::format("warning: the specimen is not kept, and will be prepared again next time: {}", error.what()));
+      tell(fmt::format("warning: the specimen is not kept, and will be prepared again next time: {}\n", error.what()));
     }
 }
 

@@ -91,9 +91,12 @@ class FailingRuns(AppTest):
                         result, n_in_all = self.run_failing(command, kind, at, calls)
                         tried[kind] += 1
                         if harmless and result.returncode == 0:
-                            if n_in_all >= at:  # how often a leader looks at the files of the queue depends on time
+                            left = results(self.folder / "out")
+                            if "the specimen is not kept" in result.stderr:  # the cache alone is not written
+                                left |= {name: content for name, content in whole.items() if "specimens/" in name}
+                            elif n_in_all >= at:  # how often a leader looks at the files of the queue depends on time
                                 passed_over.add((kind, n_in_all - at))
-                            self.assertEqual(results(self.folder / "out"), whole)
+                            self.assertEqual(left, whole)
                             continue
                         self.assertIn(result.returncode, (1, 2), result.stderr)
                         self.assertIn(os.strerror(errno.ENOSPC), result.stderr)

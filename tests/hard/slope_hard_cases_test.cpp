@@ -125,6 +125,7 @@ TEST(SlopeHardCases, APackingIsShearedToFourHundredPerCent)
 {
   RveSettings settings;
   settings.motion.inertial_number = 1e-3;
+  settings.motion.time_step_safety *= 0.5; // what the refusal of a grain that flies off advises; some packings need it
   settings.frame = column_frame();
   Rve rve(specimen_of_friction(8), settings);
   const double volume = rve.assembly().volume();

@@ -29,8 +29,7 @@ std::string complaint(const std::string &text)
 TEST(TomlText, ATableHeaderThatIsCutOff)
 {
   for (const char *header : {"[\n", "[[\n", "[ \t\n", "[[ \n", "[#\n", "[,]\n", "[=", "[[.a]]", "\t [\r\n", "[\x01]"})
-    EXPECT_THAT(complaint(std::string("a = 1\n") + header),
-                testing::StartsWith("file.toml:2: is not valid TOML: a table header is cut off here"))
+    EXPECT_THAT(complaint(std::string("a = 1\n") + header), testing::StartsWith("file.toml:2: is not valid TOML: "))
         << header;
   EXPECT_THAT(complaint("a = [\n[\n1\n]\n]\n"), "accepted"); // brackets of arrays
   EXPECT_THAT(complaint("a = [{b = \"]\"},\n{b = ']'}] # ]\n[c]\n"), "accepted");
@@ -42,9 +41,9 @@ TEST(TomlText, LettersBeyondAscii)
   for (const char *letter : {"\u00e4", "\u0416", "\u00a0", "\u2003", "\u3042", "\ufb01", "\U0001F600"})
     {
       const std::string problem = "file.toml:2: is not valid TOML: a letter beyond ASCII ";
-      for (const std::string before : {"", "[a", "a ", "a = ", "a = 1", "a = [1", "a = \"b\"", "a = '''\n'''"})
-        EXPECT_THAT(complaint("\n" + before + letter), testing::HasSubstr("a letter beyond ASCII outside of quotes"))
-            << before;
+      for (const std::string before :
+           {"", "[a", "a ", "a = ", "a = 1", "a = +nan\"x", "a = [1", "a = \"b\"", "a = '''\n'''"})
+        EXPECT_THAT(complaint("\n" + before + letter), testing::HasSubstr("a letter beyond ASCII ")) << before;
       EXPECT_THAT(complaint("\na = \"\"\"b\\" + (letter + std::string("\"\"\""))), testing::StartsWith(problem));
       EXPECT_THAT(complaint("\na = \"\"\"b\\  \n  " + (letter + std::string("\"\"\""))), testing::StartsWith(problem));
       EXPECT_EQ(complaint(fmt::format("a = \"{0}\" # {0}\nb = '{0}'\n\"{0}\" = '''{0}\\'''", letter)), "accepted");
@@ -55,6 +54,13 @@ TEST(TomlText, LettersBeyondAscii)
                 .value<int>(),
             1)
       << "a mark of the byte order";
+}
+
+TEST(TomlText, ValuesThatAreCutOff)
+{
+  for (const char *value : {"{b =1979-05-27 1}", "[0.938, }-0.0]", "[,]", "{b=}", "1979-05-27 ]", "[1 2]", "{,}"})
+    EXPECT_THAT(complaint(std::string("\na = ") + value), testing::StartsWith("file.toml:2: is not valid TOML: "))
+        << value;
 }
 
 TEST(TomlText, StringsEndWhereTomlEndsThem)
