@@ -7,8 +7,8 @@
 Packings of 120 grains and their states in situ are stored here, because a preparation of some 100,000 steps ends
 elsewhere with other rounding. The history must have the same bytes on any number of ranks. Against what is stored,
 rounding that differs (another instruction set) grows until single contacts open and close, so: the first two rows agree
-within 1e-6 of the largest value of their kind (all components of a vector are one kind), the others within 3 % (1.5 %
-was seen between SSE, AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ; read the
+within 1e-5 of the largest value of their kind (all components of a vector are one kind), the others within 3 % (4e-6
+and 1.5 % were seen between SSE, AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ; read the
 diff.
 """
 import os
@@ -22,7 +22,7 @@ import tempfile
 from regression_test import table
 
 HERE = pathlib.Path(__file__).resolve().parent / "columns"
-EARLY_ROWS, EARLY, LATE = 2, 1e-6, 0.03
+EARLY_ROWS, EARLY, LATE = 2, 1e-5, 0.03
 LEFT_OUT = re.compile(r"residual|max_ru_|depth")  # differences of nearly equal numbers, and places of a largest value
 RANKS = (1, 2, 3)
 
