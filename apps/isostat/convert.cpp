@@ -19,7 +19,7 @@ struct ConvertLine
 {
   std::string in, out, format, unit, density = "2650 kg/m3";
   double scale = 1;
-  bool overwrite = false;
+  bool overwrite = false, scale_named = false;
   ConvertOptions options;
 };
 
@@ -33,9 +33,13 @@ void add_options(CLI::App &line, ConvertLine &asked)
       ->required();
   line.add_option("--to", asked.format,
                   "specimen, lammps-dump, lammps-data, yade, csv or vtp, where the ending is another");
-  CLI::Option *scale = line.add_option("--scale", asked.scale, "metres in a unit of length of IN, such as 1e-3");
-  line.add_option("--length-unit", asked.unit, "unit of length of IN: m, cm, mm or um")->excludes(scale);
-  line.add_option("--density", asked.density, "of the grains, where IN does not say it; default 2650 kg/m3");
+  CLI::Option *scale = line.add_option("--scale", asked.scale, "metres in a unit of length of IN, such as 1e-3")
+                           ->each([&asked](const std::string &) { asked.scale_named = true; });
+  line.add_option("--length-unit", asked.unit, "unit of length of IN: m, cm, mm or um")
+      ->excludes(scale)
+      ->each([&asked](const std::string &) { asked.scale_named = true; });
+  line.add_option("--density", asked.density, "of the grains, where IN does not say it; default 2650 kg/m3")
+      ->each([&asked](const std::string &) { asked.options.density_named = true; });
   line.add_option("--domain", asked.options.domain, "rigid-box or periodic-cell, where IN does not say it")
       ->check(CLI::IsMember({"rigid-box", "periodic-cell"}));
   line.add_flag("--anyway", asked.options.anyway, "writes what the checks refuse");
@@ -63,6 +67,7 @@ void run(ConvertLine asked)
   };
   asked.options.read.scale =
       asked.unit.empty() ? asked.scale : quantity("--length-unit", "1 " + asked.unit, Dimension::length);
+  asked.options.metres_named = asked.scale_named && asked.options.read.scale == 1;
   asked.options.read.density = quantity("--density", asked.density, Dimension::density);
   const CheckedPacking packing = read_any_packing(asked.in, asked.options);
   std::vector<std::string> notes = packing.notes;

@@ -19,6 +19,8 @@
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/file_format.hpp"
+#include "base/tell.hpp"
+#include "dem/assembly/assembly.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_file.hpp"
 
@@ -71,13 +73,30 @@ std::vector<fs::path> snapshot_files(const fs::path &results)
   return files;
 }
 
+/// A specimen that was stored without contacts, as one converted from another program is, with those of the pairs that
+/// overlap: normal forces of its law, no shear forces.
+Snapshot with_contacts(const Snapshot &stored, const fs::path &path)
+{
+  if (!stored.contacts.empty() || !stored.wall_contacts.empty())
+    return stored;
+  Assembly assembly(stored, {.time_step = 1e-12}); // s; forces are evaluated, nothing moves
+  assembly.compute_forces();
+  Snapshot state = assembly.snapshot();
+  for (Contact &contact : state.contacts)
+    contact.history.shear_force = contact.history.bending_moment = contact.history.twisting_moment = Vec3::Zero();
+  tell(fmt::format("warning: {}: it is stored without contacts, as packings of other programs are. Its {} contacts are "
+                   "the pairs that overlap, with the normal forces of the law in the file, without shear forces.\n",
+                   path.string(), state.contacts.size()));
+  return state;
+}
+
 /// Reads a stored snapshot, or the state of a specimen; the root attribute `format` tells them apart.
 /// @throws InputError  missing, truncated or not HDF5; HDF5 of another program
 Snapshot read_stored_snapshot(const fs::path &path)
 {
   const std::string format = format_of(hdf5::File::open(path).root());
   if (format == "isostat-specimen")
-    return read_specimen(path).state;
+    return with_contacts(read_specimen(path).state, path);
   if (format != "isostat-snapshot")
     throw InputError(fmt::format(
         "{}: {}, expected format = \"isostat-snapshot\" or \"isostat-specimen\". {}.", path.string(),
@@ -85,6 +104,7 @@ Snapshot read_stored_snapshot(const fs::path &path)
         remedy));
   return read_snapshot_file(path);
 }
+
 /// All tables of a series, grown snapshot by snapshot.
 class Tables
 {

@@ -13,18 +13,17 @@ namespace isostat
 /// outside the cell are moved into it by whole edges. A domain that is periodic along some axes only has no place here.
 ///
 /// A dump is that of `dump custom` with the columns x y z (or xu yu zu) and radius or diameter, and, if they are there,
-/// id, vx vy vz, omegax omegay omegaz; of several frames the last is taken. Boundaries `pp pp pp` are a periodic cell,
-/// any others walls at the faces of the simulation box.
-/// @param density  of the grains, kg/m3: a dump does not say it
+/// id, vx vy vz, omegax omegay omegaz, mass, density; of several frames the last is taken. Boundaries `pp pp pp` are a
+/// periodic cell, any others walls at the faces of the simulation box; a dump without them is as a data file.
 /// @throws InputError that begins with file:line
 /// tested: tests/dem/io/lammps_test.cpp
-ForeignPacking read_lammps_dump(const std::filesystem::path &path, const Law &law, double density);
+ForeignPacking read_lammps_dump(const std::filesystem::path &path, const ReadOptions &options);
 
 /// A data file says neither whether it is periodic nor, unless it leans, what its faces are: one that leans, or whose
-/// first line says `periodic cell` as Isostat writes it, is a periodic cell, any other a box. The density is that of
-/// the file, the same for all atoms.
+/// first line says `periodic cell` as Isostat writes it, is a periodic cell; a first line `rigid box` is a box; any
+/// other is what options.domain says. The density is that of the file, the same for all atoms.
 /// @throws InputError that begins with file:line
-ForeignPacking read_lammps_data(const std::filesystem::path &path, const Law &law);
+ForeignPacking read_lammps_data(const std::filesystem::path &path, const ReadOptions &options);
 
 /// One frame: id type x y z radius vx vy vz omegax omegay omegaz. Comes back to the bit; the edges of a cell that leans
 /// to round-off, because a dump holds the bounds of the leaning box.

@@ -5,6 +5,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -29,6 +30,15 @@ void LammpsBox::set_bounds(const RigidBox &bounds)
   const RigidBox lean = this->bounds();
   lower = bounds.lower - lean.lower;
   upper = bounds.upper - lean.upper;
+}
+
+std::pair<bool, std::string> LammpsBox::assumed_periodic(const std::string &domain, const char *file) const
+{
+  if (leans())
+    return {true, fmt::format("The {} leans: it is taken for a periodic cell.", file)};
+  if (domain == "periodic-cell")
+    return {true, ""};
+  return {false, fmt::format("A {} does not say what bounds it: the faces are taken for walls.", file)};
 }
 
 void LammpsBox::bound(Snapshot &snapshot, bool periodic) const

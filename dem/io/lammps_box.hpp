@@ -2,6 +2,9 @@
 #pragma once
 #include "dem/state/snapshot.hpp"
 
+#include <string>
+#include <utility>
+
 namespace isostat
 {
 /// The simulation box of LAMMPS: right-angled, or leaning by xy, xz, yz (m).
@@ -17,6 +20,9 @@ struct LammpsBox
   RigidBox bounds() const;
   /// Takes lower and upper from these bounds.
   void set_bounds(const RigidBox &bounds);
+  /// Whether it repeats itself where its file does not say so: it leans, or the caller knows.
+  /// @return the note for the user where it had to be assumed, else empty
+  std::pair<bool, std::string> assumed_periodic(const std::string &domain, const char *file) const;
   /// Becomes the walls or the cell of a packing.
   void bound(Snapshot &snapshot, bool periodic) const;
 };

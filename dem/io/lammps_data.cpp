@@ -24,7 +24,7 @@ struct DataFile
   std::size_t line = 0; ///< that is being read, from 1
   LammpsBox box;
   std::array<bool, 3> bounded{};
-  double n_atoms = -1, density = -1;
+  double n_atoms = -1;
   SphereTable spheres;
   std::unordered_map<std::uint32_t, std::size_t> index_of_id;
 
@@ -72,10 +72,7 @@ struct DataFile
   void atom(const Words &words)
   {
     const std::vector<double> v = numbers(words, 7);
-    if (density >= 0 && v[3] != density)
-      refuse(fmt::format("density {} kg/m3, above it is {}; expected one density: Isostat has no packings of several",
-                         v[3], density));
-    density = v[3];
+    spheres.densities.push_back(v[3]);
     spheres.ids.push_back(grain_id(path, line, v[0], 1));
     spheres.radii.push_back(v[2] / 2);
     spheres.centres.emplace_back(v[4], v[5], v[6]);
@@ -126,13 +123,17 @@ void read_line(DataFile &data, std::string_view text, std::string &section)
 }
 } // namespace
 
-ForeignPacking read_lammps_data(const fs::path &path, const Law &law)
+ForeignPacking read_lammps_data(const fs::path &path, const ReadOptions &options)
 {
   const std::string text = read_text(path);
   const std::vector<std::string_view> lines = split_lines(text);
   DataFile data;
   data.path = path;
   std::string section;
+  const std::string_view title = lines.empty() ? "" : lines[0];
+  if (const std::size_t units = title.find("units = "); units != std::string_view::npos)
+    if (const Words said = split_words(title.substr(units + 8)); !said.empty() && said[0] != "si")
+      reject(path, 1, fmt::format("units {}; expected si. Write the file in a run with `units si`", said[0]));
   for (std::size_t l = 1; l < lines.size(); ++l) // the first line is a title
     {
       data.line = l + 1;
@@ -141,22 +142,26 @@ ForeignPacking read_lammps_data(const fs::path &path, const Law &law)
   if (!std::ranges::all_of(data.bounded, [](bool there) { return there; }))
     throw InputError(
         fmt::format("{}: the box is not complete; expected lines `lo hi xlo xhi`, ylo yhi and zlo zhi", path.string()));
-  if (data.n_atoms >= 0 && data.n_atoms != static_cast<double>(data.spheres.centres.size()))
+  if (data.n_atoms < 0)
+    throw InputError(fmt::format("{}: no line `N atoms`; expected one in the header", path.string()));
+  if (data.n_atoms != static_cast<double>(data.spheres.centres.size()))
     throw InputError(fmt::format("{}: {} atoms are promised, {} are there; is the file cut off?", path.string(),
                                  data.n_atoms, data.spheres.centres.size()));
   data.spheres.check(path);
   ForeignPacking found;
-  const bool says_periodic = lines[0].find("periodic cell") != std::string_view::npos;
-  const bool says_box = lines[0].find("rigid box") != std::string_view::npos;
-  const bool periodic = data.box.leans() || says_periodic;
-  if (!says_periodic && !says_box)
-    found.notes.emplace_back(periodic ? "The data file leans: it is taken for a periodic cell."
-                                      : "A data file does not say what bounds it: the faces are taken for walls.");
+  bool periodic = title.find("periodic cell") != std::string_view::npos;
+  if (!periodic && title.find("rigid box") == std::string_view::npos)
+    {
+      const auto [assumed, note] = data.box.assumed_periodic(options.domain, "data file");
+      periodic = assumed;
+      if (!note.empty())
+        found.notes.push_back(note);
+    }
   if (!periodic)
     data.spheres.check_inside(path, {data.box.lower, data.box.upper});
   data.box.bound(found.state, periodic);
-  found.state.law = law;
-  found.state.grains = data.spheres.packing(data.density);
+  found.state.law = options.law;
+  found.state.grains = data.spheres.packing(data.spheres.density(path, options.density));
   return found;
 }
 

@@ -52,7 +52,7 @@ struct DumpReader
 struct Frame
 {
   LammpsBox box;
-  bool periodic = false;
+  bool periodic = false, says_boundaries = false;
   SphereTable spheres;
 };
 
@@ -71,7 +71,8 @@ void read_bounds(DumpReader &in, const Words &item, Frame &frame)
                     "no packing that is periodic along some axes only",
                     fmt::join(item.end() - std::min<std::size_t>(3, item.size()), item.end(), " ")));
   frame.periodic = n_periodic == 3;
-  if (leans && !frame.periodic)
+  frame.says_boundaries = item.size() >= (leans ? 9 : 6); // ITEM: BOX BOUNDS [xy xz yz] xx yy zz
+  if (leans && frame.says_boundaries && !frame.periodic)
     in.refuse("a leaning box with walls; expected pp pp pp: the walls of Isostat stand at right angles");
   RigidBox bounds;
   double *const tilt[] = {&frame.box.xy, &frame.box.xz, &frame.box.yz};
@@ -94,8 +95,8 @@ void read_atoms(DumpReader &in, const Words &item, std::size_t n_atoms, Frame &f
 {
   const SphereColumns columns({item.begin() + 2, item.end()}, 1);
   if (const std::string missing = columns.missing(); !missing.empty())
-    in.refuse(
-        fmt::format("the dump has not {}; write it with `dump ID all custom N FILE id type x y z radius`", missing));
+    in.refuse(fmt::format("the dump does not have {}; write it with `dump ID all custom N FILE id type x y z radius`",
+                          missing));
   for (std::size_t i = 0; i < n_atoms; ++i)
     {
       const std::string_view line = in.take();
@@ -127,7 +128,7 @@ Frame read_frame(DumpReader &in)
 }
 } // namespace
 
-ForeignPacking read_lammps_dump(const fs::path &path, const Law &law, double density)
+ForeignPacking read_lammps_dump(const fs::path &path, const ReadOptions &options)
 {
   const std::string text = read_text(path);
   DumpReader in{path, split_lines(text)};
@@ -142,11 +143,18 @@ ForeignPacking read_lammps_dump(const fs::path &path, const Law &law, double den
   ForeignPacking found;
   if (n_frames > 1)
     found.notes.push_back(fmt::format("The dump has {} frames: the last one is taken.", n_frames));
+  if (!frame.says_boundaries)
+    {
+      const auto [assumed, note] = frame.box.assumed_periodic(options.domain, "dump without boundaries");
+      frame.periodic = assumed;
+      if (!note.empty())
+        found.notes.push_back(note);
+    }
   if (!frame.periodic)
     frame.spheres.check_inside(path, {frame.box.lower, frame.box.upper});
   frame.box.bound(found.state, frame.periodic);
-  found.state.law = law;
-  found.state.grains = frame.spheres.packing(density);
+  found.state.law = options.law;
+  found.state.grains = frame.spheres.packing(frame.spheres.density(path, options.density, options.scale));
   return found;
 }
 

@@ -94,13 +94,13 @@ ForeignPacking read_text_file(const fs::path &path, const ReadOptions &options)
   switch (sniffed(path))
     {
     case PackingFormat::lammps_dump:
-      return read_lammps_dump(path, options.law, options.density);
+      return read_lammps_dump(path, options);
     case PackingFormat::lammps_data:
-      return read_lammps_data(path, options.law);
+      return read_lammps_data(path, options);
     case PackingFormat::vtp:
-      return read_grains_vtp(path, options.law, options.density);
+      return read_grains_vtp(path, options);
     default:
-      return read_sphere_text(path, options.law, options.density);
+      return read_sphere_text(path, options);
     }
 }
 } // namespace
@@ -137,9 +137,11 @@ ForeignPacking read_foreign_packing(const fs::path &path, const ReadOptions &opt
       return {import_tables(path, options.law, options.density), {}};
     }
   ForeignPacking found = read_text_file(path, options);
-  if (!(found.state.grains.density > 0))
-    throw InputError(
-        fmt::format("{}: grain density = {} kg/m3; expected > 0", path.string(), found.state.grains.density));
+  if (const double density = found.state.grains.density; !(density > 0 && std::isfinite(density)))
+    throw InputError(fmt::format("{}: grain density = {} kg/m3; expected > 0", path.string(), density));
+  if (const double volume = found.state.volume(); !(volume > 0 && std::isfinite(volume)))
+    throw InputError(fmt::format("{}: the {} has a volume of {}; expected a finite one above 0", path.string(),
+                                 found.state.cell ? "periodic cell" : "box", volume));
   scale_lengths(found.state, options.scale);
   return found;
 }
@@ -177,6 +179,10 @@ std::vector<std::string> write_packing(const fs::path &path, const Specimen &spe
     notes.emplace_back(
         "Contacts with their forces are not kept by this format: a packing that comes back starts without "
         "shear forces, so let a stage `rebalance` come first.");
+  if (s.grains.density != ReadOptions{}.density && format != PackingFormat::lammps_data)
+    notes.push_back(fmt::format("The grain density, {} kg/m3, is not kept by this format: name it where the file is "
+                                "read, --density \"{} kg/m3\".",
+                                s.grains.density, s.grains.density));
   const bool lammps = format == PackingFormat::lammps_dump || format == PackingFormat::lammps_data;
   if (lammps && !fits_lammps(s))
     notes.emplace_back(

@@ -23,14 +23,6 @@ enum class PackingFormat
 PackingFormat format_named(const std::string &name);
 PackingFormat format_of_file(const std::filesystem::path &path);
 
-/// What a file of another program does not say.
-struct ReadOptions
-{
-  Law law;               ///< of contacts to come
-  double density = 2650; ///< of the grains, kg/m3; a LAMMPS data file says its own
-  double scale = 1;      ///< metres in the unit of length of the file: 1e-3 if it is in mm; also of velocities
-};
-
 /// Resting or moving spheres of a file that is not HDF5: LAMMPS dump and data file, VTP, text of YADE, CSV; or the
 /// folder of tables with contact history (text_tables.hpp; metres only). Units are not judged: see packing_check.hpp.
 /// @throws InputError  file:line where it has lines

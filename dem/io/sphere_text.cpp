@@ -34,12 +34,9 @@ bool numbers_behind(const Words &words, std::array<double, n> &values)
   return good;
 }
 
-/// Takes up `# box` and `# cell`; any other comment says nothing.
-void read_comment(const fs::path &path, std::size_t line, std::string_view text, Bounds &bounds)
+/// Takes up `# box`, `# cell` and `##PERIODIC::`; any other comment says nothing of the domain.
+void read_bounds(const fs::path &path, std::size_t line, const Words &words, std::string_view text, Bounds &bounds)
 {
-  const Words words = split_words(text.substr(text.find('#') + 1));
-  if (words.empty())
-    return;
   if (words[0] == "box")
     {
       std::array<double, 6> v{};
@@ -60,6 +57,19 @@ void read_comment(const fs::path &path, std::size_t line, std::string_view text,
                            text));
       bounds.cell = cell;
     }
+  if (words[0] == "#PERIODIC::")
+    {
+      std::array<double, 3> v{};
+      const double volume = numbers_behind(words, v) ? v[0] * v[1] * v[2] : 0;
+      if (!(*std::ranges::min_element(v) > 0 && volume > 0 && std::isfinite(volume)))
+        reject(path, line,
+               fmt::format("\"{}\"; expected ##PERIODIC:: x y z, three edges of a cell above 0 (m): Isostat has no "
+                           "packing that is periodic along some axes only",
+                           text));
+      bounds.cell = PeriodicCell::with_edges(Vec3(v.data()));
+    }
+  if (bounds.box && bounds.cell)
+    reject(path, line, "a second domain: the file has a box and a periodic cell; expected one of them");
 }
 
 /// A line of words only, such as `x y z r`.
@@ -69,42 +79,123 @@ bool is_header(std::string_view text)
   return std::ranges::none_of(split_words(text), [&](std::string_view word) { return parse(word, ignored); });
 }
 
-SphereTable read_rows(const fs::path &path, const std::string &text, Bounds &bounds)
+/// Names of columns: between commas if there are any, else between blanks, each with its unit, `x (m)`.
+Words header_names(std::string_view text)
 {
-  const SphereColumns plain({"x", "y", "z", "r"});
-  SphereColumns columns = plain;
+  if (text.find(',') != std::string_view::npos)
+    return split_commas(text);
+  Words names;
+  for (const std::string_view word : split_words(text))
+    if (names.empty() || (word.front() != '(' && word.front() != '['))
+      names.push_back(word);
+    else
+      names.back() = std::string_view(names.back().data(), word.data() + word.size() - names.back().data());
+  return names;
+}
+
+/// Rows of spheres, whose columns follow from a header, a comment, or how many there are.
+struct RowReader
+{
+  const fs::path &path;
+  double scale;
+  Bounds bounds;
   SphereTable table;
-  std::string missing; // from a header
-  bool header_seen = false, named = false;
+  std::optional<SphereColumns> columns, of_comment;
+  std::string missing;     ///< from a header that names other things
+  std::size_t unnamed = 0; ///< columns, where nothing names them
+
+  void check_units(std::size_t line) const
+  {
+    if (const std::string wrong = columns->wrong_unit(scale); !wrong.empty())
+      reject(path, line, wrong);
+  }
+
+  void comment(std::size_t line, std::string_view text)
+  {
+    const std::string_view said = text.substr(text.find('#') + 1);
+    const Words words = split_words(said);
+    if (words.empty())
+      return;
+    read_bounds(path, line, words, text, bounds);
+    if (!table.centres.empty())
+      return;
+    if (words[0] == "format" && words.size() == 2)
+      format(line, words[1]);
+    else if (const SphereColumns found(header_names(said)); found.missing().empty())
+      of_comment = found;
+  }
+
+  /// `x_y_z_r_matId`
+  void format(std::size_t line, std::string_view text)
+  {
+    Words names;
+    for (std::size_t end = 0; end < text.size(); text.remove_prefix(std::min(end + 1, text.size())))
+      {
+        end = std::min(text.find('_'), text.size());
+        names.push_back(text.substr(0, end));
+      }
+    const bool any_more = !names.empty() && names.back() == "attrs";
+    if (any_more)
+      names.pop_back();
+    columns.emplace(names, 0, any_more);
+    if (const std::string lacks = columns->missing(); !lacks.empty())
+      reject(path, line, fmt::format("this format does not have {}; expected one such as x_y_z_r_matId", lacks));
+  }
+
+  void header(std::size_t line, std::string_view text)
+  {
+    const SphereColumns found(header_names(text));
+    missing = found.missing();
+    columns = missing.empty() ? found : SphereColumns({"x", "y", "z", "r"});
+    check_units(line);
+  }
+
+  void row(std::size_t line, std::string_view text)
+  {
+    const std::size_t n = split_words(text).size();
+    if (table.centres.empty() && of_comment && of_comment->n_columns() == n)
+      {
+        columns = of_comment;
+        check_units(line);
+      }
+    if (!missing.empty() && n != 4)
+      reject(path, line,
+             fmt::format("the header above does not have {}; expected columns x, y, z and r or diameter (m). Is it a "
+                         "packing?",
+                         missing));
+    if (!columns && (n == 4 || n == 5))
+      {
+        columns = n == 4 ? SphereColumns({"x", "y", "z", "r"}) : SphereColumns({"x", "y", "z", "r", "clumpId"});
+        unnamed = n;
+      }
+    if (!columns || (unnamed > 0 && n != unnamed))
+      reject(path, line,
+             fmt::format("\"{}\"; expected four numbers x y z r (m) in every line, or five with the clump id", text));
+    columns->read(path, line, text, table);
+  }
+};
+
+RowReader read_rows(const fs::path &path, const std::string &text, double scale)
+{
+  RowReader reader{path, scale, {}, {}, {}, {}, {}, 0};
+  bool header_seen = false;
   const std::vector<std::string_view> lines = split_lines(text);
   for (std::size_t l = 0; l < lines.size(); ++l)
     {
-      Words words = split_words(lines[l]);
+      const Words words = split_words(lines[l]);
       if (words.empty())
         continue;
-      if (words[0].starts_with('#'))
-        read_comment(path, l + 1, lines[l], bounds);
-      else if (table.centres.empty() && !header_seen && is_header(lines[l]))
+      if (words[0].front() == '#')
+        reader.comment(l + 1, lines[l]);
+      else if (reader.table.centres.empty() && !header_seen && is_header(lines[l]))
         {
           header_seen = true;
-          if (lines[l].starts_with(',')) // a column without a name, as pandas writes it
-            words.insert(words.begin(), "");
-          const SphereColumns of_header(words);
-          missing = of_header.missing();
-          named = missing.empty();
-          columns = named ? of_header : plain;
+          reader.header(l + 1, lines[l]);
         }
-      else if (header_seen && !named && words.size() != 4)
-        reject(
-            path, l + 1,
-            fmt::format("the header above has not {}; expected columns x, y, z and r or diameter (m). Is it a packing?",
-                        missing));
-      else if (!named && words.size() != 4)
-        reject(path, l + 1, fmt::format("\"{}\"; expected four numbers x y z r (m)", lines[l]));
       else
-        columns.read(path, l + 1, lines[l], table);
+        reader.row(l + 1, lines[l]);
     }
-  return table;
+  return reader;
 }
 
 std::string bounds_text(const Snapshot &s)
@@ -116,14 +207,15 @@ std::string bounds_text(const Snapshot &s)
 }
 } // namespace
 
-ForeignPacking read_sphere_text(const fs::path &path, const Law &law, double density)
+ForeignPacking read_sphere_text(const fs::path &path, const ReadOptions &options)
 {
   const std::string text = read_text(path);
-  Bounds bounds;
-  const SphereTable table = read_rows(path, text, bounds);
+  const RowReader rows = read_rows(path, text, options.scale);
+  const SphereTable &table = rows.table;
+  const Bounds &bounds = rows.bounds;
   table.check(path);
   ForeignPacking found;
-  found.state.law = law;
+  found.state.law = options.law;
   found.state.cell = bounds.cell;
   if (!bounds.cell && !bounds.box)
     found.notes.emplace_back("The file has no line `# box xlo xhi ylo yhi zlo zhi`: the bounding box of the spheres is "
@@ -133,7 +225,7 @@ ForeignPacking read_sphere_text(const fs::path &path, const Law &law, double den
       found.state.box = bounds.box ? *bounds.box : table.bounding_box();
       table.check_inside(path, found.state.box);
     }
-  found.state.grains = table.packing(density);
+  found.state.grains = table.packing(table.density(path, options.density, options.scale));
   return found;
 }
 

@@ -176,7 +176,7 @@ Snapshot import_tables(const fs::path &path, const Law &law, double density)
     throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
   std::error_code ignored;
   if (!fs::is_directory(path, ignored))
-    return read_sphere_text(path, law, density).state;
+    return read_sphere_text(path, {law, density}).state;
   Snapshot snapshot;
   snapshot.law = law;
   read_tables(path, density, snapshot);

@@ -23,11 +23,11 @@ std::vector<double> grain_pressure(const Snapshot &snapshot);
 void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
 
 /// Grains from such a file, or from one of another program with points, point data `radius` (m) and, if they are there,
-/// id, velocity, spin and the field data; ascii, or base64 without compression. Brings back every bit of what is named
-/// here; contacts, law and density are not in the file.
-/// @param density  kg/m3     @throws InputError
+/// id, velocity, spin, density, mass and the field data; ascii, or base64 without compression, in one piece. Brings
+/// back every bit of what is named above; contacts, law and density are not in a file of Isostat.
+/// @throws InputError
 /// tested: tests/dem/io/packing_files_test.cpp
-ForeignPacking read_grains_vtp(const std::filesystem::path &path, const Law &law, double density);
+ForeignPacking read_grains_vtp(const std::filesystem::path &path, const ReadOptions &options);
 
 /// Writes the force chains: one line between the centres of each touching pair, with point data normal_force and
 /// shear_force (N, magnitudes), sliding and rolling (0 or 1), the same at both ends, so that the filter "Tube" can vary

@@ -124,6 +124,8 @@ SphereTable read_points(const Arrays &arrays, const pugi::xml_node &piece)
   table.radii = arrays.named(data, "radius");
   table.velocities = vectors(arrays.named(data, "velocity"));
   table.spins = vectors(arrays.named(data, "spin"));
+  table.densities = arrays.named(data, "density");
+  table.masses = arrays.named(data, "mass");
   for (const double id : arrays.named(data, "id"))
     {
       if (!is_count(id))
@@ -135,16 +137,17 @@ SphereTable read_points(const Arrays &arrays, const pugi::xml_node &piece)
     arrays.refuse(fmt::format("{} points, but {} are promised; is the file cut off?", n,
                               piece.attribute("NumberOfPoints").value()));
   const auto fits = [&](std::size_t size) { return size == 0 || size == n; };
-  if (table.radii.size() != n || !fits(table.velocities.size()) || !fits(table.spins.size()) || !fits(table.ids.size()))
+  if (table.radii.size() != n || !fits(table.velocities.size()) || !fits(table.spins.size()) ||
+      !fits(table.ids.size()) || !fits(table.densities.size()) || !fits(table.masses.size()))
     arrays.refuse(
         fmt::format("{} points with {} radii; expected point data `radius` (m), one for each point, and as many "
-                    "of id, velocity and spin if there are any",
+                    "of id, velocity, spin, density and mass if there are any",
                     n, table.radii.size()));
   return table;
 }
 } // namespace
 
-ForeignPacking read_grains_vtp(const fs::path &path, const Law &law, double density)
+ForeignPacking read_grains_vtp(const fs::path &path, const ReadOptions &options)
 {
   pugi::xml_document document;
   const std::string text = read_text(path);
@@ -159,14 +162,22 @@ ForeignPacking read_grains_vtp(const fs::path &path, const Law &law, double dens
     arrays.refuse(
         "compressed; expected ascii, or binary without compression. Save it from ParaView with data mode ASCII");
   arrays.header_bytes = std::string(file.attribute("header_type").value()) == "UInt64" ? 8 : 4;
+  if (std::string(file.attribute("byte_order").value()) == "BigEndian")
+    arrays.refuse("its bytes are in the order of another processor (BigEndian); expected LittleEndian, or ascii");
+  if (data.child("Piece").next_sibling("Piece"))
+    arrays.refuse("several pieces; expected one with all grains. Save it from ParaView after the filter Merge Blocks");
   const SphereTable table = read_points(arrays, data.child("Piece"));
   table.check(path);
   const std::vector<double> box = arrays.named(data.child("FieldData"), "box"),
                             cell = arrays.named(data.child("FieldData"), "cell");
   ForeignPacking found;
-  found.state.law = law;
-  found.state.grains = table.packing(density);
-  if (cell.size() == 9)
+  found.state.law = options.law;
+  found.state.grains = table.packing(table.density(path, options.density, options.scale));
+  if ((!cell.empty() && cell.size() != 9) || (!box.empty() && box.size() != 6))
+    arrays.refuse(fmt::format("field data `box` of {} or `cell` of {} numbers; expected 6 (lower and upper corner, m) "
+                              "or 9 (three edges, m)",
+                              box.size(), cell.size()));
+  if (!cell.empty())
     {
       found.state.cell.emplace();
       found.state.cell->edges = Eigen::Map<const Mat3>(cell.data());
@@ -175,7 +186,7 @@ ForeignPacking read_grains_vtp(const fs::path &path, const Law &law, double dens
         arrays.refuse("the field data `cell` span no volume; expected nine numbers, three right-handed edges (m)");
       return found;
     }
-  if (box.size() == 6)
+  if (!box.empty())
     found.state.box = {Vec3(box.data()), Vec3(box.data() + 3)};
   else
     {

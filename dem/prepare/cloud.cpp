@@ -128,8 +128,8 @@ CloudSize cloud_size(const GradingSpec &spec, const std::vector<double> &diamete
   return {std::cbrt(solid / spec.solid_fraction), upscaling};
 }
 
-/// Centres of spheres in the cube 0 ... edge, in the order of `radii` (decreasing).
-std::vector<Vec3> placed_at_random(const std::vector<double> &radii, double edge, const GradingSpec &spec)
+/// Centres of spheres in the cube 0 ... edge, in the order of `radii` (decreasing), up to the one that finds no place.
+std::vector<Vec3> placed_at_random(const std::vector<double> &radii, double edge, std::uint64_t seed)
 {
   PlacedSpheres placed(edge, radii.size());
   for (std::size_t grain = 0; grain < radii.size(); ++grain)
@@ -140,12 +140,8 @@ std::vector<Vec3> placed_at_random(const std::vector<double> &radii, double edge
       do
         {
           if (attempt == max_attempts)
-            throw RunFailure(
-                fmt::format("cloud: grain {} of {} (diameter {:.3g} m) found no free place in {} attempts at "
-                            "grading.solid_fraction = {:g}. Lower solid_fraction (0.33 is safe), or try "
-                            "another seed.",
-                            grain + 1, radii.size(), 2 * radius, max_attempts, spec.solid_fraction));
-          const auto u = uniform(spec.seed, RandomStream::cloud, grain, attempt++);
+            return placed.all_centres();
+          const auto u = uniform(seed, RandomStream::cloud, grain, attempt++);
           for (int k = 0; k < 3; ++k)
             centre[k] = std::min(radius + u[k] * (upper - radius), upper);
         }
@@ -153,6 +149,27 @@ std::vector<Vec3> placed_at_random(const std::vector<double> &radii, double edge
       placed.add(centre, radius);
     }
   return placed.all_centres();
+}
+
+/// What helps where a cloud is too dense: few grains are placed at lower fractions until there is room for all.
+std::string remedy(const std::vector<double> &radii, double edge, const GradingSpec &spec)
+{
+  constexpr std::size_t few = 1000;
+  for (int percent = static_cast<int>(100 * spec.solid_fraction); radii.size() <= few && --percent > 0;)
+    if (const double fraction = percent / 100.0;
+        placed_at_random(radii, edge * std::cbrt(spec.solid_fraction / fraction), spec.seed).size() == radii.size())
+      return fmt::format("There is room at grading.solid_fraction = {:g}. More grains, a narrower grading or another "
+                         "seed may help, too: the faces of the cube keep some room from few grains.",
+                         fraction);
+  return "Lower grading.solid_fraction, take a narrower grading, or try another seed.";
+}
+
+[[noreturn]] void refuse(const std::vector<double> &radii, std::size_t n_placed, double edge, const GradingSpec &spec)
+{
+  throw RunFailure(fmt::format("cloud: grain {} of {} (diameter {:.3g} m) found no free place in {} attempts at "
+                               "grading.solid_fraction = {:g}. {}",
+                               n_placed + 1, radii.size(), 2 * radii[n_placed], max_attempts, spec.solid_fraction,
+                               remedy(radii, edge, spec)));
 }
 } // namespace
 
@@ -172,7 +189,9 @@ Cloud make_cloud(const GradingSpec &spec)
                                  "than the cube of the cloud, {:g} m. Take more grains or a lower solid_fraction.",
                                  spec.grains, spec.solid_fraction, 2 * radii.front(), size.edge));
 
-  const std::vector<Vec3> centres = placed_at_random(radii, size.edge, spec);
+  const std::vector<Vec3> centres = placed_at_random(radii, size.edge, spec.seed);
+  if (centres.size() < radii.size())
+    refuse(radii, centres.size(), size.edge, spec);
   const std::vector<std::uint32_t> order = morton_order(centres);
   std::vector<Vec3> stored_centres(order.size());
   std::vector<double> stored_radii(order.size());

@@ -5,6 +5,7 @@
 #include "dem/prepare/packing_check.hpp"
 #include "dem/scene/scene.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -27,18 +28,28 @@ void set_domain(Snapshot &s, const std::string &file, const std::string &domain)
   s.wall_contacts.clear();
 }
 
-std::vector<std::string> checked(const Snapshot &state, const std::string &file, bool anyway)
+std::vector<std::string> checked(const Snapshot &state, const std::string &file, const ConvertOptions &options)
 {
+  const double largest = options.metres_named ? largest_radius : largest_radius_of_file;
   try
     {
-      return check_packing(state, file, [](const std::string &unit) { return "give --length-unit " + unit; });
+      return check_packing(
+          state, file, [](const std::string &unit) { return "give --length-unit " + unit; }, largest);
     }
   catch (const InputError &error)
     {
-      if (!anyway)
+      if (!options.anyway)
         throw;
       return {error.what()};
     }
+}
+
+void note_density(double is, const ConvertOptions &options, std::vector<std::string> &notes)
+{
+  if (options.density_named && std::abs(is / options.read.density - 1) > 1e-3)
+    notes.push_back(
+        fmt::format("The file says a grain density of {:g} kg/m3, which is taken: {:g} kg/m3 has no effect.", is,
+                    options.read.density));
 }
 } // namespace
 
@@ -51,13 +62,17 @@ CheckedPacking read_any_packing(const std::string &file, const ConvertOptions &o
         throw InputError(fmt::format("{}: a file of Isostat is in SI and holds forces; expected a scale of 1", file));
       CheckedPacking packing{read_stored_packing(place.path, place.entry), {}};
       set_domain(packing.specimen.state, file, options.domain);
+      note_density(packing.specimen.state.grains.density, options, packing.notes);
       return packing;
     }
-  ForeignPacking read = read_foreign_packing(file, options.read);
+  ReadOptions how = options.read;
+  how.domain = options.domain;
+  ForeignPacking read = read_foreign_packing(file, how);
   set_domain(read.state, file, options.domain);
   CheckedPacking packing{{read.state, {{"recipe", "converted from " + file}}, {}}, read.notes};
-  for (const std::string &warning : checked(read.state, file, options.anyway))
+  for (const std::string &warning : checked(read.state, file, options))
     packing.notes.push_back(warning);
+  note_density(read.state.grains.density, options, packing.notes);
   packing.specimen.numbers = {{"grains", static_cast<double>(read.state.grains.n_grains())},
                               {"d50_m", read.state.grains.d50()},
                               {"void_ratio", void_ratio(read.state.volume(), read.state.grains.solid_volume())}};

@@ -12,6 +12,8 @@ struct ConvertOptions
   ReadOptions read;    ///< of files that are not HDF5
   std::string domain;  ///< "periodic-cell": the box is one that repeats itself; "rigid-box", or empty: as the file says
   bool anyway = false; ///< what the checks would refuse is a warning
+  bool density_named = false; ///< read.density is the user's: a note if the file says another
+  bool metres_named = false;  ///< the user has said that the file is in m: grains of some size are meant
 };
 
 /// A packing with what is to be said of it.

@@ -5,6 +5,7 @@
 #include "dem/domain/lattice.hpp"
 #include "dem/neighbours/cell_grid.hpp"
 #include "dem/neighbours/periodic_grid.hpp"
+#include "dem/scene/scene.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -13,8 +14,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double lightest = 500, heaviest = 25000; // kg/m3; no grain of soil or of its models is beyond
-constexpr double remarkable = 0.05;                // overlap of a radius that deserves a warning
+constexpr double remarkable = 0.05; // overlap of a radius that deserves a warning
 
 void look_at_pairs(const Snapshot &s, PackingFigures &f)
 {
@@ -65,7 +65,7 @@ bool is_roomy(const Snapshot &s)
   return ((high - low).array() < 0.5 * s.box.edges().array()).any();
 }
 /// That of lengths read as metres, if grains of soil are meant.
-std::string likely_unit(double r_max) { return 1e-3 * r_max <= largest_radius ? "mm" : "um"; }
+std::string likely_unit(double r_max) { return 1e-3 * r_max <= largest_radius_of_file ? "mm" : "um"; }
 } // namespace
 
 PackingFigures packing_figures(const Snapshot &s)
@@ -98,23 +98,25 @@ std::string figures_text(const PackingFigures &f, const Snapshot &s)
                      leans ? ", leaning" : "", f.void_ratio, overlap);
 }
 
-std::vector<std::string> check_packing(const Snapshot &s, const std::string &file, const ScalingRemedy &remedy)
+std::vector<std::string> check_packing(const Snapshot &s, const std::string &file, const ScalingRemedy &remedy,
+                                       double largest)
 {
   const double r_max = s.grains.max_radius();
-  if (r_max > largest_radius)
+  if (r_max > largest)
     throw InputError(
         fmt::format("{}: the largest radius is {:.4g} m; expected at most {} m, because it is soil that is "
-                    "meant. Is the file in {}? If so, {}.",
-                    file, r_max, largest_radius, likely_unit(r_max), remedy(likely_unit(r_max))));
+                    "meant. Is the file in {}? If so, {}. Radii up to {} m are read of a file that is said to be in m: "
+                    "isostat convert --length-unit m.",
+                    file, r_max, largest, likely_unit(r_max), remedy(likely_unit(r_max)), largest_radius));
   if (r_max < smallest_radius)
     throw InputError(
         fmt::format("{}: the largest radius is {:.4g} m; expected at least {} m, because smaller grains are "
                     "clay. Were lengths scaled that are in m already, or in another unit? If in mm, {}.",
                     file, r_max, smallest_radius, remedy("mm")));
-  if (s.grains.density < lightest || s.grains.density > heaviest)
+  if (s.grains.density < lightest_grains || s.grains.density > heaviest_grains)
     throw InputError(fmt::format("{}: the grain density is {:g} kg/m3; expected {:g} to {:g} kg/m3, such as 2650 for "
-                                 "quartz. Correct it there, in SI units.",
-                                 file, s.grains.density, lightest, heaviest));
+                                 "quartz. Is it, or are masses and lengths, in another unit? Correct it there, in SI.",
+                                 file, s.grains.density, lightest_grains, heaviest_grains));
   const PackingFigures f = packing_figures(s);
   if (f.overlap > too_deep)
     throw InputError(

@@ -26,9 +26,11 @@ struct PackingFigures
 /// Overlap, of the smaller radius, above which a packing is no state that contact laws know.
 inline constexpr double too_deep = 0.3;
 
-/// Of grains, m: neither clay nor cobbles are sand.
+/// Of grains, m: neither clay nor boulders (above 300 mm across, ASTM D2487) are tested.
 inline constexpr double smallest_radius = 1e-6;
-inline constexpr double largest_radius = 0.05;
+inline constexpr double largest_radius = 0.15;
+/// The same where nobody has named the unit: sand in mm, read as m, is larger.
+inline constexpr double largest_radius_of_file = 0.05;
 
 /// tested: tests/dem/prepare/packing_check_test.cpp
 PackingFigures packing_figures(const Snapshot &snapshot);
@@ -42,8 +44,10 @@ using ScalingRemedy = std::function<std::string(const std::string &unit)>;
 /// Guards whatever another program has written: refuses what no packing of soil is.
 /// @param file    for messages
 /// @return warnings, whole sentences: overlaps above 5 % of a radius, a box much wider than what it holds
-/// @throws InputError  radii above 5 cm or below 1 um, a grain density beyond 500 to 25,000 kg/m3, overlaps above 30 %
-///         of a radius, spheres that stand beyond a wall by more than that
+/// @param largest  allowed radius, m
+/// @throws InputError  radii above it or below 1 um, a grain density that no scene may have (scene.hpp), overlaps above
+///         30 % of a radius, spheres that stand beyond a wall by more than that
 /// tested: tests/dem/prepare/packing_check_test.cpp, tests/apps/convert_test.py
-std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const ScalingRemedy &remedy);
+std::vector<std::string> check_packing(const Snapshot &snapshot, const std::string &file, const ScalingRemedy &remedy,
+                                       double largest = largest_radius_of_file);
 } // namespace isostat

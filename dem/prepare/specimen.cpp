@@ -105,10 +105,9 @@ void check_size(const GradingSpec &spec, const Packing &grains)
   const std::string given =
       spec.d50 ? fmt::format("d50 = {:g} m", *spec.d50) : fmt::format("cloud_edge = {:g} m", spec.cloud_edge);
   if (grains.max_radius() > largest_radius)
-    throw InputError(
-        fmt::format("grading.{} makes a largest grain of {:.3g} m across; expected at most {:g} m because it is "
-                    "soil that is meant. Is it given in m instead of mm?",
-                    given, 2 * grains.max_radius(), 2 * largest_radius));
+    throw InputError(fmt::format("grading.{} makes a largest grain of {:.3g} m across; expected at most {:g} m because "
+                                 "boulders are not tested. Is it given in m instead of mm?",
+                                 given, 2 * grains.max_radius(), 2 * largest_radius));
   if (grains.min_radius() < smallest_radius)
     throw InputError(
         fmt::format("grading.{} makes a smallest grain of {:.3g} m across; expected at least {:g} m because clay is no "
@@ -210,7 +209,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
       describe(scene, specimen);
       return specimen;
     }
-  ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density});
+  ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density, 1, scene.specimen.domain});
   const auto remedy = [&path](const std::string &unit) {
     return fmt::format("convert it once: isostat convert {} {} --length-unit {}, and give that file", path.string(),
                        std::filesystem::path(path).replace_extension(".h5").filename().string(), unit);

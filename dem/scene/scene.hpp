@@ -28,6 +28,10 @@ struct GradingSpec
   bool operator==(const GradingSpec &) const = default;
 };
 
+/// Densities of grains, kg/m3, that scenes and files of packings may have: 2.65 is meant in g/cm3, 2.65e6 in g/m3.
+/// Between them there is room for light models of grains, and for heavy ones that make the time step longer.
+inline constexpr double lightest_grains = 30, heaviest_grains = 1e6;
+
 /// How the specimen is made. Exactly one of relative_density, void_ratio, preparation_friction, file is set.
 struct SpecimenSpec : ServoSpec
 {

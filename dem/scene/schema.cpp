@@ -20,7 +20,9 @@ constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
 
 constexpr Section fixed_sections[] = {
     {.name = "grading",
-     .text = "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from."},
+     .text =
+         "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from. The largest grain that "
+         "is made may be 300 mm across, the smallest 2 um."},
     {.name = "contact",
      .text = "The contact law. What is left out here costs nothing: without `friction` the contacts are frictionless, "
              "without the table `rolling` or `twisting` that part of the law is not compiled into the loop that runs."},
@@ -91,7 +93,9 @@ constexpr Key first_keys[] = {
            "scaled up, with `d50` the edge.",
    .field = [](Scene &s) -> Field { return &s.grading.solid_fraction; }},
   {.path = "grading.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "2650 kg/m3", .range = {1, 1e6}, .reason = "because no solid has another", .text = "Density of the grains.",
+   .value = "2650 kg/m3", .range = {lightest_grains, heaviest_grains},
+   .reason = "because less is meant in g/cm3 and more in g/m3",
+   .text = "Density of the grains. Packings of other programs have the same range.",
    .field = [](Scene &s) -> Field { return &s.grading.density; }},
   {.path = "grading.seed", .kind = Kind::integer, .value = "1",
    .text = "Realisation: the same seed gives the same specimen on any number of threads.",

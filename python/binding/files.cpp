@@ -52,7 +52,8 @@ Specimen read_packing(const fs_path &path, const std::string &length_unit, doubl
                       const Law &law, bool anyway)
 {
   const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
-  const CheckedPacking packing = read_any_packing(path.string(), {{law, density, scale}, domain, anyway});
+  const CheckedPacking packing =
+      read_any_packing(path.string(), {{law, density, scale}, domain, anyway, density != ReadOptions{}.density});
   warn(packing.notes);
   return packing.specimen;
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat convert: packings of other programs in and out, what is refused, and the same guard in scenes."""
+import math
 import os
 import shutil
 
@@ -78,13 +79,75 @@ class Convert(AppTest):
         self.assert_close(self.positions("mm.h5"), self.positions("m.h5"), 1e-15, "one rounding")
         self.refuse("m.txt", "clay", options=("--scale", "1e-6"))
 
+    def fcc(self, n=3, radius=1e-4, gap=1.998):
+        """Positions in mm of n^3 cubes of a face-centred packing, and the edge of them; spheres overlap a little."""
+        edge = gap * radius * math.sqrt(2)
+        corners = [(x, y, z) for x in range(n) for y in range(n) for z in range(n)]
+        places = [tuple(edge * (c + o) for c, o in zip(corner, offset)) for corner in corners
+                  for offset in ((0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5))]
+        return places, n * edge
+
+    def test_density_of_a_dump(self):
+        places, edge = self.fcc()
+        mass = 2500 * 4 / 3 * math.pi * 1e-12
+        for column, value, scale in (("mass", mass, 1), ("density", 2500, 1), ("mass", mass, 1e-3)):
+            rows = "".join(f"{i + 1} {x / scale!r} {y / scale!r} {z / scale!r} {1e-4 / scale!r} {value:.9g}\n"
+                           for i, (x, y, z) in enumerate(places))
+            self.write("d.dump", f"ITEM: NUMBER OF ATOMS\n{len(places)}\nITEM: BOX BOUNDS pp pp pp\n"
+                       + 3 * f"0 {edge / scale!r}\n" + f"ITEM: ATOMS id x y z radius {column}\n{rows}")
+            result = self.convert("d.dump", "d.h5", "--overwrite", "--scale", scale)
+            self.assert_done(result)
+            self.assertIn("grain density    2500 kg/m3", result.stdout)
+            self.assertNotIn("2650", result.stderr)
+        result = self.convert("d.dump", "d.data", "--density", "2650 kg/m3", "--scale", "1e-3")
+        self.assert_done(result)
+        self.assertIn("grain density    2500 kg/m3", result.stdout)
+        self.assertIn("2650 kg/m3 has no effect", result.stderr)
+
+    def test_cell_of_yade(self):
+        places, edge = self.fcc()
+        rows = "".join(f"{x:.10g} {y:.10g} {z:.10g} 0.0001 -1\n" for x, y, z in places)
+        self.write("y.txt", f"##PERIODIC:: {edge:.10g} {edge:.10g} {edge:.10g}\n{rows}")
+        result = self.convert("y.txt", "y.h5")
+        self.assert_done(result)
+        for part in ("periodic cell    0.84768 x 0.84768 x 0.84768 mm", "void ratio       0.3464"):
+            self.assertIn(part, result.stdout)
+
+    def test_a_scene_says_what_bounds_a_data_file(self):
+        places, edge = self.fcc()
+        rows = "".join(f"{i + 1} 1 0.0002 2650 {x!r} {y!r} {z!r} 0 0 0\n" for i, (x, y, z) in enumerate(places))
+        self.write("p.data", f"via write_data, units = si\n\n{len(places)} atoms\n1 atom types\n\n"
+                   + "".join(f"0 {edge!r} {a}lo {a}hi\n" for a in "xyz") + f"\nAtoms # sphere\n\n{rows}")
+        scene = self.write("scene.toml", """[contact]
+young = "1 GPa"
+friction = "45 deg"
+[specimen]
+domain = "periodic-cell"
+file = "p.data"
+pressure = "100 kPa"
+[[stage]]
+kind = "rebalance"
+""")
+        self.assert_done(self.run_test(scene, "-o", "out", "--quiet"))
+
+    def test_large_grains_and_any_density_of_a_scene(self):
+        self.lattice("stones.txt", unit=0.2, box=1.8)  # radii of 60 mm
+        self.refuse("stones.txt", "largest radius is 0.06 m", "0.05 m", "isostat convert --length-unit m")
+        self.assert_done(self.convert("stones.txt", "stones.h5", "--length-unit", "m"))
+        self.lattice("a.txt")
+        self.assert_done(self.convert("a.txt", "heavy.data", "--density", "1e6 kg/m3"))
+        result = self.convert("heavy.data", "heavy.h5")
+        self.assert_done(result)
+        self.assertIn("grain density    1e+06 kg/m3", result.stdout)
+        self.refuse("a.txt", "2.65 kg/m3", "30 to", options=("--density", "2.65 kg/m3"))
+
     def test_what_is_no_packing(self):
         self.refuse(self.lattice("deep.txt", radius=0.4), "overlap by 50 %", "diameters")
         self.refuse(self.lattice("small_box.txt", box=1.2), "centre", "outside the box")
         self.refuse(self.lattice("narrow.txt", box=1.65), "beyond a wall", "50 %")
         self.refuse(self.lattice("um.txt", unit=1000), "--length-unit um")
         self.refuse(self.write("history.csv", "step (-),time (s),p (Pa),q (Pa),e (-)\n1,0.1,2e5,0,0.7\n"),
-                    "history.csv:2", "has not a column x", "Is it a packing?")
+                    "history.csv:2", "does not have a column x", "Is it a packing?")
         self.refuse("nowhere.txt", "nowhere.txt")
         self.refuse(self.write("empty.dump", ""), "empty.dump", "no spheres")
         self.assert_done(self.convert("deep.txt", "deep.h5", "--anyway"))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program micromechanics: its tables against the history of the run and against each other, and its refusals."""
 import csv
+import math
 import re
 
 import h5py
@@ -83,6 +84,27 @@ class Micromechanics(AppTest):
         self.assert_done(self.run_app("micromechanics", specimen, "--output", "specimen.csv"))
         pressure = read_table(self.folder / "specimen.csv")["p"][0]
         self.assert_close(pressure, 200e3, 0.01, "the servo of the preparation stops within 0.3 % in each direction")
+
+    def test_packing_of_another_program(self):
+        """A face-centred packing whose spheres overlap by 0.2 % of their radius: twelve contacts each."""
+        edge, n = 1.998e-4 * math.sqrt(2), 3
+        rows = "".join(f"{edge * (x + a)!r} {edge * (y + b)!r} {edge * (z + c)!r} 1e-4\n"
+                       for x in range(n) for y in range(n) for z in range(n)
+                       for a, b, c in ((0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)))
+        self.write("fcc.txt", f"##PERIODIC:: {n * edge!r} {n * edge!r} {n * edge!r}\n{rows}")
+        self.assert_done(self.run_app("isostat", "convert", "fcc.txt", "fcc.h5"))
+        result = self.run_app("micromechanics", "fcc.h5", "--output", "fcc.csv")
+        self.assert_done(result)
+        self.assertIn("warning: fcc.h5: it is stored without contacts", result.stderr)
+        table = read_table(self.folder / "fcc.csv")
+        self.assertEqual(table["C"][0], 6 * 4 * n**3)
+        self.assertEqual(table["Z"][0], 12)
+        for name in table:
+            self.assertTrue(np.isfinite(table[name]).all() or name.endswith("_wall"), name)  # a cell has no walls
+        self.assertGreater(table["p"][0], 0)
+        self.assertEqual(table["E_shear"][0], 0)
+        for component in ("Fxx", "Fyy", "Fzz"):
+            self.assert_near(table[component], 1 / 3, 1e-9, "ten digits in the table")
 
     def test_figures(self):
         self.assert_done(self.run_app("micromechanics", "run", "--output", "it's here"))

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   const Packing &grains = packing->state.grains;
   fuzz::require(grains.n_grains() > 0 && grains.min_radius() > 0, "there are grains, and they have a size");
   const fuzz::MemoryFile text(sphere_text(packing->state));
-  const ForeignPacking again = read_sphere_text(text.path(), options.law, options.density);
+  const ForeignPacking again = read_sphere_text(text.path(), options);
   fuzz::require(again.state.grains.position == grains.position, "a text of spheres keeps them");
   return 0;
 }

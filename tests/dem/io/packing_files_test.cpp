@@ -6,6 +6,7 @@
 #include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -60,8 +61,9 @@ TEST_F(PackingFiles, EveryFormatBringsBackTheBits)
 TEST_F(PackingFiles, WhatAFormatCannotHoldIsSaid)
 {
   const Specimen specimen{periodic(), {}, {}};
-  EXPECT_EQ(write_packing(folder / "a.txt", specimen, PackingFormat::text).size(), 2u);         // contacts, cell
-  EXPECT_EQ(write_packing(folder / "a.dump", specimen, PackingFormat::lammps_dump).size(), 2u); // contacts, turned
+  EXPECT_EQ(write_packing(folder / "a.txt", specimen, PackingFormat::text).size(), 3u); // contacts, density, cell
+  EXPECT_EQ(write_packing(folder / "a.dump", specimen, PackingFormat::lammps_dump).size(),
+            3u); // contacts, density, turned
   EXPECT_TRUE(write_packing(folder / "a.h5", specimen, PackingFormat::specimen).empty());
   EXPECT_EQ(read_stored_packing(folder / "a.h5").state.contacts.size(), 2u);
 }
@@ -82,6 +84,62 @@ TEST_F(PackingFiles, ColumnsOfCsvStandInAnyOrder)
   EXPECT_THAT(refusal("b.txt", "0 0 0 1\n0 0 1e9 1e-8\n"), HasSubstr("b.txt:2: radius r = 1e-08 m is less than"));
   EXPECT_THAT(refusal("b.txt", "0 -2e9 0 1\n"), HasSubstr("b.txt:1: centre y = -2000000000 m; expected"));
   EXPECT_THAT(refusal("b.vtp", "<VTKFile"), HasSubstr("b.vtp: no VTK PolyData"));
+}
+
+TEST_F(PackingFiles, SpherePacksOfYade)
+{
+  const auto read = [&](const std::string &text) { return read_foreign_packing(put("y.txt", text), {}); };
+  const ForeignPacking cell = read("##PERIODIC:: 4 5 6\n0 0 0 1\n4.5 2 2 0.5\n");
+  ASSERT_TRUE(cell.state.cell);
+  EXPECT_EQ(cell.state.cell->edges, Mat3(Vec3(4, 5, 6).asDiagonal()));
+  EXPECT_EQ(cell.state.volume(), 120);
+  EXPECT_TRUE(cell.notes.empty());
+  EXPECT_EQ(read("##PERIODIC:: 4 4 4\n0 0 0 1 -1\n2 2 2 0.5 -1\n").state.grains.radius(1), 0.5);
+  EXPECT_THAT(refusal("y.txt", "0 0 0 1 -1\n2 2 2 0.5 7\n"), HasSubstr("y.txt:2: clump id 7; expected -1"));
+  EXPECT_THAT(refusal("y.txt", "0 0 0 1 -1\n2 2 2 0.5\n"),
+              HasSubstr("y.txt:2: \"2 2 2 0.5\"; expected four numbers x y z r (m) in every line, or five"));
+  for (const char *edges : {"4 4 0", "4 4", "4 4 -4", "4 4 x"})
+    EXPECT_THAT(refusal("y.txt", fmt::format("##PERIODIC:: {}\n0 0 0 1\n", edges)), HasSubstr("y.txt:1")) << edges;
+  EXPECT_THAT(refusal("y.txt", "# box 0 4 0 4 0 4\n##PERIODIC:: 4 4 4\n1 1 1 1\n"),
+              HasSubstr("y.txt:2: a second domain"));
+}
+
+TEST_F(PackingFiles, FormatsOfYade)
+{
+  const auto grains = [&](const std::string &text) {
+    return read_foreign_packing(put("y.txt", text), {}).state.grains;
+  };
+  EXPECT_EQ(grains("#format x_y_z_r_matId\n# made up\n1\t2\t3\t0.5\t0\n").centre(0), Vec3(1, 2, 3));
+  const Packing with_id = grains("#format id_x_y_z_r_matId\n7\t1\t2\t3\t0.5\t0\n");
+  EXPECT_EQ(with_id.id[0], 7u);
+  EXPECT_EQ(with_id.radius(0), 0.5);
+  EXPECT_EQ(grains("#format x_y_z_r_attrs\n1\t2\t3\t0.5\t9\t9\t9\n").radius(0), 0.5);
+  EXPECT_EQ(grains("#format x_y_z_r_clumpId\n1\t2\t3\t0.5\t-1\n").radius(0), 0.5);
+  EXPECT_EQ(grains("# x y z diameter\n1 2 3 0.5\n").radius(0), 0.25);
+  EXPECT_THAT(refusal("y.txt", "#format x_y_z_r_clumpId\n1\t2\t3\t0.5\t0\n"), HasSubstr("y.txt:2: clump id 0"));
+  EXPECT_THAT(refusal("y.txt", "#format jointedPM\n1\t2\t3\t0.5\t0\n"),
+              HasSubstr("y.txt:1: this format does not have a column x"));
+}
+
+TEST_F(PackingFiles, NamesOfColumns)
+{
+  for (const char *header :
+       {"ID,X,Y,Z,RADIUS", "\"id\",\"x\",\"y\",\"z\",\"r\"", "Id, pos_x, pos_y, pos_z, Rad",
+        "ball.id ball.pos.x ball.pos.y ball.pos.z ball.radius", "type x (m) y (m) z (m) radius (m)"})
+    {
+      const auto path = put("p.csv", fmt::format("{}\n3,1,2,4,0.5\n", header));
+      const Packing grains = read_foreign_packing(path, {}).state.grains;
+      EXPECT_EQ(grains.centre(0), Vec3(1, 2, 4)) << header;
+      EXPECT_EQ(grains.radius(0), 0.5) << header;
+    }
+  const std::string in_mm = "X (mm),Y (mm),Z (mm),Diameter [mm]\n1,2,3,1\n";
+  EXPECT_THAT(refusal("p.csv", in_mm), HasSubstr("p.csv:1: the column diameter is in mm"));
+  ReadOptions mm;
+  mm.scale = 1e-3;
+  EXPECT_EQ(read_foreign_packing(put("p.csv", in_mm), mm).state.grains.radius(0), 0.5e-3);
+  EXPECT_EQ(read_foreign_packing(put("p.csv", "x,y,z,r,Density (kg/m3)\n1,2,3,1,2700\n"), {}).state.grains.density,
+            2700);
+  EXPECT_THAT(refusal("p.csv", "x,y,z,r,density (g/cm3)\n1,2,3,1,2.7\n"), HasSubstr("is in g/cm3; expected kg/m3"));
 }
 
 TEST_F(PackingFiles, LengthsAreScaledWithTheBox)
@@ -119,6 +177,20 @@ TEST_F(PackingFiles, VtpOfAnotherProgram)
   const Snapshot s = read_foreign_packing(put("a.vtp", text), {}).state;
   EXPECT_EQ(s.grains.centre(1), Vec3(2, 0, 0));
   EXPECT_EQ(s.box.upper, Vec3(2.5, 1, 1));
+  const auto with = [&](const std::string &before, const std::string &more) {
+    std::string changed = text;
+    return changed.insert(changed.find(before), more);
+  };
+  const std::string array = R"(<DataArray type="Float32" Name="{}" format="ascii"> {} </DataArray>)";
+  EXPECT_EQ(
+      read_foreign_packing(put("a.vtp", with("</PointData>", fmt::format(fmt::runtime(array), "density", "99 99"))), {})
+          .state.grains.density,
+      99);
+  EXPECT_THAT(refusal("a.vtp", with("<Piece", "<FieldData>" + fmt::format(fmt::runtime(array), "box", "0 9 0 9") +
+                                                  "</FieldData>")),
+              HasSubstr("a.vtp: field data `box` of 4"));
+  EXPECT_THAT(refusal("a.vtp", with("</PolyData>", "<Piece NumberOfPoints=\"0\"/>")), HasSubstr("several pieces"));
+  EXPECT_THAT(refusal("a.vtp", with("type=\"PolyData\"", "byte_order=\"BigEndian\" ")), HasSubstr("BigEndian"));
 }
 } // namespace
 } // namespace isostat

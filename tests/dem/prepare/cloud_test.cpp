@@ -5,8 +5,9 @@
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/random.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/temporary_folder.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <functional>
@@ -198,6 +199,23 @@ TEST(Cloud, IsThatOfItsEdgeWhicheverIsGiven)
   EXPECT_NEAR_BECAUSE(other.upscaling / one.upscaling, 1, 1e-14, "the same");
 }
 
+/// The message names a solid fraction at which the grains have room.
+TEST(Cloud, FewGrainsThatFindNoPlace)
+{
+  for (const std::uint64_t n : {2, 3, 8, 12})
+    {
+      GradingSpec spec;
+      spec.grains = n;
+      spec.d50 = 0.2e-3;
+      spec.solid_fraction = 0.5;
+      const std::string message = message_of<RunFailure>([&] { make_cloud(spec); });
+      const std::string before = "There is room at grading.solid_fraction = ";
+      ASSERT_THAT(message, testing::HasSubstr(before)) << n;
+      spec.solid_fraction = std::stod(message.substr(message.find(before) + before.size()));
+      EXPECT_EQ(make_cloud(spec).packing.n_grains(), n);
+    }
+}
+
 TEST(Cloud, MedianByVolumeIsOneOfTheSizes)
 {
   EXPECT_EQ(median_by_volume({3}), 3);
@@ -222,7 +240,7 @@ TEST(Cloud, JammingIsARunFailureWithARemedy)
   spec.solid_fraction = 0.6;
   const std::string text = complaint<RunFailure>(spec);
   EXPECT_TRUE(contains(text, "solid_fraction = 0.6"));
-  EXPECT_TRUE(contains(text, "Lower solid_fraction"));
+  EXPECT_TRUE(contains(text, "There is room at grading.solid_fraction = "));
 }
 
 TEST(Cloud, WrongInputIsRefused)

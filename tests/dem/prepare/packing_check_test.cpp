@@ -2,6 +2,7 @@
 #include "dem/prepare/packing_check.hpp"
 
 #include "base/error.hpp"
+#include "dem/scene/scene.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -60,9 +61,17 @@ TEST(PackingCheck, WhatIsNoSoilIsRefused)
   EXPECT_THAT(refusal(two(0, 1000)), HasSubstr("in um? If so, scale it from um"));
   EXPECT_THAT(refusal(two(0, 1e-6)), HasSubstr("clay"));
   EXPECT_THAT(refusal(two(-0.05)), HasSubstr("overlap by 50 % of the smaller radius (1 pairs"));
+  EXPECT_TRUE(check_packing(two(0, 0.5), "p.txt", scale, largest_radius).empty()); // its metres are meant
+  EXPECT_THAT(message_of<InputError>([] { check_packing(two(0, 1), "p.txt", scale, largest_radius); }),
+              HasSubstr("expected at most 0.15 m"));
   Snapshot light = two(0);
+  for (const double density : {lightest_grains, heaviest_grains}) // what scenes allow
+    {
+      light.grains.density = density;
+      EXPECT_TRUE(check_packing(light, "p.txt", scale).empty());
+    }
   light.grains.density = 2.65;
-  EXPECT_THAT(refusal(light), HasSubstr("p.txt: the grain density is 2.65 kg/m3; expected 500 to 25000 kg/m3"));
+  EXPECT_THAT(refusal(light), HasSubstr("p.txt: the grain density is 2.65 kg/m3; expected 30 to 1e+06 kg/m3"));
   Snapshot out = two(0.15);
   EXPECT_THAT(message_of<InputError>([&] {
                 out.box.upper[0] = 0.85e-3;
