@@ -8,8 +8,8 @@ Packings of 120 grains and their states in situ are stored here, because a prepa
 elsewhere with other rounding. The history must have the same bytes on any number of ranks. Against what is stored,
 rounding that differs (another instruction set) grows until single contacts open and close, so: the first two rows agree
 within 1e-5 of the largest value of their kind (all components of a vector are one kind), the others within 3 % (4e-6
-and 1.5 % were seen between SSE, AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ; read the
-diff.
+and 1.5 % were seen between SSE, AVX2 and AVX-512). --regenerate rewrites the expectations and keeps the states in situ;
+read the diff.
 """
 import os
 import pathlib
