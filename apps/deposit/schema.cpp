@@ -250,14 +250,15 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.analysis.viscosity; }},
   {.path = "analysis.first_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::required, .value = "10 s", .range = positive, .kinds = consolidation,
-   .text = "End of the first time step after loading; those that follow rise geometrically.",
+   .text = "End of the first time step after loading; those that follow rise geometrically. Elements where water drains are cut to "
+           "show it; where they cannot be, a warning states from when on results are right.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.first_time; }},
   {.path = "analysis.last_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::required, .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.last_time; }},
   {.path = "analysis.steps", .kind = Kind::integer, .value = "50", .range = {2, 1e6},
    .reason = "because first_time and last_time end a step each, and a million is beyond any use", .kinds = consolidation,
-   .text = "Number of time steps.",
+   .text = "Number of time steps, each with its row in the results; the solver divides them as accuracy needs.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.steps; }},
 
   {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",

@@ -9,6 +9,7 @@
 #include "apps/soil_column/settling.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
+#include "base/tell.hpp"
 #include "fem/libraries.hpp"
 
 #include <fmt/format.h>
@@ -34,6 +35,8 @@ public:
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)
       warnings_ = scene_warnings(scene_, velocities_, space_, motions_);
+    if (std::string coarse = coarse_drainage(scene_, space_, *soil_.material); !coarse.empty())
+      warnings_.push_back(std::move(coarse));
     if (request.use != FolderUse::resume)
       return;
     resumed_ = std::make_unique<ColumnCheckpoint>(read_column_checkpoint(request.folder / "checkpoint"));
@@ -54,6 +57,9 @@ public:
     try
       {
         start();
+        for (const std::string &warning : warnings_)
+          if (!resumed_ && ranks().first())
+            tell(fmt::format("warning: {}\n", warning));
         while (!is_done())
           {
             step();

@@ -70,9 +70,6 @@ private:
     this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
                                     1e3 * run_.stable_step(), last_step_ + 1,
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
-    for (const std::string &warning : this->warnings_)
-      if (!resumed_ && ranks().first())
-        tell(fmt::format("warning: {}\n", warning));
     soil_.material->seconds = 0;
   }
 

@@ -3,6 +3,7 @@
 
 #include "dem/prepare/relative_density.hpp"
 #include "fem/motion/low_pass.hpp"
+#include "fem/water/drainage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -149,6 +150,29 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
       worst, scene.layers[worst].name.empty() ? "" : " (" + scene.layers[worst].name + ")", fewest,
       slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, worst,
       std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
+}
+
+std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)
+{
+  const bool slow = scene.analysis.kind == AnalysisKind::consolidation;
+  if (scene.water.drainage != Drainage::coupled || scene.load.kind != LoadKind::step ||
+      (!slow && scene.load.direction != Axis::z))
+    return "";
+  const DrainageBound bound = drainage_bound(space, material);
+  const double first = slow ? scene.analysis.first_time : scene.load.ramp;
+  if (bound.time <= first)
+    return "";
+  const ColumnLayer &layer = scene.layers[bound.layer];
+  const std::string where = fmt::format("layer.{}", bound.layer);
+  const std::string finer = first > 0 ? fmt::format("{}.cell_size to {:.2g} m or less, or ", where,
+                                                    layer.thickness / layer.n_cells() * std::sqrt(first / bound.time))
+                                      : "";
+  return fmt::format(
+      "the cells of {}{} where water drains, {:.3g} m high, show pore pressure and settlement within 2 % "
+      "only from 1.5 h2/c = {:.3g} s after the load on (c = {:.3g} m2/s); before h2/(6 c) = {:.3g} s the "
+      "pressure oscillates there. Set {}{} to {:.3g} s or more, or disregard what is earlier.",
+      where, layer.name.empty() ? "" : " (" + layer.name + ")", bound.cell, bound.time, bound.coefficient,
+      bound.time / 9, finer, slow ? "analysis.first_time" : "load.ramp", bound.time);
 }
 
 std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,

@@ -2,7 +2,7 @@
 #pragma once
 #include "apps/deposit/scene.hpp"
 #include "fem/material/material.hpp"
-#include "fem/space/tables.hpp"
+#include "fem/space/discretisation.hpp"
 
 #include <array>
 #include <string>
@@ -30,6 +30,12 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
 /// @return empty  enough nodes, or nothing moves     tested: tests/apps/soil_column_test.py
 std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
                             const std::array<Motion, 3> &motions);
+
+/// What is wrong with cells where water drains that are too high for the first results after a load at once
+/// (drainage_bound()): of a consolidation those at first_time, of a dynamic run those that its rise does not smooth.
+/// Collective.   @return empty  fine enough, no such load, or no water that drains
+/// tested: tests/apps/column_water_test.py
+std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material);
 
 /// What a user should know of motions: one that lasts longer than the analysis, a baseline that drifts, and a record
 /// that does not begin at 0 s.   tested: tests/apps/column_motion_test.py

@@ -24,6 +24,12 @@ double mean_modulus(const Material &material, const FiniteElementSpace &space)
   space.sum_over_ranks(sums);
   return sums[0] > 0 ? sums[0] / sums[1] : 1;
 }
+
+void check_duration(double duration)
+{
+  if (!(duration >= 0) || !std::isfinite(duration))
+    throw InputError(fmt::format("step of {} s; must be >= 0", duration));
+}
 } // namespace
 
 Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSettings settings)
@@ -59,21 +65,45 @@ void Statics::step(double duration)
   if (settings_.pore_water && duration == 0)
     throw InputError("step of 0 s with pore water; must be > 0 for water to flow. Use an undrained step for a jump of "
                      "the load.");
-  advance(duration, settings_.pore_water);
+  check_duration(duration);
+  effort_ = {};
+  const double end = time_ + duration;
+  double left = duration;
+  if (settings_.pore_water)
+    for (double part = next_part(left); part < left; part = next_part(left))
+      {
+        advance(part, true);
+        left = end - time_;
+      }
+  advance(left, settings_.pore_water);
+  time_ = end;
+  ++step_;
+}
+
+/// Of a step of which `left` is to be done, the part that is done at once: one of equal ratios of times.
+double Statics::next_part(double left) const
+{
+  const double since = time_ - flows_since_, rise = std::log1p(settings_.largest_part);
+  if (since <= 0)
+    return std::min(left, settings_.largest_part * left);
+  const double n = std::ceil(std::log1p(left / since) / rise * (1 - 1e-9));
+  return n > 1 ? since * std::expm1(std::log1p(left / since) / n) : left;
 }
 
 void Statics::step_undrained(double duration)
 {
   if (!settings_.pore_water)
     throw InputError("undrained step without pore water; switch pore water on");
+  check_duration(duration);
+  effort_ = {};
   advance(duration, false);
+  flows_since_ = time_;
+  ++step_;
 }
 
-/// Sizes are powers of 1/2 of the step, so the parts add up to 1 exactly.
+/// A step or a part of it. Sizes are powers of 1/2 of it, so they add up to 1 exactly.
 void Statics::advance(double duration, bool flow)
 {
-  if (!(duration >= 0) || !std::isfinite(duration))
-    throw InputError(fmt::format("step of {} s; must be >= 0", duration));
   const double start_time = time_, smallest = std::ldexp(1.0, -static_cast<int>(settings_.newton.max_halvings));
   const Vector load_start = load_, held_start = u_;
   Vector load_end = load_, held_end = u_;
@@ -85,7 +115,6 @@ void Statics::advance(double duration, bool flow)
         target_u_.local_element(i) = (1 - part) * held_start.local_element(i) + part * held_end.local_element(i);
       }
   };
-  effort_ = {};
   flow_ = flow;
   double done = 0, size = std::min(1.0, 2 * substep_);
   while (done < 1)
@@ -121,7 +150,6 @@ void Statics::advance(double duration, bool flow)
         }
       size /= 2;
     }
-  ++step_;
 }
 
 void Statics::accept(double duration)
@@ -167,6 +195,7 @@ void Statics::for_each_field(Self &self, Visit &&visit)
   visit("stress", self.stresses_);
   visit("time", self.time_);
   visit("duration_before", self.duration_before_);
+  visit("flows_since", self.flows_since_);
   visit("substep", self.substep_);
   visit("force_scale", self.scale_);
   visit("min_force_scale", self.min_scale_);

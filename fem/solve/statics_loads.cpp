@@ -46,6 +46,9 @@ void Statics::check_settings() const
     }
   if (!(settings_.newton.tolerance > 0) || settings_.newton.tolerance >= 1)
     throw InputError(fmt::format("tolerance = {}; must be in (0, 1), of the force scale", settings_.newton.tolerance));
+  if (!(settings_.largest_part > 0))
+    throw InputError(
+        fmt::format("largest part = {}; must be > 0, of the time since water began to flow", settings_.largest_part));
   if (!(settings_.min_force >= 0))
     throw InputError(fmt::format("smallest force = {} N; must be >= 0", settings_.min_force));
   if (settings_.newton.max_iterations == 0 && settings_.newton.relaxation_iterations == 0)

@@ -23,6 +23,15 @@ struct Patch
   double from = 0, to = 0; ///< m
 };
 
+/// A plane across an axis towards which cells are halved until none is larger than size + 0.15 times its distance: a
+/// boundary through which water drains, near which pressure is steep at first (fem/water/drainage.hpp).
+struct FinePlane
+{
+  unsigned axis = 2; ///< 0, 1, 2 = x, y, z
+  double at = 0;     ///< its coordinate along the axis, with a level surface, m
+  double size = 0;   ///< of the cells at the plane, m; infinite: none is halved for it
+};
+
 /// A block of soil of layers, `dim` of the axes x, y, z meshed: 1 z; 2 x, z; 3 x, y, z.
 /// tested: tests/fem/space/discretisation_test.cpp
 struct MeshSpec
@@ -34,6 +43,7 @@ struct MeshSpec
   unsigned points_per_direction = 0; ///< Gauss points of a cell along each axis; 0: degree in a column, else degree + 1
   /// In place of the level surface at the height of the layers, which keep their parts of it at every x. In 2D only.
   GroundLine ground = {};
+  std::vector<FinePlane> fine = {};
   std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the first has what both claim
   std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are told by depth, m
 
@@ -41,6 +51,9 @@ struct MeshSpec
   {
     return points_per_direction ? points_per_direction : (dim == 1 ? degree : degree + 1);
   }
+  /// Ends of the cells along an axis in units of an unrefined one, which fine planes cut: 1, 2, 3 without any. Along z
+  /// those of a layer from its top down.
+  std::vector<double> cell_ends(unsigned axis, std::size_t layer = 0) const;
   /// Height of the surface above the base, m.
   double ground_at(double x) const { return ground.is_level() ? soil.height() : ground.at(x); }
   double depth(const Place &place) const { return ground_at(place[0]) - place[2]; } ///< below the surface, m

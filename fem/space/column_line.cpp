@@ -84,11 +84,18 @@ ColumnLine column_line(const FiniteElementSpace &space)
   const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
   double top = 0;
   add_node(0);
-  for (const Layer &layer : mesh.soil.layers)
+  for (std::size_t k = 0; k < mesh.soil.layers.size(); ++k)
     {
-      const unsigned n = layer.n_cells() * mesh.degree;
-      for (unsigned k = 1; k <= n; ++k)
-        add_node(scale * (k == n ? top + layer.thickness : top + layer.thickness * k / n));
+      const Layer &layer = mesh.soil.layers[k];
+      const unsigned n = layer.n_cells();
+      double before = 0;
+      for (double end : mesh.cell_ends(2, k))
+        {
+          if (mesh.degree == 2)
+            add_node(scale * (top + layer.thickness * (before + end) / (2 * n)));
+          add_node(scale * (end == n ? top + layer.thickness : top + layer.thickness * end / n));
+          before = end;
+        }
       top += layer.thickness;
     }
   return line;

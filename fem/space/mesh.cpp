@@ -46,12 +46,25 @@ void check(const MeshSpec &mesh, int dim)
                                  mesh.ground.highest(), mesh.soil.height()));
 }
 
+/// What lies between ends, of which the first is above 0, times the size of a unit.
+std::vector<double> sizes_between(const std::vector<double> &ends, double unit)
+{
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    sizes.push_back(unit * (ends[k] - (k > 0 ? ends[k - 1] : 0)));
+  return sizes;
+}
+
 /// Heights of the cells from the base up, m.
-std::vector<double> cell_heights(const SoilProfile &soil)
+std::vector<double> cell_heights(const MeshSpec &mesh)
 {
   std::vector<double> heights;
-  for (auto layer = soil.layers.rbegin(); layer != soil.layers.rend(); ++layer)
-    heights.insert(heights.end(), layer->n_cells(), layer->thickness / layer->n_cells());
+  for (std::size_t k = 0; k < mesh.soil.layers.size(); ++k)
+    {
+      const Layer &layer = mesh.soil.layers[k];
+      const std::vector<double> of_layer = sizes_between(mesh.cell_ends(2, k), layer.thickness / layer.n_cells());
+      heights.insert(heights.begin(), of_layer.rbegin(), of_layer.rend());
+    }
   return heights;
 }
 
@@ -147,10 +160,10 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
   dealii::Point<dim> low, high;
   for (int axis = 0; axis + 1 < dim; ++axis)
     {
-      steps.emplace_back(spec.cells_across[axis], spec.width[axis] / spec.cells_across[axis]);
+      steps.push_back(sizes_between(spec.cell_ends(axis), spec.width[axis] / spec.cells_across[axis]));
       high[axis] = spec.width[axis];
     }
-  steps.push_back(cell_heights(spec.soil));
+  steps.push_back(cell_heights(spec));
   for (double h : steps.back())
     high[dim - 1] += h;
   dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, steps, low, high, true);

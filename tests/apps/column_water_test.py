@@ -9,6 +9,76 @@ import numpy as np
 from column_support import ColumnTest, SCENES, SOIL, history, settings
 from support import main
 
+CLAY = """title = "clay under a fill"
+[water]
+drainage = "coupled"
+[[layer]]
+name = "clay"
+thickness = "8 m"
+cell_size = "0.8 m"
+density = "1700 kg/m3"
+porosity = 0.5
+permeability = "2e-9 m/s"
+material = "elastic"
+shear_modulus = "1 MPa"
+poisson_ratio = 0.25
+[load]
+kind = "step"
+amplitude = "40 kPa"
+[analysis]
+kind = "consolidation"
+first_time = "2 h"
+last_time = "20000 d"
+steps = 20
+[output]
+depths = ["4 m"]
+"""
+
+
+class Drainage(ColumnTest):
+    """CLAY under 40 kPa: D = 3 MPa, c = kb/(1/D + n/K_f)."""
+    D, STORAGE, HEIGHT = 3e6, 0.5 / 2.2e9, 8
+    C = 2e-9 / 9810 / (1 / D + STORAGE)
+    P0 = 40e3 / (1 + D * STORAGE)
+
+    def test_first_times_and_few_steps(self):
+        b = (np.arange(4000)[:, None] + 0.5) * np.pi
+        reason = "cells of a quarter of sqrt(c t), steps of a tenth of t"
+        for changes in (), settings(analysis__steps=2), settings(mesh__dimension=2, mesh__cells_across=1):
+            with self.subTest(changes):
+                result = self.run_column(self.write("clay.toml", CLAY), "-o", "out", "--overwrite", *changes)
+                self.assert_done(result)
+                self.assertNotIn("warning", result.stderr)
+                rows = history(self.folder / "out")
+                decay = np.exp(-b**2 * self.C * rows["time"][1:] / self.HEIGHT**2)
+                final, at_once = (40e3 * self.HEIGHT / x for x in (self.D, self.D + 1 / self.STORAGE))
+                due = final - (final - at_once) * (2 / b**2 * decay).sum(axis=0)
+                self.assert_below(np.abs(rows["settlement"][1:] / due - 1).max(), 5e-3, reason)
+                self.assert_below(rows["settlement"].max() / final - 1, 5e-5, "BDF2 rings when a step is long")
+                with h5py.File(self.folder / "out/profiles.h5") as file:
+                    u, depth = file["u"][1:] / self.P0, file["depth"][()]
+                exact = np.einsum("mz,mt->tz", 2 / b * np.sin(b * depth / self.HEIGHT), decay)
+                self.assert_below(np.abs(u - exact).max(), 5e-3, reason)
+                self.assert_below(max(u.max() - 1, -u.min()), 5e-5, "BDF2 rings when a step is long")
+
+    def test_a_first_time_that_no_mesh_shows(self):
+        scene = self.write("clay.toml", CLAY)
+        result = self.run_column(scene, "-o", "out", *settings(analysis__first_time="1e-9 s", analysis__steps=5))
+        self.assert_done(result)
+        cell = 0.8 / 2**20
+        self.assertIn(f"the cells of layer.0 (clay) where water drains, {cell:.3g} m high", result.stderr)
+        self.assertIn(f"within 2 % only from 1.5 h2/c = {1.5 * cell**2 / self.C:.3g} s after the load on", result.stderr)
+        self.assertRegex(result.stderr, r"Set layer.0.cell_size to \S+ m or less, or analysis.first_time to \S+ s or more")
+
+    def test_a_load_at_once_in_a_dynamic_run(self):
+        shaken = CLAY.split("[analysis]")[0] + '[analysis]\nduration = "0.1 s"\n'
+        bound = f"1.5 h2/c = {1.5 * 0.8**2 / self.C:.3g} s after the load on"
+        for changes, warns in (((), True), (settings(load__ramp="1e7 s"), False), (settings(load__direction="x"), False),
+                               (settings(layer__0__permeability="0 m/s"), False)):
+            result = self.run_column(self.write("shaken.toml", shaken), "-o", "out", "--overwrite", *changes)
+            self.assert_done(result)
+            self.assertEqual(bound in result.stderr, warns, changes)
+
 
 class Water(ColumnTest):
     def run_scene(self, name, folder, *options):

@@ -2,11 +2,13 @@
 // Terzaghi's column: a load q is put on at once, then water leaves through the surface.
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
+#include "fem/water/drainage.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <gmock/gmock.h>
+#include <limits>
 #include <numbers>
 
 namespace isostat
@@ -15,7 +17,7 @@ namespace
 {
 constexpr double height = 10, modulus = 2e8, load = 1e3; // m, D in Pa, Pa
 
-MeshSpec column(unsigned cells, double permeability)
+MeshSpec column_of(unsigned cells, double permeability = 1e-6)
 {
   MeshSpec mesh;
   mesh.soil.layers = {{.name = "sand", .thickness = height, .porosity = 0.33, .permeability = permeability}};
@@ -25,40 +27,47 @@ MeshSpec column(unsigned cells, double permeability)
 
 struct Terzaghi
 {
-  explicit Terzaghi(unsigned cells, double permeability = 1e-6)
-      : space(column(cells, permeability),
-              {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = {Face::surface}}),
+  explicit Terzaghi(const MeshSpec &mesh, std::vector<Face> drained = {Face::surface}, double largest_part = 0.1)
+      : space(mesh, {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = std::move(drained)}),
         soil({modulus / 3, 0.25}, space.n_points()), // D = 3 G
-        statics(space, soil, settings())
+        statics(space, soil, settings(largest_part))
   {
     const Layer &layer = space.mesh().soil.layers[0];
     const Water &water = space.mesh().soil.water;
     biot_modulus = water.bulk_modulus / layer.porosity;
     storage = 1 / modulus + 1 / biot_modulus;
-    seconds_per_tv = height * height * storage / water.mobility(layer.permeability);
+    path = height / static_cast<double>(space.supports().drained.size());
+    seconds_per_tv = path * path * storage / water.mobility(layer.permeability);
   }
-  static StaticsSettings settings()
+  static StaticsSettings settings(double largest_part)
   {
     StaticsSettings settings;
     settings.pore_water = true;
     settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -load}; }}};
+    settings.largest_part = largest_part;
     return settings;
   }
 
   double p0() const { return load / (modulus * storage); }
-  /// Series of fem_references A.4 (Terzaghi 1925): pressure over p0, z from the base.
-  static double exact_pressure(double z, double tv)
+  /// Series of fem_references A.4 (Terzaghi 1925): pressure over p0, z from the base. Early the infinite half-space and
+  /// its image.
+  double exact_pressure(double z, double tv) const
   {
+    const double way = (path < height ? std::min(z, height - z) : height - z) / path; // to where the water leaves
+    if (tv < 0.05)
+      return std::erf(way / (2 * std::sqrt(tv))) - std::erfc((2 - way) / (2 * std::sqrt(tv)));
     double sum = 0;
     for (int m = 0; m < 200; ++m)
       {
         const double b = (2 * m + 1) * std::numbers::pi / 2;
-        sum += 2 / b * std::sin(b * (height - z) / height) * std::exp(-b * b * tv);
+        sum += 2 / b * std::sin(b * way) * std::exp(-b * b * tv);
       }
     return sum;
   }
   static double exact_degree(double tv)
   {
+    if (tv < 0.05)
+      return 2 * std::sqrt(tv / std::numbers::pi);
     double sum = 1;
     for (int m = 0; m < 200; ++m)
       {
@@ -68,19 +77,17 @@ struct Terzaghi
     return sum;
   }
   double settlement() const { return -statics.displacement().local_element(space.find_dof({0, 0, height}, 2)); }
+  double at_once() const { return load * height / (modulus + biot_modulus); }
+  double at_last() const { return load * height / modulus; }
   /// Share of the settlement that takes time.
-  double degree() const
-  {
-    const double at_once = load * height / (modulus + biot_modulus), at_last = load * height / modulus;
-    return (settlement() - at_once) / (at_last - at_once);
-  }
+  double degree() const { return (settlement() - at_once()) / (at_last() - at_once()); }
+  double exact_settlement(double tv) const { return at_once() + exact_degree(tv) * (at_last() - at_once()); }
   double pressure(double z) const { return statics.pressure().local_element(space.find_pressure({0, 0, z})) / p0(); }
   double largest_pressure_error(double tv) const
   {
     double error = 0;
-    const unsigned n = space.n_cells();
-    for (unsigned k = 0; k <= n; ++k)
-      error = std::max(error, std::abs(pressure(height * k / n) - exact_pressure(height * k / n, tv)));
+    for (const Place &corner : space.corner)
+      error = std::max(error, std::abs(pressure(corner[2]) - exact_pressure(corner[2], tv)));
     return error;
   }
   void run(double tv, unsigned steps)
@@ -93,7 +100,7 @@ struct Terzaghi
   Discretisation<1> space;
   Elastic soil;
   Statics statics;
-  double biot_modulus, storage, seconds_per_tv;
+  double biot_modulus, storage, path, seconds_per_tv; ///< path: longest way of the water, m
 };
 } // namespace
 
@@ -102,7 +109,7 @@ constexpr test::Tolerance discretised{1e-3, "60 cells and 100 steps from one tim
 
 TEST(Consolidation, LoadAtOnceIsCarriedByTheWater)
 {
-  Terzaghi column(20);
+  Terzaghi column(column_of(20));
   column.statics.step_undrained();
   double error = 0;
   for (unsigned k = 0; k <= 20; ++k)
@@ -118,8 +125,8 @@ TEST(Consolidation, LoadAtOnceIsCarriedByTheWater)
 
 TEST(Consolidation, PressureAndSettlementFollowTerzaghi)
 {
-  EXPECT_NEAR_BECAUSE(Terzaghi::exact_pressure(0, 0.1), 0.949305, 1e-6, "the digits given");
-  Terzaghi column(60);
+  EXPECT_NEAR_BECAUSE(Terzaghi(column_of(2)).exact_pressure(0, 0.1), 0.949305, 1e-6, "the digits given");
+  Terzaghi column(column_of(60));
   column.statics.step_undrained();
   for (double tv : {0.05, 0.1, 0.197, 0.5, 1.0})
     {
@@ -140,11 +147,11 @@ TEST(Consolidation, PressureAndSettlementFollowTerzaghi)
     }
 }
 
-/// The mesh is the same, so the differences are the time's alone.
+/// The mesh is the same, so the differences are the time's alone; steps are not divided.
 TEST(Consolidation, IsOfSecondOrderInTime)
 {
   const auto profile = [](unsigned steps) {
-    Terzaghi column(20);
+    Terzaghi column(column_of(20), {Face::surface}, std::numeric_limits<double>::infinity());
     column.statics.step_undrained();
     column.run(0.2, steps);
     std::vector<double> values;
@@ -175,7 +182,7 @@ TEST(Consolidation, IsOfSecondOrderInTheMesh)
   double before = 0;
   for (unsigned cells : {5, 10, 20})
     {
-      Terzaghi column(cells);
+      Terzaghi column(column_of(cells));
       column.statics.step_undrained();
       column.run(0.2, 400);
       const double error = column.largest_pressure_error(0.2);
@@ -191,7 +198,7 @@ TEST(Consolidation, IsOfSecondOrderInTheMesh)
 /// Steps that grow by a fifth each: 45 instead of hundreds.
 TEST(Consolidation, GrowingStepsAreAsAccurate)
 {
-  Terzaghi column(60);
+  Terzaghi column(column_of(60));
   column.statics.step_undrained();
   double duration = 2e-5 * column.seconds_per_tv;
   unsigned n = 0;
@@ -203,10 +210,82 @@ TEST(Consolidation, GrowingStepsAreAsAccurate)
   EXPECT_BELOW_BECAUSE(error, 5e-3, "steps that have grown to a fifth of the time");
 }
 
+/// Any first time and any number of steps: the mesh is refined for the first time, and long steps are divided.
+TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
+{
+  struct
+  {
+    std::vector<Face> drained;
+    double first;
+    unsigned steps, cells;
+  } const cases[] = {{{Face::surface}, 1e-6, 20, 20},
+                     {{Face::surface}, 1e-6, 2000, 20},
+                     {{Face::surface}, 1e-5, 50, 2},
+                     {{Face::surface}, 1e-4, 200, 20},
+                     {{Face::surface}, 1e-2, 20, 20},
+                     {{Face::surface}, 1, 2, 2},
+                     {{Face::surface, Face::base}, 1e-6, 20, 20},
+                     {{Face::surface, Face::base}, 1e-3, 200, 5}};
+  for (const auto &[drained, first, steps, cells] : cases)
+    {
+      MeshSpec mesh = column_of(cells);
+      const Terzaghi coarse(mesh, drained);
+      for (const FinePlane &plane : drainage_planes(mesh, drained, std::array{modulus}, first * coarse.seconds_per_tv))
+        mesh.fine.push_back(plane);
+      Terzaghi column(mesh, drained);
+      EXPECT_LE(drainage_bound(column.space, column.soil).time, first * column.seconds_per_tv);
+      column.statics.step_undrained();
+      double p = 0, u = 0, highest = 0, lowest = 1;
+      for (unsigned k = 0; k < steps; ++k)
+        {
+          const double tv = first * std::pow(4 / first, static_cast<double>(k) / (steps - 1));
+          column.statics.step(tv * column.seconds_per_tv - column.statics.time());
+          p = std::max(p, column.largest_pressure_error(tv));
+          u = std::max(u, std::abs(column.settlement() / column.exact_settlement(tv) - 1));
+          for (const Place &corner : column.space.corner)
+            {
+              highest = std::max(highest, column.pressure(corner[2]));
+              lowest = std::min(lowest, column.pressure(corner[2]));
+            }
+        }
+      std::printf("%zu drained, T_v from %.0e, %4u steps, %2u cells refined to %3zu: error of p/p0 %.4f, of the "
+                  "settlement %.4f; p/p0 from %.1e to 1 + %.1e\n",
+                  drained.size(), first, steps, cells, column.space.n_cells(), p, u, lowest, highest - 1);
+      EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
+      EXPECT_BELOW_BECAUSE(u, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
+      EXPECT_BELOW_BECAUSE(highest - 1, 1e-4, "the pressure is flat where cells are too large for its front");
+      EXPECT_BELOW_BECAUSE(-lowest, 1e-4, "BDF2 rings below zero when a step is longer than the last mode");
+    }
+}
+
+/// A mesh that is not refined has its bound: errors above 2 % come before it alone.
+TEST(Consolidation, CoarseCellsAreRightFromTheirBoundOn)
+{
+  for (unsigned cells : {4, 20, 80})
+    {
+      Terzaghi column(column_of(cells));
+      const double bound = drainage_bound(column.space, column.soil).time;
+      EXPECT_CLOSE_BECAUSE(bound / column.seconds_per_tv, 1.5 / cells / cells, 1e-12, "round-off of 1.5 h2/c");
+      column.statics.step_undrained();
+      double before = 0, after = 0;
+      for (double t = bound / 100; t < 10 * bound; t *= 1.3)
+        {
+          column.statics.step(t - column.statics.time());
+          const double tv = t / column.seconds_per_tv,
+                       error = std::max(column.largest_pressure_error(tv),
+                                        std::abs(column.settlement() / column.exact_settlement(tv) - 1));
+          (t < bound ? before : after) = std::max(t < bound ? before : after, error);
+        }
+      std::printf("%2u cells: largest error %.3f before 1.5 h2/c, %.4f after it\n", cells, before, after);
+      EXPECT_GT(before, 0.1);
+      EXPECT_BELOW_BECAUSE(after, 0.02, "what the bound says");
+    }
+}
+
 /// Only the cell at the drained surface feels it.
 TEST(Consolidation, WithoutPermeabilityNothingDrains)
 {
-  Terzaghi column(20, 0.0);
+  Terzaghi column(column_of(20, 0.0));
   column.statics.step_undrained();
   for (int k = 0; k < 10; ++k)
     column.statics.step(1e6);
@@ -218,7 +297,7 @@ TEST(Consolidation, WithoutPermeabilityNothingDrains)
 /// The time law of a load that grows is followed inside an undrained step as well: twice half is the whole.
 TEST(Consolidation, UndrainedStepsAddUp)
 {
-  Terzaghi column(10);
+  Terzaghi column(column_of(10));
   column.statics.step_undrained(5);
   const double p = column.pressure(0);
   column.statics.step_undrained(5);

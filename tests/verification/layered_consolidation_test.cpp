@@ -3,6 +3,7 @@
 #include "fem/material/composite.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
+#include "fem/water/drainage.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
@@ -41,14 +42,15 @@ constexpr Stratum cap{2, 2e7, 1e-7}, sand{8, 1e8, 1e-5};
 class Exact
 {
 public:
-  Exact()
+  Exact(const Stratum &top, const Stratum &bottom) : cap(top), sand(bottom)
   {
     const auto mismatch = [this](double m) {
       const auto [a, b] = rates(m);
       return sand.mobility() * b * std::sin(b * sand.thickness) * std::sin(a * cap.thickness) -
              cap.mobility() * a * std::cos(a * cap.thickness) * std::cos(b * sand.thickness);
     };
-    const double step = 1e-3 * std::sqrt(cap.mobility() / cap.storage()) / cap.thickness;
+    const double step = 1e-3 * std::min(std::sqrt(cap.mobility() / cap.storage()) / cap.thickness,
+                                        std::sqrt(sand.mobility() / sand.storage()) / sand.thickness);
     for (double m = step; modes_.size() < 60; m += step)
       if (mismatch(m) * mismatch(m + step) < 0)
         {
@@ -79,11 +81,11 @@ public:
   }
 
 private:
-  static std::array<double, 2> rates(double m)
+  std::array<double, 2> rates(double m) const
   {
     return {m * std::sqrt(cap.storage() / cap.mobility()), m * std::sqrt(sand.storage() / sand.mobility())};
   }
-  static double factor(double m)
+  double factor(double m) const
   {
     const auto [a, b] = rates(m);
     const double in_sand = std::sin(a * cap.thickness), in_cap = std::cos(b * sand.thickness);
@@ -105,14 +107,26 @@ private:
       }
     return total;
   }
+  const Stratum cap, sand;
   std::vector<std::array<double, 2>> modes_;
 };
 
 struct LayeredColumn
 {
-  explicit LayeredColumn(std::vector<Layer> layers, Water water, std::vector<double> moduli)
-      : space({.soil = {std::move(layers), water}}, supports), soil(parts(moduli)), statics(space, *soil, loaded())
+  explicit LayeredColumn(std::vector<Layer> layers, Water water, std::vector<double> moduli, double first = 0)
+      : space(mesh_of(std::move(layers), water, moduli, first), supports), soil(parts(moduli)),
+        statics(space, *soil, loaded())
   {}
+  /// Refined for a first time; 0: as it is.
+  static MeshSpec mesh_of(std::vector<Layer> layers, const Water &water, const std::vector<double> &moduli,
+                          double first)
+  {
+    MeshSpec mesh{.soil = {std::move(layers), water}};
+    if (first > 0)
+      for (const FinePlane &plane : drainage_planes(mesh, supports.drained, moduli, first))
+        mesh.fine.push_back(plane);
+    return mesh;
+  }
   std::unique_ptr<Material> parts(const std::vector<double> &moduli)
   {
     std::vector<CompositeMaterial::Part> of_layers;
@@ -150,7 +164,7 @@ LayeredColumn capped_sand()
 
 TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
 {
-  const Exact exact;
+  const Exact exact(cap, sand);
   EXPECT_NEAR_BECAUSE(exact.settlement_of_cap(1e9), surcharge * cap.thickness / cap.modulus, 1e-15,
                       "all water has left");
   LayeredColumn column = capped_sand();
@@ -173,6 +187,34 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
                   t, column.pressure(middle) / surcharge, p, base, u, all);
       for (double error : {p, base, u, all})
         EXPECT_NEAR_BECAUSE(error, 0, 1e-3, "steps that grow by a twentieth each, 40 elements a layer");
+    }
+}
+
+/// Sand that drains in minutes and clay below it, in two and four elements: the clay drains through its interface, where
+/// the mesh is refined too.
+TEST(LayeredConsolidation, SandDrainsClayFromTheFirstTimeOn)
+{
+  constexpr Stratum blanket{1, 1e8, 1e-4}, clay{5, 3e6, 1e-9};
+  const Exact exact(blanket, clay);
+  const double first = 1e-3 * clay.thickness * clay.thickness * clay.storage() / clay.mobility();
+  LayeredColumn column(
+      {{.name = "sand", .thickness = 1, .porosity = porosity, .permeability = blanket.permeability, .cells = 2},
+       {.name = "clay", .thickness = 5, .porosity = porosity, .permeability = clay.permeability, .cells = 4}},
+      {}, {blanket.modulus, clay.modulus}, first);
+  column.statics.step_undrained();
+  for (unsigned k = 0; k < 8; ++k)
+    {
+      const double t = first * std::pow(3, k);
+      column.statics.step(t - column.statics.time());
+      double p = 0;
+      for (const Place &corner : column.space.corner)
+        p = std::max(p, std::abs(column.pressure(corner[2]) - exact.pressure(corner[2], t)) / surcharge);
+      const double u = column.down(6) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
+      std::printf("  T_v of the clay %.3f, %zu elements: largest error of p %.4f of the surcharge, of the settlement "
+                  "%+.4f\n",
+                  1e-3 * std::pow(3, k), column.space.n_cells(), p, u);
+      EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
+      EXPECT_NEAR_BECAUSE(u, 0, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
     }
 }
 
