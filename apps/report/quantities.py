@@ -9,12 +9,14 @@ FACTORS = {**SI, **UNITS}  # SI units in one of these
 SHOWN = {
     "element_test": {
         "grains": "-", "void_ratio": "-", "relative_density": "-", "e_min": "-", "e_max": "-",
-        "preparation_friction_deg": "deg", "p0": "kPa", "steps": "-", "steps_since_resumed": "-", "seconds": "-",
+        "preparation_friction_deg": "deg", "p0": "kPa", "p_end": "kPa", "IR_at_start": "-", "IR_at_end": "-",
+        "steps": "-", "steps_since_resumed": "-", "seconds": "-",
         "shear_stage_first_row": "-", "reversals": "-", "worst_overshoot": "kPa", "energy_residual": "-",
         "cyclic_response.load_min": "kPa", "cyclic_response.load_max": "kPa",
         "cyclic_response.strain_min": "%", "cyclic_response.strain_max": "%",
         "gamma_max": "%", "tau_max": "kPa", "sigma_v0": "kPa", "stress_ratio_max": "-", "CSR": "-",
-        "liquefaction.row": "-", "liquefaction.cycle": "-", "liquefaction.strain_before": "%",
+        "liquefaction.row": "-", "liquefaction.ratio": "-", "liquefaction.cycle": "-",
+        "liquefaction.strain_before": "%",
         "liquefaction.IR_at_onset": "-", "liquefaction.IR_min": "-", "liquefaction.IR_recovered": "-"},
     "soil_column": {
         "dimension": "-", "height": "m", "mass_damping": "1/s", "viscosity": "ms",
@@ -25,6 +27,7 @@ SHOWN = {
         "max_ru_time": "s", "settlement": "mm", "immediate_settlement": "mm", "final_settlement": "mm",
         "degree_of_consolidation": "%", "energy_residual": "J/m2", "relative_energy_residual": "-", "packings": "-",
         "min_redundancy": "-", "min_redundancy_depth": "m", "min_redundancy_time": "s",
+        "min_redundancy_constraints": "-",
         "surface_motion.settled": "mm", "surface_motion.x": "m", "surface_motion.along_x": "m",
         "surface_motion.largest": "m", "surface_motion.largest_x": "m", "surface_motion.settlement": "mm",
         "surface_motion.settlement_x": "m", "surface_motion.heave": "mm", "surface_motion.heave_x": "m",

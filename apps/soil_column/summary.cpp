@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/summary.hpp"
 
+#include "dem/measure/redundancy.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -95,6 +97,7 @@ void add_grains(const GrainsSummary &g, Json &json)
   json["min_redundancy"] = g.min_redundancy;
   json["min_redundancy_depth"] = g.min_redundancy_depth;
   json["min_redundancy_time"] = g.min_redundancy_time;
+  json["min_redundancy_constraints"] = g.constraints;
 }
 } // namespace
 
@@ -142,8 +145,9 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
     text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
                         s.grains->slowest, s.grains->fastest);
   if (s.grains && s.grains->has_profiles)
-    text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
-                        s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time);
+    text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}\n",
+                        s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time,
+                        index_name(static_cast<int>(s.grains->constraints)));
   if (!s.point_depths.empty())
     text += fmt::format("  depths of histories      {:.4g} m, the points nearest to those asked for\n",
                         fmt::join(s.point_depths, ", "));

@@ -19,7 +19,8 @@ struct GrainsSummary
   double slowest = 0, fastest = 0;                                              ///< V_s at the (re)start, m/s
   bool has_profiles = false;                                                    ///< what follows is known
   double min_redundancy = 0, min_redundancy_depth = 0, min_redundancy_time = 0; ///< of all profiles [-], m, s
-  std::vector<std::vector<std::size_t>> seeds = {};                             ///< SoilMaterial::seeds
+  double constraints = 6;                           ///< of a contact there, which name the index
+  std::vector<std::vector<std::size_t>> seeds = {}; ///< SoilMaterial::seeds
 };
 
 /// What is reported of a finished run. Nothing in it depends on the machine: see RunTimes for that.

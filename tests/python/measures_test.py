@@ -26,7 +26,9 @@ class MeasuresTest(ToleranceTest):
 
     def test_the_network_is_counted_as_in_the_history(self):
         network = self.packing.network()
-        for name, column in (("redundancy_index", "IR"), ("redundancy_index_without_twist", "IR_no_twist"),
+        for name, column in (("redundancy_index", "IR"), ("redundancy_index_eq2", "IR_eq2"),
+                             ("constraints_of_a_contact", "IR_constraints"),
+                             ("redundancy_index_without_twist", "IR_no_twist"),
                              ("redundancy_index_sliding", "IR_sliding"), ("coordination_number", "Z"),
                              ("neither", "f_NSR"), ("sliding", "f_S"), ("grains_without_contact", "N0")):
             self.assertEqual(network[name], self.measures[column], name)
