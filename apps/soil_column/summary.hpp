@@ -31,6 +31,7 @@ struct ColumnSummary
   std::vector<double> point_depths;  ///< of the points whose histories were asked for, m
   std::vector<std::string> warnings; ///< of what may mislead
   ColumnPeaks peaks;
+  std::vector<double> node_depths;         ///< of the peaks at nodes, m; empty if the mesh is shared out
   MotionBands bands;                       ///< nothing in a consolidation
   ColumnState last;                        ///< of the last row
   std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below
