@@ -43,8 +43,8 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 
 /// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), of the start `sigma_v0` (Pa) and
 /// `shear_velocity` (m/s), series `time` (n) and, n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v,
-/// p, u (Pa), ru (-), as in the history, and `further` ones; at the end of the run what add() is given. Written aside and renamed; rows wait in memory until flush() or until
-/// they outnumber a quarter of those written.
+/// p, u (Pa), ru (-), as in the history, and `further` ones; at the end of the run what add() is given. Written aside
+/// and renamed; rows wait in memory until flush() or until they outnumber a quarter of those written.
 /// @throws RunFailure  cannot be written
 /// tested: tests/apps/soil_column_test.py
 class ProfileFile

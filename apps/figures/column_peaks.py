@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figure of the largest values of a shaken column over the depth: acceleration, velocity, displacement, shear strain."""
+"""Figure of the largest values of a column over the depth: acceleration, velocity, displacement, shear strain."""
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 

@@ -124,6 +124,17 @@ Json expansions_json(const std::vector<CapExpansion> &caps)
   return json;
 }
 
+std::string grains_text(const GrainsSummary &g)
+{
+  std::string text =
+      fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", g.packings, g.slowest, g.fastest);
+  if (g.has_profiles)
+    text +=
+        fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}\n", g.min_redundancy,
+                    g.min_redundancy_depth, g.min_redundancy_time, index_name(static_cast<int>(g.constraints)));
+  return text;
+}
+
 void add_grains(const GrainsSummary &g, Json &json)
 {
   json["packings"] = g.packings;
@@ -181,12 +192,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (s.box_motion && p.gamma > 0.1)
     text += "  large strains            beyond 10 %, but taken as small: displacements have an error of their order\n";
   if (s.grains)
-    text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
-                        s.grains->slowest, s.grains->fastest);
-  if (s.grains && s.grains->has_profiles)
-    text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}\n",
-                        s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time,
-                        index_name(static_cast<int>(s.grains->constraints)));
+    text += grains_text(*s.grains);
   if (!s.point_depths.empty())
     text += fmt::format("  depths of histories      {:.4g} m, the points nearest to those asked for\n",
                         fmt::join(s.point_depths, ", "));

@@ -35,6 +35,16 @@ class MeasuresTest(ToleranceTest):
         self.assertGreater(self.packing.anisotropies()["mean_normal_force"], 0)
         self.assertGreater(min(self.packing.stored_energy().values()), -1e-30)
 
+    def test_the_redundancy_index_is_that_of_the_law(self):
+        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact={"friction": "18 deg"},
+                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
+        with tempfile.TemporaryDirectory() as cache:
+            network = isostat.prepare(scene, cache=cache).snapshot.network()
+        self.assertEqual((network["constraints_of_a_contact"], network["isostatic_coordination_number"]), (3, 4))
+        self.assertEqual(network["redundancy_index"], network["redundancy_index_sliding"])
+        self.assertGreater(network["redundancy_index_eq2"], 1.9 * network["redundancy_index"], "moments count")
+        self.assertEqual(self.packing.network()["redundancy_index"], self.packing.network()["redundancy_index_eq2"])
+
     def test_every_measure_has_its_unit(self):
         self.assertEqual(set(isostat.measure_units()), set(self.measures))
 
