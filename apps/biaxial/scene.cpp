@@ -76,14 +76,15 @@ constexpr Key test_keys[] = {
   {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
    .range = not_negative,
    .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation; Gauss "
-           "points should not be farther apart than about 1.6 of it. 0: its own strain.",
+           "points should not be farther apart than about 1.6 of it. 0: its own strain. "
+           "Above 0 m it needs newton.max_iterations = 0 and relaxation.",
    .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
   {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
    .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",
    .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.stiffness; }},
 
   {.path = "weak.cells", .kind = Kind::integer, .value = "0",
-   .text = "Elements along each side of the square; 0: there is none.",
+   .text = "Elements along each side of the square; 0: there is none. The square lies in the block.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.cells; }},
   {.path = "weak.column", .kind = Kind::integer, .value = "0", .text = "Its lowest element along x, counted from 0.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.column; }},

@@ -20,7 +20,7 @@ constexpr const char *side_choices[] = {"tied", "walls"};
 constexpr Key in_mesh[] = {
   {.path = "points", .kind = Kind::integer, .value = "0", .range = {0, 4}, .reason = "because elements are quadratic at most",
    .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
-           "degree 2 (reduced integration) takes fewer packings.",
+           "degree 2 (reduced integration) takes fewer packings. Else at least the degree.",
    .field = [](ColumnMesh &m) -> Field { return &m.points; }},
   {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
    .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension 2), a box "
@@ -46,7 +46,8 @@ constexpr Key in_load[] = {
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
   {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "12 m", .range = positive,
-   .text = "x where it ends; left out: at the right wall.",
+   .text = "x where it ends; left out: at the right wall. "
+           "Between `surcharge_from` and the width, likewise; a plate has no surcharge on a part.",
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_to; }},
 };
 // clang-format on

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// The columns of a profile among those of Micromechanics, the redundancy index first.
-constexpr const char *profile_columns[] = {"IR", "Z", "F_yx", "f_S", "f_R", "f_SR"};
+/// The columns of a profile among those of Micromechanics, the redundancy index first and what it counts last.
+constexpr const char *profile_columns[] = {"IR", "Z", "F_yx", "f_S", "f_R", "f_SR", "IR_constraints"};
 
 std::size_t column_number(const std::string &name)
 {
@@ -48,7 +48,8 @@ GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMate
       places_(soil.grains_places), redundancy_(space.n_points(), std::numeric_limits<double>::quiet_NaN())
 {
   if (resumed)
-    min_ = {resumed->number("min_IR"), resumed->number("min_IR_depth"), resumed->number("min_IR_time")};
+    min_ = {resumed->number("min_IR"), resumed->number("min_IR_depth"), resumed->number("min_IR_time"),
+            resumed->number("min_IR_constraints")};
   for (std::size_t place : soil.grains_places)
     depths_.push_back(space.mesh().depth(space.position[place]));
   history_.columns = counted_to(Micromechanics::columns().size());
@@ -148,11 +149,12 @@ void GrainFiles::record(std::uint64_t step, double time)
 void GrainFiles::profile(std::uint64_t step, double time)
 {
   const std::vector<double> row = append(profiles_, step, time);
-  for (std::size_t k = 0, at = 2; at < row.size(); ++k, at += 1 + profiles_.columns.size())
+  const std::size_t n = profiles_.columns.size();
+  for (std::size_t k = 0, at = 2; at < row.size(); ++k, at += 1 + n)
     {
       redundancy_[places_[profiles_.points[k]]] = row[at + 1];
       if (row[at + 1] < min_.redundancy)
-        min_ = {row[at + 1], row[at], time};
+        min_ = {row[at + 1], row[at], time, row[at + n]};
     }
 }
 
@@ -207,6 +209,7 @@ std::map<std::string, double> GrainFiles::counters() const
           {"grain_paths", static_cast<double>(n_path_rows_)},
           {"min_IR", min_.redundancy},
           {"min_IR_depth", min_.depth},
-          {"min_IR_time", min_.time}};
+          {"min_IR_time", min_.time},
+          {"min_IR_constraints", min_.constraints}};
 }
 } // namespace isostat

@@ -40,6 +40,7 @@ public:
   struct Minimum
   {
     double redundancy = 1e300, depth = 0, time = 0;
+    double constraints = 0; ///< of a contact of the packing's law
   };
   const Minimum &minimum() const { return min_; }
   /// Redundancy index in the last row of the profiles, of each point of the mesh; not-a-number where there is no

@@ -21,7 +21,7 @@ constexpr unsigned ricker = kind_bit(MotionKind::ricker);
 // clang-format off
 constexpr Key keys[] = {
   {.path = "axis", .kind = Kind::choice, .value = "x", .choices = motion_axes, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
-           "rigid body: no P waves; use coupled for them.",
+           "rigid body: no P waves; use coupled for them. A motion along z needs a rigid base there.",
    .field = [](ColumnMotion &m) -> Field { return &m.axis; }},
   {.path = "kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
    .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
@@ -30,7 +30,8 @@ constexpr Key keys[] = {
    .kinds = record,
    .text = "The record: two columns of time (s) and acceleration, DEEPSOIL, PEER .AT2, K-NET ASCII or ESM ASCII; counts from "
            "the folder of the scene file or else from the working directory. Records whose files have times keep the time "
-           "between them: the earliest first sample is at 0 s, and motions without times start at 0 s of that clock.",
+           "between them: the earliest first sample is at 0 s, and motions without times start at 0 s of that clock. "
+           "Samples are 1e-5 s to 10 s apart and within 1e6 m/s2.",
    .field = [](ColumnMotion &m) -> Field { return &m.file; }},
   {.path = "unit", .kind = Kind::choice, .value = "file", .choices = unit_choices, .kinds = record,
    .text = "Unit of the accelerations; file: the one that the header of the record states, else g. A unit that contradicts the "
@@ -60,7 +61,8 @@ constexpr Key keys[] = {
    .text = "Duration of the sine.",
    .field = [](ColumnMotion &m) -> Field { return &m.duration; }},
   {.path = "ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
-   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end.",
+   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end. "
+                                                     "At most half of `duration`.",
    .field = [](ColumnMotion &m) -> Field { return &m.ramp; }},
   {.path = "centre", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "0.75 s", .range = positive, .kinds = ricker,

@@ -43,10 +43,8 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
 
 /// Profiles over the depth at instants, in profiles.h5: datasets `depth` (m), of the start `sigma_v0` (Pa) and
 /// `shear_velocity` (m/s), series `time` (n) and, n x m each, gamma_xz, gamma_yz, eps_zz (-), tau_xz, tau_yz, sigma_v,
-/// p, u (Pa), ru (-), as in the history; at the end of the run `peak_gamma`, `peak_ru` (-, at the depths), `node_depth`
-/// (m) and `peak_acceleration` (m/s2, at those), of a slope `tau_0` (Pa), `end_gamma_xz` (-) at the depths and
-/// `end_displacement` (m) at those of the nodes. Written aside and renamed; rows wait in memory until flush() or until
-/// they outnumber a quarter of those written.
+/// p, u (Pa), ru (-), as in the history, and `further` ones; at the end of the run what add() is given. Written aside
+/// and renamed; rows wait in memory until flush() or until they outnumber a quarter of those written.
 /// @throws RunFailure  cannot be written
 /// tested: tests/apps/soil_column_test.py
 class ProfileFile
@@ -76,11 +74,8 @@ public:
   /// @param values  all depths of the first quantity, then of the second ..., then further series
   void append(double time, std::span<const double> values);
   void flush();
-  /// What has one value for each depth. Call finish(), and this of other quantities, once, at the end.
+  /// What has one value for each depth, once, at the end.
   void add(const char *name, std::span<const double> values, const char *unit);
-  /// Adds the largest values.
-  void finish(std::span<const double> peak_gamma, std::span<const double> peak_ru, std::span<const double> node_depth,
-              std::span<const double> peak_acceleration);
   std::size_t n_rows() const { return n_rows_; }
 
 private:

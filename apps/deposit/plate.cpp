@@ -31,7 +31,8 @@ constexpr Key of_plate[] = {
    .value = "2 m", .range = positive, .text = "Where it ends, likewise.",
    .field = [](Plate &p) -> Field { return &p.to; }},
   {.path = "displacement", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0.1 m",
-   .text = "How far it moves into the soil; negative: away from it.",
+   .text = "How far it moves into the soil; negative: away from it. "
+           "Not 0 m, and less than the extent of the soil along it.",
    .field = [](Plate &p) -> Field { return &p.displacement; }},
   {.path = "rough", .kind = Kind::boolean, .value = "true",
    .text = "Whether the soil sticks to it; false: it slides freely.",

@@ -111,17 +111,4 @@ void ProfileFile::add(const char *name, std::span<const double> values, const ch
   file.root().write(name, values, unit);
   file.commit();
 }
-
-void ProfileFile::finish(std::span<const double> peak_gamma, std::span<const double> peak_ru,
-                         std::span<const double> node_depth, std::span<const double> peak_acceleration)
-{
-  flush();
-  hdf5::File file = hdf5::File::update(path_);
-  hdf5::Group root = file.root();
-  root.write("peak_gamma", peak_gamma, "-");
-  root.write("peak_ru", peak_ru, "-");
-  root.write("node_depth", node_depth, "m");
-  root.write("peak_acceleration", peak_acceleration, "m/s2");
-  file.commit();
-}
 } // namespace isostat

@@ -75,7 +75,7 @@ constexpr Key ground_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.mesh.dimension; }},
   {.path = "mesh.degree", .kind = Kind::integer, .value = "2", .range = {1, 2},
    .reason = "because elements are linear or quadratic",
-   .text = "Degree of the displacement in an element; the pore pressure has degree 1.",
+   .text = "Degree of the displacement in an element; the pore pressure has degree 1. 2 where drainage is \"coupled\".",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.degree; }},
   {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
    .range = positive, .text = "Extent of a strip or block along x, of a block along y too.",
@@ -85,7 +85,8 @@ constexpr Key ground_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.mesh.cells_across; }},
   {.path = "mesh.distributed", .kind = Kind::boolean, .value = "false",
    .text = "One mesh shared out over all MPI ranks, without profiles and files for ParaView; false: a copy on every rank, "
-           "whose results are the same bits for any number of ranks.",
+           "whose results are the same bits for any number of ranks. "
+           "Of dimension 2 or 3, without a plate and materials of the user.",
    .field = [](ColumnScene &s) -> Field { return &s.mesh.distributed; }},
 
   {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_names,
@@ -104,7 +105,8 @@ constexpr Key ground_keys[] = {
   {.path = "water.table", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
    .range = not_negative,
    .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above it has "
-           "neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its moisture.",
+           "neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its moisture. "
+           "Less than the height of the soil; 0 m in a box and on a submerged slope.",
    .field = [](ColumnScene &s) -> Field { return &s.water.table; }},
   {.path = "water.lagged_compressibility", .kind = Kind::boolean, .value = "false",
    .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The fluid must be "
@@ -128,10 +130,12 @@ constexpr Key ground_keys[] = {
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cells; }},
   {.path = "layer.cell_size", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "0.5 m", .range = positive, .group = "cells",
-   .text = "Largest height of an element; the layer gets as few as keep it.",
+   .text = "Largest height of an element; the layer gets as few as keep it. At most 1000000 elements.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cell_size; }},
   {.path = "layer.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "2000 kg/m3", .range = positive, .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there is no water.",
+   .value = "2000 kg/m3", .range = positive,
+   .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there is no water. "
+           "Above that of the water where there is any.",
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.density; }},
   {.path = "layer.porosity", .value = "0.4", .range = fraction, .reason = "because soil has both grains and pores",
    .text = "Volume of pores over the whole.",
@@ -180,7 +184,8 @@ constexpr Key loading_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.base.shear_velocity; }},
   {.path = "base.p_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::optional, .value = "1600 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of P waves in the rock; left out: twice the shear velocity.",
+   .text = "Velocity of P waves in the rock; left out: twice the shear velocity. "
+           "More than 1.155 times the shear velocity.",
    .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
 
   {.path = "load.kind", .kind = Kind::choice, .value = "none", .choices = load_choices,
@@ -208,22 +213,25 @@ constexpr Key loading_keys[] = {
 constexpr Key result_keys[] = {
   {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
-   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`.",
+   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`. Within the soil.",
    .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_depths; }},
   {.path = "grains.path_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"5 m\"]", .range = not_negative,
    .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, which "
-           "sends the packing the same way again, alone.",
+           "sends the packing the same way again, alone. Within the soil.",
    .field = [](ColumnScene &s) -> Field { return &s.grain_output.path_depths; }},
   {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .value = "1 s", .range = positive, .text = "Time between them.",
    .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_interval; }},
 
   {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_names,
-   .text = "What is solved.",
+   .text = "What is solved. "
+           "A consolidation needs water.drainage \"coupled\", a load of kind \"step\", a rigid base and no "
+           "motion; a plate a dry box without motion, load and `mesh.distributed`.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.kind; }},
   {.path = "analysis.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "20 s", .range = positive, .kinds = dynamic, .text = "End of the run.",
+   .presence = Presence::required, .value = "20 s", .range = positive, .kinds = dynamic,
+   .text = "End of the run. At most 1e15 time steps.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.duration; }},
   {.path = "analysis.time_step", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "ms",
    .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = dynamic,
@@ -254,7 +262,8 @@ constexpr Key result_keys[] = {
            "show it; where they cannot be, a warning states from when on results are right.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.first_time; }},
   {.path = "analysis.last_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step.",
+   .presence = Presence::required, .value = "6 h", .range = positive, .kinds = consolidation,
+   .text = "End of the last time step. After `first_time`.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.last_time; }},
   {.path = "analysis.steps", .kind = Kind::integer, .value = "50", .range = {2, 1e6},
    .reason = "because first_time and last_time end a step each, and a million is beyond any use", .kinds = consolidation,
@@ -270,7 +279,7 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.output.history_interval; }},
   {.path = "output.depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
-   .text = "Depths below the surface whose stress paths and motions get histories of their own.",
+   .text = "Depths below the surface whose stress paths and motions get histories of their own. Within the soil.",
    .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
   {.path = "output.x", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "10 m", .range = not_negative,

@@ -7,7 +7,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .column_soil import (MIN_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
                                pore_pressure_ratio, time_bar, time_norm, times_of_motion)
-from .common import BLACK, BLUE, GREEN, ORANGE, RED, panel_letter, plt
+from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, panel_letter, plt
 
 ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
 MIN_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
@@ -19,13 +19,18 @@ def first(time, reached):
     return float(time[np.argmax(reached)]) if np.any(reached) else None
 
 
+def label_of(grains, names=("IR_constraints",)):
+    """Of an axis with the redundancy index of packings, by the columns that say what it counts."""
+    return "Redundancy index\n" + index_label(np.concatenate([np.ravel(grains.get(name, 6)) for name in names]))
+
+
 def grains_profiles(column):
     """Redundancy index, coordination number and fabric over the depth at several times."""
     grains = column.grains.profiles
     if "IR" not in grains:
         return None
     depth, time = grains["depth"], grains["time"]
-    specs = [(grains["IR"], "Redundancy index $I_R$", ISOSTATIC), (grains["Z"], "Coordination number $Z$", None),
+    specs = [(grains["IR"], label_of(grains), ISOSTATIC), (grains["Z"], "Coordination number $Z$", None),
              (np.where(grains["Z"] >= MIN_Z, grains["F_yx"], np.nan),
               rf"Fabric $F_{{[v-h]}}$, where $Z \geq {MIN_Z}$", 0.0)]
     figure, panels = plt.subplots(1, 3, figsize=(9.0, 4.3), sharey=True, layout="constrained")
@@ -79,7 +84,7 @@ def grains_map(column):
     x, y = edges(time, time[0], time[-1]), edges(depth, 0, bottom)
     shade = axes.pcolormesh(x, y, ir, cmap="RdBu", rasterized=True,
                             norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(ir)))))
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.02).set_label("Redundancy index $I_R$")
+    figure.colorbar(shade, ax=axes, aspect=25, pad=0.02).set_label(label_of(grains))
     outline(axes, x, y, ir < ISOSTATIC, colors=BLACK, linewidths=1.0)
     draw_onset(side, depth, time, ir < ISOSTATIC, marker="o", markersize=4, color=BLACK)
     wet = wet_cells(column)
@@ -138,7 +143,7 @@ def draw_redundancy(column, axes, points, shades):
         marked(axes, grains["time"], grains[f"{prefix}_IR"], onsets(column, prefix)[0], shade)
     axes.axhline(ISOSTATIC, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
     axes.set_ylim(bottom=0)
-    axes.set_ylabel("Redundancy index $I_R$")
+    axes.set_ylabel(label_of(grains, [f"{prefix}_IR_constraints" for _, prefix in points]))
     axes.set_title("dots: below 1 for the first time", loc="right", fontsize=8.5, pad=5)
     axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0)
 

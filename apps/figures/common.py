@@ -3,6 +3,7 @@
 import csv
 import re
 import sys
+import tomllib
 import warnings
 
 import matplotlib.pyplot as plt
@@ -11,7 +12,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from .files import Damaged, read_parsed
 
-LIQUEFIED = 0.01  # p'/p0' below which the specimen counts as liquefied
+LIQUEFIED = 0.01  # p'/p0' below which a specimen counts as liquefied, unless its scene says otherwise
+NOT_SHEARED = ("compress", "friction", "rebalance", "hold", "k0-compress", "repeat")  # kinds of stage
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
 SAME_VOLUME = 1e-6  # change of e below which a test is at constant volume
 TURNS = 1.5  # path over range of the strain from which a test counts as turning back
@@ -105,9 +107,24 @@ def read_summary(path):
     return {}
 
 
+def first_sheared_row(folder, summary, stages):
+    """The row of the history with which its first shear stage begins, or None: from the summary, and as long as there
+    is none from the scene. Without a scene all rows count.   @param stages  column of the history"""
+    if "shear_stage_first_row" in summary:
+        return summary["shear_stage_first_row"]
+    try:
+        scene = tomllib.loads((folder / "scene.toml").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return 0
+    sheared = [number for number, stage in enumerate(scene.get("stage", []))
+               if stage.get("kind") not in NOT_SHEARED and not stage.get("consolidation")]
+    rows = np.flatnonzero(np.isin(stages, sheared))
+    return int(rows[0]) if rows.size else None
+
+
 class Run:
-    """The shear stages of a run: columns, p0 (Pa), onset of liquefaction (row among the shear rows, or None). Columns
-    of all stages are in `whole`.
+    """The shear stages of a run, or all of one that has none: columns, p0 (Pa; None: it is not sheared), onset of
+    liquefaction (row among the shear rows, or None). Columns of all stages are in `whole`.
 
     `shear` says that it is simple shear in a cell: its strain is gamma_xy; that of a triaxial test is eps_y.
     """
@@ -116,20 +133,22 @@ class Run:
         summary = read_summary(folder / "summary.json")
         columns = read_history(folder / "history.csv")
         total = len(next(iter(columns.values())))
-        first = int(summary.get("shear_stage_first_row") or 0)
+        started = first_sheared_row(folder, summary, columns.get("stage", np.zeros(total)))
+        self.sheared, first = started is not None, int(started or 0)
         if not 0 <= first < total:
             raise BadInput(f"summary.json: shear_stage_first_row = {first}, but history.csv has {total} rows")
         self.whole = columns
         self.columns = {name: values[first:] for name, values in columns.items()}
         self.n_rows = total - first
-        self.shear = self.has("gamma_xy") and np.nanmax(abs(self["gamma_xy"])) > np.nanmax(abs(self["eps_y"]))
+        self.shear = (self.sheared and self.has("gamma_xy")
+                      and np.nanmax(abs(self["gamma_xy"])) > np.nanmax(abs(self["eps_y"])))
         for name in ("p", "tau_xy", "sigma_y") if self.shear else ("p", "q", "eps_y"):
             if not self.has(name):
                 raise BadInput(f"history.csv: column `{name}` is missing or empty")
         self.drained_stages = summary.get("drained") or []
         self.title = summary.get("title") or folder.resolve().name
-        self.p0 = float(summary.get("p0") or self["p"][0])
-        self.p_ratio = self["p"] / self.p0
+        self.p0 = float(summary.get("p0") or self["p"][0]) if self.sheared else None
+        self.p_ratio = self["p"] / self.p0 if self.sheared else None
         self.onset, self.onset_cycle = self._find_onset(summary, first)
         self.cyclic = self.has("reversals") and np.nanmax(self["reversals"]) >= 1
         self.strain = self["gamma_xy"] if self.shear else self["eps_y"]
@@ -148,16 +167,20 @@ class Run:
         return self.columns[name]
 
     def _find_onset(self, summary, first):
-        if "liquefaction" in summary:
-            event = summary["liquefaction"]
+        self.liquefied_ratio = LIQUEFIED
+        if "liquefaction" in summary or not self.sheared:
+            event = summary.get("liquefaction")
             if not event or event.get("row") is None:
                 return None, None
+            self.liquefied_ratio = event.get("ratio", LIQUEFIED)
             return min(max(int(event["row"]) - first, 0), self.n_rows - 1), event.get("cycle")
         below = np.flatnonzero(self.p_ratio < LIQUEFIED)
         return (int(below[0]), None) if below.size else (None, None)
 
     def _progress(self):
         """What the measures are drawn against, and its label: a path that turns back would cross itself."""
+        if not self.sheared:
+            return self["step"], "Time step"
         if self.cyclic:
             return self._cycles(), "Number of cycles (half the reversals)"
         steps = np.abs(np.diff(self.strain, prepend=self.strain[0]))
@@ -190,6 +213,16 @@ class Run:
         load = self["tau_xy"] if self.shear else self["q"]
         whole = 2 * np.nanmax(np.abs(load[:start + 1] - load[0]))
         return np.clip(np.nanmax(np.abs(load[start:] - load[start])) / whole, 0.05, 1) if whole > 0 else 1.0
+
+
+def index_label(constraints):
+    """The redundancy index of a contact law, named by the constraints of a contact: `constraints` of some rows."""
+    counts = np.unique(constraints)
+    if len(counts) != 1:
+        return r"$I_R$ of the law in force"
+    n = int(counts[0])
+    eq2 = ", Eq. (2)" if n == 6 else ""
+    return rf"$I_R$, {n} constraint{'s' if n > 1 else ''} a contact{eq2}"
 
 
 # --- drawing ---------------------------------------------------------------------------------------------------------
@@ -320,7 +353,7 @@ def draw_path(run, axes, x, y):
     axes.plot(x[0], y[0], "o", color=BLACK, markersize=3.5, zorder=5, label="start", clip_on=False)
     if run.onset is not None:
         axes.plot(x[run.onset], y[run.onset], "D", color=RED, markersize=4, zorder=6, clip_on=False,
-                  label=rf"$p^\prime/p_0^\prime < {LIQUEFIED}$")
+                  label=rf"$p^\prime/p_0^\prime < {run.liquefied_ratio:g}$")
 
 
 def legend_below(run, figure, axes):

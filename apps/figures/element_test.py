@@ -7,7 +7,8 @@ fig_stress_path.png        triaxial: (a) q against p', (b) q against axial strai
                            strain against axial strain; simple shear: tau against (a) sigma'_v, (b) p', (c) gamma
 fig_dilatancy.png          drained triaxial: of the last drained stage (a) q/p' and (b) the rate of dilatancy
                            D = -d eps_v/d eps against axial strain, (c) q/p' against D
-fig_redundancy.png         (a) redundancy index I_R, (b) p'/p0'
+fig_redundancy.png         (a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts,
+                           (b) p'/p0', of a test without a shear stage p'
 fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
 fig_fabric.png             (a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]
 fig_principal_stress.png   simple shear: direction of the major principal stress against (a) cycles or gamma, (b)
@@ -15,23 +16,26 @@ fig_principal_stress.png   simple shear: direction of the major principal stress
 
 Stresses and strains are positive in compression. Cyclic tests are drawn against the number of cycles: reversals count
 half a cycle each, the first one too, and between two the strain, which runs one way there, says how far it has come.
-Monotonic tests are drawn against axial strain. In simple shear the strain is gamma. If a cyclic test has fewer cycles
+Monotonic tests are drawn against axial strain, tests without a shear stage against the time step and without a stress
+path. In simple shear the strain is gamma. If a cyclic test has fewer cycles
 after the onset of liquefaction than before, they get half of the x axis, and its label says so. A column that is
 missing costs its curve or panel, with a note.
 """
 import numpy as np
 
-from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, LIQUEFIED, ORANGE, Run, curves, draw_path,
-                          explain_median, legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt,
-                          two_rows)
+from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, ORANGE, Run, curves, draw_path, explain_median, index_label,
+                          legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt, two_rows)
 from .drawing import Drawing
 from .dilatancy import dilatancy
 from .simple_shear import rotation, shear_path
 
+FULL = 6  # constraints of a contact as Eq. (2) counts them
 NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
 
 
 def stress_path(run):
+    if not run.sheared:
+        return None
     if run.shear:
         return shear_path(run)
     n = 3 if run.drained else 2
@@ -57,7 +61,12 @@ def stress_path(run):
 
 
 def draw_pressure(run, axes):
-    """p'/p0', over the decades that a liquefying specimen goes through; else from zero."""
+    """p'/p0', over the decades that a liquefying specimen goes through; else from zero. Of what is not sheared p'."""
+    if not run.sheared:
+        axes.plot(run.progress, run["p"] / 1e3, color=BLACK, linewidth=0.9)
+        axes.set_ylabel(r"$p^\prime$ (kPa)")
+        axes.set_ylim(bottom=0)
+        return
     ratio = np.clip(run.p_ratio, FLOOR, None)
     axes.plot(run.progress, ratio, color=BLACK, linewidth=0.9)
     axes.set_ylabel(r"$p^\prime/p_0^\prime$")
@@ -66,8 +75,9 @@ def draw_pressure(run, axes):
         axes.set_ylim(0, 1.1 * top)
         return
     axes.set_yscale("log")
-    axes.set_ylim(FLOOR if lowest < LIQUEFIED else LIQUEFIED / 2, 1.5 * top)
-    mark_level(axes, LIQUEFIED, f"${LIQUEFIED}$")
+    level = run.liquefied_ratio
+    axes.set_ylim(FLOOR if lowest < level else level / 2, 1.5 * top)
+    mark_level(axes, level, f"${level:g}$")
     if lowest < FLOOR:
         axes.annotate(r"values below $10^{-4}$ lie on the axis", (0.01, 0.05), xycoords="axes fraction", fontsize=7.5,
                       color=GREY)
@@ -77,13 +87,17 @@ def redundancy(run):
     if not run.has("IR"):
         return None
     figure, (top, bottom) = two_rows(run, (1.25, 1))
-    curves(run, top, [("IR", r"$I_R$, Eq. (2)", {"color": BLUE, "zorder": 3}),
-                      ("IR_no_twist", "without twisting", {"color": ORANGE, "linewidth": 0.7}),
-                      ("IR_sliding", "sliding only", {"color": GREEN, "linewidth": 0.7})])
+    constraints = run["IR_constraints"] if run.has("IR_constraints") else FULL
+    own = index_label(constraints)
+    thin = [("IR_eq2", "Eq. (2)", {"color": GREY, "linewidth": 0.7})] if np.any(constraints < FULL) else [
+        ("IR_no_twist", "without twisting", {"color": ORANGE, "linewidth": 0.7}),
+        ("IR_sliding", "sliding only", {"color": GREEN, "linewidth": 0.7})]
+    curves(run, top, [("IR", own, {"color": BLUE, "zorder": 3}), *thin])
     top.set_ylim(bottom=0)
     top.set_ylabel(r"Redundancy index $I_R$")
     mark_level(top, 1.0, "isostatic\n$I_R = 1$")
-    mark_level(top, 0.35, "$0.35$")
+    if run.sheared and np.all(constraints == FULL):
+        mark_level(top, 0.35, "$0.35$")  # of full liquefaction, in Eq. (2)
 
     draw_pressure(run, bottom)
     mark_onset(run, (top, bottom))
@@ -141,7 +155,8 @@ FIGURES = {
 
 
 def undrawn(name, run):
-    meant = {"fig_principal_stress": run.shear, "fig_dilatancy": False}  # of simple shear, of drained stages alone
+    # of simple shear, of drained stages, of stages that shear alone
+    meant = {"fig_principal_stress": run.shear, "fig_dilatancy": False, "fig_stress_path": run.sheared}
     if meant.get(name, True):
         note(f"{name}: none of its columns is there; not drawn")
 

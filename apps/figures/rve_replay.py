@@ -8,7 +8,7 @@ fig_grains.png   redundancy index and coordination number over time, below the p
 """
 import numpy as np
 
-from .common import BLACK, BLUE, ORANGE, RED, panel_letter, plt, read_history, read_summary
+from .common import BLACK, BLUE, ORANGE, RED, index_label, panel_letter, plt, read_history, read_summary
 from .drawing import Drawing
 
 
@@ -54,7 +54,8 @@ def grains(run):
     axes[0].plot(run.grains["time"], run.grains["p"] / 1e3, color=BLACK)
     axes[0].set_ylabel("$p'$ (kPa)")
     axes[0].set_ylim(bottom=0)
-    axes[1].plot(run.grains["time"], run.grains["IR"], color=BLUE, label="redundancy index $I_R$")
+    axes[1].plot(run.grains["time"], run.grains["IR"], color=BLUE,
+                 label=index_label(run.grains.get("IR_constraints", 6)))
     axes[1].plot(run.grains["time"], np.asarray(run.grains["Z"]) / 4, color=ORANGE, label="$Z/4$")
     axes[1].axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)))
     axes[1].set_ylim(bottom=0)

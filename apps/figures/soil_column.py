@@ -10,6 +10,8 @@ fig_transfer.png      Fourier amplitudes, surface over input; one elastic layer:
                       largest difference is printed; other soil: smoothed, too (Konno and Ohmachi 1998, b = 80)
 fig_profiles.png      largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the
                       depth at several times
+fig_peaks.png         largest horizontal acceleration, velocity and displacement and largest shear strain of all
+                      steps over the depth; a dot marks the largest of each, whose value and depth are above it
 fig_velocity.png      velocity of shear waves of small strain over the depth at the start, where it varies
 fig_ru_map.png        r_u over depth and time, below the input
 fig_histories.png     wet column: r_u at the output depths and its largest value anywhere; sinking column: settlement
@@ -40,6 +42,7 @@ from .column_consolidation import isochrones, settlement
 from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
+from .column_peaks import peaks
 from .column_slope import is_slope, spreading
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
 from .drawing import Drawing
@@ -49,6 +52,7 @@ FIGURES = {
     "fig_spectra": spectra,
     "fig_transfer": transfer,
     "fig_profiles": profiles,
+    "fig_peaks": peaks,
     "fig_velocity": velocity,
     "fig_ru_map": ru_map,
     "fig_histories": histories,

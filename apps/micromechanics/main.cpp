@@ -23,6 +23,7 @@
 #include "dem/assembly/assembly.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_file.hpp"
+#include "dem/measure/redundancy.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -190,10 +191,11 @@ std::string summary(const Tables &tables)
 {
   const std::optional<std::size_t> liquefied = onset(tables);
   std::string text =
-      fmt::format("{} snapshot{}; p0' = {:.2f} kPa\n{:<10}{:>6}{:>11}{:>10}{:>10}{:>8}{:>8}{:>8}{:>8}{:>8}"
+      fmt::format("{} snapshot{}; p0' = {:.2f} kPa; I_R: {}\n{:<10}{:>6}{:>11}{:>10}{:>10}{:>8}{:>8}{:>8}{:>8}{:>8}"
                   "{:>8}{:>9}{:>9}\n",
-                  tables.rows.size(), tables.rows.size() == 1 ? "" : "s", tables.rows[0].at("p") / 1e3, "", "no.",
-                  "eps_y (%)", "p' (kPa)", "q (kPa)", "I_R", "Z", "F_yx", "a_c", "a_n", "a_t", "q/p'", "from a");
+                  tables.rows.size(), tables.rows.size() == 1 ? "" : "s", tables.rows[0].at("p") / 1e3,
+                  index_name(static_cast<int>(tables.rows[0].at("IR_constraints"))), "", "no.", "eps_y (%)", "p' (kPa)",
+                  "q (kPa)", "I_R", "Z", "F_yx", "a_c", "a_n", "a_t", "q/p'", "from a");
   const auto line = [&](const char *name, std::size_t k) {
     const auto &r = tables.rows[k];
     const double p = r.at("p_LW"), ratio = p > 0 ? r.at("q_LW") / p : 0;

@@ -104,10 +104,11 @@ def liquefaction(results, run):
     undrained = [stage for stage in results.scene.get("stage", []) if stage["kind"].startswith("undrained")]
     if not undrained and results.numbers.get("liquefaction"):
         undrained = [stage for stage in results.scene["stage"] if stage["kind"] == "path"]
-    if not undrained:
+    if not undrained or not run.sheared:
         return
     event, ratio = results.numbers.get("liquefaction"), undrained[0].get("liquefaction_ratio", LIQUEFIED)
     if event:
+        ratio = event.get("ratio", ratio)
         cycles = f"after {event['cycle']:g} cycles" if run.cyclic else "before its end"
         yield "Liquefied:", (f"p'/p0' fell below {ratio:g} {cycles}; I_R at the onset {event['IR_at_onset']:.3f}, "
                              f"largest strain before it {100 * event['strain_before']:.3g} %."), "plain"

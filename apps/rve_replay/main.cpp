@@ -44,12 +44,21 @@ struct Options
 /// How the stress of the packing alone compares with what the finite elements were given.
 struct ReplayResult
 {
-  std::size_t increments = 0, equal = 0;      ///< all of them; those after which all six stresses are equal to the bit
-  std::uint64_t steps = 0;                    ///< time steps of the packing
-  double shear_error = 0, pressure_error = 0; ///< rms of the difference of tau_xz and p' over that of the record [-]
-  double largest_error = 0;                   ///< |stress difference| / p0' [-] ...
-  std::size_t largest_at = 0;                 ///< ... after this increment
-  double largest_strain = 0, min_pressure = 0, min_redundancy = 1e300; ///< |gamma_xz|; Pa; I_R
+  std::size_t increments = 0, equal = 0;       ///< all of them; those after which all six stresses are equal to the bit
+  std::uint64_t steps = 0;                     ///< time steps of the packing
+  double shear_error = 0, pressure_error = 0;  ///< rms of the difference of tau_xz and p' over that of the record [-]
+  double largest_error = 0;                    ///< |stress difference| / p0' [-] ...
+  std::size_t largest_at = 0;                  ///< ... after this increment
+  double largest_strain = 0, min_pressure = 0; ///< |gamma_xz|; Pa
+  std::optional<double> min_redundancy;        ///< I_R of the rows; none: there is none
+  int constraints = 6;                         ///< of a contact, which name it
+
+  void note(const ContactNetwork &network)
+  {
+    const double index = network.redundancy_index();
+    min_redundancy = std::min(min_redundancy.value_or(index), index);
+    constraints = network.law.number();
+  }
 };
 
 double pressure(const Stress &s) { return -(s[0] + s[1] + s[2]) / 3; }
@@ -140,7 +149,7 @@ ReplayResult replay(const StrainRecord &record, const ElementSettings &settings,
       if ((k + 1) % options.every == 0)
         {
           const Micromechanics m = micromechanics(element.rve().snapshot());
-          result.min_redundancy = std::min(result.min_redundancy, m.network.redundancy_index());
+          result.note(m.network);
           std::vector<double> row = m.row();
           row.insert(row.begin(), {done, record.time[k]});
           grains.append(row);
@@ -159,11 +168,12 @@ ReplayResult replay(const StrainRecord &record, const ElementSettings &settings,
 
 std::string to_text(const ReplayResult &r, const StrainRecord &record, const Options &options)
 {
-  std::string text =
-      fmt::format("packing at {:.4g} m, {} increments, {} time steps\n"
-                  "  largest shear strain     {:.4g} %\n  smallest p'                 {:.4g} kPa\n  smallest I_R       "
-                  "         {:.4g}\n",
-                  record.depth, r.increments, r.steps, 100 * r.largest_strain, r.min_pressure / 1e3, r.min_redundancy);
+  std::string text = fmt::format("packing at {:.4g} m, {} increments, {} time steps\n"
+                                 "  largest shear strain     {:.4g} %\n  smallest p'              {:.4g} kPa\n",
+                                 record.depth, r.increments, r.steps, 100 * r.largest_strain, r.min_pressure / 1e3);
+  if (r.min_redundancy)
+    text +=
+        fmt::format("  smallest I_R             {:.4g} of rows; {}\n", *r.min_redundancy, index_name(r.constraints));
   if (r.equal == r.increments)
     return text + fmt::format("  stress                   that of the column to the bit after all {} increments\n",
                               r.increments);
@@ -189,7 +199,7 @@ Json to_json(const ReplayResult &r, const StrainRecord &record)
           {"largest_error", r.largest_error},
           {"largest_strain", r.largest_strain},
           {"min_pressure", r.min_pressure},
-          {"min_redundancy", r.min_redundancy}};
+          {"min_redundancy", r.min_redundancy ? Json(*r.min_redundancy) : Json()}};
 }
 
 std::string scene_text(const Options &options, const RveSettings &settings)

@@ -266,6 +266,8 @@ private:
       summary.point_depths.push_back(point.depth);
     follower_.gather();
     summary.peaks = follower_.peaks;
+    if (files_.line())
+      summary.node_depths = files_.line()->node_depths;
     summary.warnings = warnings_;
     summary.last = files_.history().state;
     summary.expansions = files_.history().expansions();

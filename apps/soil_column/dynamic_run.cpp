@@ -150,9 +150,10 @@ private:
       return;
     const RveMaterialCost &cost = soil_.grains->cost();
     const auto n_packings = soil_.grains->owners().size();
-    const auto &[redundancy, depth, time] = grain_files_->minimum();
+    const auto &[redundancy, depth, time, constraints] = grain_files_->minimum();
     summary.grains = {n_packings, range_[0], range_[1], scene_.output.profile_interval.has_value(),
-                      redundancy, depth,     time,      soil_.seeds};
+                      redundancy, depth,     time,      constraints,
+                      soil_.seeds};
     times_.packing_trials = static_cast<double>(cost.trials * n_packings);
     times_.packing_steps = static_cast<double>(cost.steps);
     times_.in_packings = cost.batch_seconds;

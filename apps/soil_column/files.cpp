@@ -18,6 +18,18 @@ std::vector<double> chosen(const std::vector<double> &values, const std::vector<
     some.push_back(values[k]);
   return some;
 }
+
+/// Displacement and, of what moves, velocity of the nodes of a line, along x, y and z.
+ProfileFile::Further of_nodes(const ColumnLine &line, bool moves)
+{
+  ProfileFile::Further further{.series = {}, .constants = {{"node_depth", "m", line.node_depths}}};
+  for (const char axis : {'x', 'y', 'z'})
+    further.series.push_back({fmt::format("node_displacement_{}", axis), "m", line.nodes.size()});
+  for (const char axis : {'x', 'y', 'z'})
+    if (moves)
+      further.series.push_back({fmt::format("node_velocity_{}", axis), "m/s", line.nodes.size()});
+  return further;
+}
 } // namespace
 
 template <int dim>
@@ -26,7 +38,7 @@ ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const D
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
       paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides == Sides::walls),
       packings_(scene.has_grains() && scene.analysis.kind == AnalysisKind::dynamic),
-      history_(scene, space, motions, stride)
+      moves_(scene.analysis.kind == AnalysisKind::dynamic), history_(scene, space, motions, stride)
 {
   if (!scene.mesh.distributed)
     line_ = column_line(space);
@@ -37,9 +49,9 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
 {
   recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"), scene_text_);
   if (line_)
-    profiles_ = std::make_unique<ProfileFile>(folder_ / "profiles.h5", line_->point_depths,
-                                              chosen(history_.vertical_stress(), line_->points),
-                                              chosen(velocities, line_->points), counter(resumed, "profiles"));
+    profiles_ = std::make_unique<ProfileFile>(
+        folder_ / "profiles.h5", line_->point_depths, chosen(history_.vertical_stress(), line_->points),
+        chosen(velocities, line_->points), counter(resumed, "profiles"), of_nodes(*line_, moves_));
   if (line_ && box_)
     maps_ = std::make_unique<BoxMaps>(folder_ / "maps.h5", space_, history_.vertical_stress(), velocities,
                                       counter(resumed, "profiles"), packings_);
@@ -63,7 +75,12 @@ void ColumnFiles<dim>::profile(const ColumnInstant &instant, std::span<const dou
 {
   if (!profiles_)
     return;
-  profiles_->append(instant.time, columns_at(instant, line_->points, history_.vertical_stress()));
+  std::vector<double> values = columns_at(instant, line_->points, history_.vertical_stress());
+  for (const std::vector<double> *of_nodes : {&instant.displacement, &instant.velocity})
+    for (unsigned axis = 0; axis < 3 && (moves_ || of_nodes == &instant.displacement); ++axis)
+      for (const unsigned dof : line_->nodes)
+        values.push_back((*of_nodes)[dof + axis]);
+  profiles_->append(instant.time, values);
   if (maps_)
     maps_->append(instant, redundancy);
 }
@@ -110,7 +127,11 @@ void ColumnFiles<dim>::finish(const ColumnPeaks &peaks, const std::optional<Spre
   flush();
   if (!profiles_)
     return;
-  profiles_->finish(peaks.line_gamma, peaks.line_ru, line_->node_depths, peaks.line_acceleration);
+  profiles_->add("peak_gamma", peaks.line_gamma, "-");
+  profiles_->add("peak_ru", peaks.line_ru, "-");
+  profiles_->add("peak_acceleration", peaks.line_acceleration, "m/s2");
+  profiles_->add("peak_velocity", peaks.line_velocity, "m/s");
+  profiles_->add("peak_displacement", peaks.line_displacement, "m");
   if (!spreading)
     return;
   profiles_->add("tau_0", spreading->line_shear, "Pa");

@@ -46,7 +46,7 @@ private:
   std::filesystem::path folder_;
   std::string scene_text_;
   const Discretisation<dim> &space_;
-  bool paraview_, box_, packings_; ///< whether there is one, are any that profiles show
+  bool paraview_, box_, packings_, moves_; ///< whether there is one, are any that profiles show; it has velocities
   ColumnHistory<dim> history_;
   std::optional<ColumnLine> line_;
   std::unique_ptr<Recorder> recorder_;

@@ -9,6 +9,13 @@ namespace isostat
 namespace
 {
 double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
+
+/// Size of a horizontal vector whose components along x and y are unknowns.
+double horizontal(const Vector &values, long x, long y, double add_x, double add_y)
+{
+  return std::hypot(values.local_element(static_cast<unsigned>(x)) + add_x,
+                    values.local_element(static_cast<unsigned>(y)) + add_y);
+}
 } // namespace
 
 void take_max(double &value, std::initializer_list<double *> with, MPI_Comm communicator)
@@ -28,6 +35,8 @@ void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
   checkpoint.vectors["peak_gamma"] = line_gamma;
   checkpoint.vectors["peak_line_ru"] = line_ru;
   checkpoint.vectors["peak_acceleration"] = line_acceleration;
+  checkpoint.vectors["peak_velocity"] = line_velocity;
+  checkpoint.vectors["peak_displacement"] = line_displacement;
 }
 
 void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
@@ -36,6 +45,8 @@ void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
   line_gamma = checkpoint.vector("peak_gamma", line_gamma.size());
   line_ru = checkpoint.vector("peak_line_ru", line_ru.size());
   line_acceleration = checkpoint.vector("peak_acceleration", line_acceleration.size());
+  line_velocity = checkpoint.vector("peak_velocity", line_velocity.size());
+  line_displacement = checkpoint.vector("peak_displacement", line_displacement.size());
 }
 
 template <int dim>
@@ -49,7 +60,8 @@ PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLi
     {
       peaks.line_gamma.assign(line->points.size(), 0.0);
       peaks.line_ru.assign(line->points.size(), 0.0);
-      peaks.line_acceleration.assign(line->nodes.size(), 0.0);
+      for (std::vector<double> *of_nodes : {&peaks.line_acceleration, &peaks.line_velocity, &peaks.line_displacement})
+        of_nodes->assign(line->nodes.size(), 0.0);
     }
 }
 
@@ -91,17 +103,21 @@ void PeakFollower<dim>::follow(const Dynamics &run)
   const double ax = motion[0].acceleration(now), ay = motion[1].acceleration(now);
   const bool absolute = run.settings().base.compliant();
   const double frame_x = absolute ? 0 : ax, frame_y = absolute ? 0 : ay;
-  const Vector &a = run.acceleration();
-  const auto size = [&](long x, long y) {
-    return std::hypot(a.local_element(static_cast<unsigned>(x)) + frame_x,
-                      a.local_element(static_cast<unsigned>(y)) + frame_y);
-  };
   peaks.input = std::max(peaks.input, std::hypot(ax, ay));
   if (surface_[0] >= 0 && surface_[1] >= 0)
-    peaks.surface = std::max(peaks.surface, size(surface_[0], surface_[1]));
-  if (line_)
-    for (std::size_t k = 0; k < line_->nodes.size(); ++k)
-      peaks.line_acceleration[k] = std::max(peaks.line_acceleration[k], size(line_->nodes[k], line_->nodes[k] + 1));
+    peaks.surface = std::max(peaks.surface, horizontal(run.acceleration(), surface_[0], surface_[1], frame_x, frame_y));
+  if (!line_)
+    return;
+  follow_nodes(run.acceleration(), frame_x, frame_y, peaks.line_acceleration);
+  follow_nodes(run.velocity(), 0, 0, peaks.line_velocity);
+  follow_nodes(run.displacement(), 0, 0, peaks.line_displacement);
+}
+
+template <int dim>
+void PeakFollower<dim>::follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const
+{
+  for (std::size_t k = 0; k < line_->nodes.size(); ++k)
+    largest[k] = std::max(largest[k], horizontal(values, line_->nodes[k], line_->nodes[k] + 1, x, y));
 }
 
 template <int dim>

@@ -16,7 +16,8 @@ struct ColumnPeaks
   double gamma = 0, gamma_depth = 0;        ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
   double ru = 0, ru_depth = 0, ru_time = 0; ///< [-], m, s
   std::vector<double> line_gamma, line_ru;  ///< at the points of a ColumnLine; empty if the mesh is shared out
-  std::vector<double> line_acceleration;    ///< likewise at its nodes
+  // Likewise at its nodes, horizontal by size: m/s2; m/s and m as the unknowns count (from a rigid base).
+  std::vector<double> line_acceleration, line_velocity, line_displacement;
 
   template <class Peaks, class Visit>
   static void for_each(Peaks &p, const Visit &visit)
@@ -46,6 +47,9 @@ public:
   ColumnPeaks peaks;
 
 private:
+  /// Of `values`, with x and y added to those of the unknowns, at the nodes of the line.
+  void follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const;
+
   const Discretisation<dim> &space_;
   const ColumnLine *line_;
   const std::vector<double> &vertical_stress_;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/summary.hpp"
 
+#include "dem/measure/redundancy.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tuple>
 
 namespace isostat
 {
@@ -22,6 +25,43 @@ const char *of_both_axes(const ColumnScene &scene)
 {
   const auto horizontal = [](const ColumnMotion &motion) { return motion.axis != Axis::z; };
   return std::ranges::count_if(scene.motions, horizontal) > 1 ? ", x and y as a vector" : "";
+}
+
+/// The largest of the values at the nodes, and its depth.
+struct Largest
+{
+  double value = 0, depth = 0;
+};
+
+/// None of a box, whose nodes are those of one vertical, and of what does not shake.
+std::optional<Largest> largest(const ColumnSummary &s, const ColumnScene &scene, const std::vector<double> &of_nodes)
+{
+  if (!shaken(scene) || s.box_motion || s.node_depths.empty())
+    return std::nullopt;
+  const auto at = std::ranges::max_element(of_nodes);
+  return Largest{*at, s.node_depths[static_cast<std::size_t>(at - of_nodes.begin())]};
+}
+
+std::string largest_text(const ColumnSummary &s, const ColumnScene &scene)
+{
+  std::string text;
+  for (const auto &[name, unit, of_nodes] : {std::tuple("peak velocity", "m/s", &s.peaks.line_velocity),
+                                             {"peak displacement", "m", &s.peaks.line_displacement}})
+    if (const auto found = largest(s, scene, *of_nodes))
+      text += fmt::format("  {:<25}{:.4g} {}{} at a depth of {:.2f} m\n", name, found->value, unit,
+                          scene.base.compliant() ? "" : " against the base", found->depth);
+  return text;
+}
+
+void add_largest(const ColumnSummary &s, const ColumnScene &scene, Json &json)
+{
+  for (const auto &[name, of_nodes] :
+       {std::pair("peak_velocity", &s.peaks.line_velocity), std::pair("peak_displacement", &s.peaks.line_displacement)})
+    {
+      const auto found = largest(s, scene, *of_nodes);
+      json[name] = found ? Json(found->value) : Json();
+      json[fmt::format("{}_depth", name)] = found ? Json(found->depth) : Json();
+    }
 }
 
 double amplification(const ColumnPeaks &peaks) { return peaks.input > 0 ? peaks.surface / peaks.input : 0; }
@@ -84,6 +124,17 @@ Json expansions_json(const std::vector<CapExpansion> &caps)
   return json;
 }
 
+std::string grains_text(const GrainsSummary &g)
+{
+  std::string text =
+      fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", g.packings, g.slowest, g.fastest);
+  if (g.has_profiles)
+    text +=
+        fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}\n", g.min_redundancy,
+                    g.min_redundancy_depth, g.min_redundancy_time, index_name(static_cast<int>(g.constraints)));
+  return text;
+}
+
 void add_grains(const GrainsSummary &g, Json &json)
 {
   json["packings"] = g.packings;
@@ -95,6 +146,7 @@ void add_grains(const GrainsSummary &g, Json &json)
   json["min_redundancy"] = g.min_redundancy;
   json["min_redundancy_depth"] = g.min_redundancy_depth;
   json["min_redundancy_time"] = g.min_redundancy_time;
+  json["min_redundancy_constraints"] = g.constraints;
 }
 } // namespace
 
@@ -122,6 +174,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                         "peak surface below it {:.4f} m/s2\n",
                         fmt::format("{:.4g} Hz", scene.analysis.highest_frequency), 100 * s.bands.share,
                         100 * s.bands.input_share, s.bands.peak_below);
+  text += largest_text(s, scene);
   text += fmt::format("  peak shear strain        {:.5f} % at a depth of {:.2f} m\n", 100 * p.gamma, p.gamma_depth);
   if (has_ru(scene))
     text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
@@ -139,11 +192,7 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
   if (s.box_motion && p.gamma > 0.1)
     text += "  large strains            beyond 10 %, but taken as small: displacements have an error of their order\n";
   if (s.grains)
-    text += fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", s.grains->packings,
-                        s.grains->slowest, s.grains->fastest);
-  if (s.grains && s.grains->has_profiles)
-    text += fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s\n",
-                        s.grains->min_redundancy, s.grains->min_redundancy_depth, s.grains->min_redundancy_time);
+    text += grains_text(*s.grains);
   if (!s.point_depths.empty())
     text += fmt::format("  depths of histories      {:.4g} m, the points nearest to those asked for\n",
                         fmt::join(s.point_depths, ", "));
@@ -221,6 +270,7 @@ Json to_json(const ColumnSummary &s, const ColumnScene &scene)
             {"relative_energy_residual", relative_residual(s.last)},
             {"final_settlement", drains ? Json(s.final_settlement) : Json()},
             {"degree_of_consolidation", drains ? Json(s.degree) : Json()}};
+  add_largest(s, scene, json);
   if (s.spreading)
     add_slope(*s.spreading, scene, json);
   if (s.box_motion)

@@ -19,7 +19,8 @@ struct GrainsSummary
   double slowest = 0, fastest = 0;                                              ///< V_s at the (re)start, m/s
   bool has_profiles = false;                                                    ///< what follows is known
   double min_redundancy = 0, min_redundancy_depth = 0, min_redundancy_time = 0; ///< of all profiles [-], m, s
-  std::vector<std::vector<std::size_t>> seeds = {};                             ///< SoilMaterial::seeds
+  double constraints = 6;                           ///< of a contact there, which name the index
+  std::vector<std::vector<std::size_t>> seeds = {}; ///< SoilMaterial::seeds
 };
 
 /// What is reported of a finished run. Nothing in it depends on the machine: see RunTimes for that.
@@ -30,6 +31,7 @@ struct ColumnSummary
   std::vector<double> point_depths;  ///< of the points whose histories were asked for, m
   std::vector<std::string> warnings; ///< of what may mislead
   ColumnPeaks peaks;
+  std::vector<double> node_depths;         ///< of the peaks at nodes, m; empty if the mesh is shared out
   MotionBands bands;                       ///< nothing in a consolidation
   ColumnState last;                        ///< of the last row
   std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below

@@ -51,10 +51,12 @@ constexpr Key drawn_specimens[] = {
    .field = [](SpecimenRequest &r) -> Field { return &r.library; }},
   {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
    .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
-           "many that differ); 1: all points have the same, brought to the stress of their depth.",
+           "many that differ); 1: all points have the same, brought to the stress of their depth. "
+           "1, or at least `grains.realisations`.",
    .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},
   {.path = "lot", .kind = Kind::integer, .value = "0",
-   .text = "Another number draws other seeds of the `mixed_realisations`.",
+   .text = "Another number draws other seeds of the `mixed_realisations`. "
+           "Only with `mixed_realisations` above 1, as `lot_length`.",
    .field = [](SpecimenRequest &r) -> Field { return &r.lot; }},
   {.path = "lot_length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
    .range = not_negative,

@@ -2,6 +2,7 @@
 #include "dem/measure/redundancy.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -44,10 +45,28 @@ std::vector<std::uint32_t> contacts_of_grains(const Snapshot &snapshot, bool wit
   return count;
 }
 
-double ContactNetwork::index(double nsr, double s, double r, double sr) const
+ContactConstraints constraints_of(const ContactLaw &law)
+{
+  const ContactStiffness springs = law.stiffness(1e-3, 1e-3, 1e-6); // a spring is off or on whatever the contact
+  return {springs.shear > 0, springs.rolling > 0, springs.twisting > 0};
+}
+
+std::string index_name(int constraints)
+{
+  return fmt::format("{} constraint{} a contact{}, isostatic at Z = {:g}", constraints, constraints > 1 ? "s" : "",
+                     constraints == 6 ? " (Eq. 2)" : "", isostatic_coordination(constraints));
+}
+
+double ContactNetwork::index(double nsr, double s, double r, double sr, double freedoms) const
 {
   const double constraints = nsr * classes.nsr + s * classes.s + r * classes.r + sr * classes.sr;
-  return quotient(constraints, 6.0 * (grains.all - grains.without));
+  return quotient(constraints, freedoms * (grains.all - grains.without));
+}
+
+double ContactNetwork::redundancy_index() const
+{
+  const int stick = law.number(), shear = 2 * law.shear, roll = 2 * law.rolling;
+  return index(stick, stick - shear, stick - roll, stick - shear - roll, freedoms(stick));
 }
 
 double ContactNetwork::coordination_number() const
@@ -62,5 +81,8 @@ double ContactNetwork::mechanical_coordination_number() const
 
 double ContactNetwork::fraction(std::size_t class_count) const { return quotient(class_count, classes.total()); }
 
-ContactNetwork contact_network(const Snapshot &snapshot) { return {classify(snapshot), count(snapshot)}; }
+ContactNetwork contact_network(const Snapshot &snapshot)
+{
+  return {classify(snapshot), count(snapshot), constraints_of(snapshot.law)};
+}
 } // namespace isostat

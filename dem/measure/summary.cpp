@@ -45,6 +45,8 @@ constexpr Column table[] = {
     {"E_kin", "J", [](const M &m) -> double { return m.energy.kinetic(); }},
     {"E_el", "J", [](const M &m) -> double { return m.energy.elastic(); }},
     {"unbalanced", "-", [](const M &m) -> double { return m.unbalanced; }},
+    {"IR_eq2", "-", [](const M &m) -> double { return m.network.redundancy_index_eq2(); }},
+    {"IR_constraints", "-", [](const M &m) -> double { return m.network.law.number(); }},
 };
 } // namespace
 

@@ -112,7 +112,8 @@ constexpr Key specimen_keys[] = {
    .field = [](Scene &s) -> Field { return &s.specimen.consolidation; }},
   {.path = "specimen.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "200 kPa", .range = stresses, .reason = because_stresses,
-   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one.",
+   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one. "
+           "At most a twentieth of the modulus of contacts, which for the linear law is `young`.",
    .field = [](Scene &s) -> Field { return &s.specimen.pressure; }},
   {.path = "specimen.relative_density", .presence = Presence::experiment, .value = "0.64", .range = {0, 1},
    .reason = "because D_r is 0 at e_max and 1 at e_min", .group = "preparation",
@@ -132,7 +133,7 @@ constexpr Key specimen_keys[] = {
    .field = [](Scene &s) -> Field { return &s.specimen.file; }},
   {.path = "specimen.e_min", .value = "0.568", .range = positive,
    .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
-           "`table` or `file`.",
+           "`table` or `file`. Below `e_max`; both are given or neither.",
    .field = [](Scene &s) -> Field { return &s.specimen.e_min; }},
   {.path = "specimen.e_max", .value = "0.841", .range = positive,
    .text = "Void ratio at D_r = 0. The default is that of the paper's packings of Karlsruhe fine sand; no default with "

@@ -24,13 +24,15 @@ constexpr Key mohr_coulomb_in_scenes[] = {
    .range = right_angle, .reason = because_tan, .text = "Angle of friction phi; 0 deg: Tresca's law (undrained clay).",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.friction; }},
   {.path = "cohesion", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "1 kPa",
-   .range = not_negative, .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular.",
+   .range = not_negative, .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular. "
+                                  "Above 0 kPa without friction.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.cohesion; }},
   {.path = "dilatancy_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "10 deg",
    .range = right_angle, .reason = because_tan, .text = "Angle of dilatancy psi, at most `friction_angle`: equal to it the flow is associated.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.dilatancy; }},
   {.path = "softening_strain", .value = "0", .range = {0, 10}, .reason = "because strains are small",
-   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), c, tan(psi); 0: none falls.",
+   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), c, tan(psi); 0: none falls. "
+           "Above 0 with a residual value, and only then.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.softening_strain; }},
   {.path = "residual_friction_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
    .presence = Presence::optional, .value = "33 deg", .range = right_angle, .reason = because_tan,
@@ -38,7 +40,8 @@ constexpr Key mohr_coulomb_in_scenes[] = {
    .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_friction; }},
   {.path = "residual_cohesion", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .presence = Presence::optional, .value = "0 kPa", .range = not_negative,
-   .text = "Cohesion after softening, at most `cohesion`; left out: it does not fall.",
+   .text = "Cohesion after softening, at most `cohesion`; left out: it does not fall. "
+           "Above 0 kPa if no friction is left.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_cohesion; }},
   {.path = "residual_dilatancy_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
    .presence = Presence::optional, .value = "0 deg", .range = right_angle, .reason = because_tan,

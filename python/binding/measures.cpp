@@ -23,8 +23,11 @@ py::dict network(const Snapshot &snapshot)
   const ContactNetwork n = contact_network(snapshot);
   py::dict found;
   found["redundancy_index"] = n.redundancy_index();
+  found["redundancy_index_eq2"] = n.redundancy_index_eq2();
   found["redundancy_index_without_twist"] = n.redundancy_index_without_twist();
   found["redundancy_index_sliding"] = n.redundancy_index_sliding();
+  found["constraints_of_a_contact"] = n.law.number();
+  found["isostatic_coordination_number"] = isostatic_coordination(n.law.number());
   found["coordination_number"] = n.coordination_number();
   found["mechanical_coordination_number"] = n.mechanical_coordination_number();
   found["contacts"] = n.classes.total();
@@ -67,8 +70,11 @@ void bind_measures(py::module_ &module)
           "Love-Weber stress of all contacts, (3, 3), Pa, tension positive.")
       .def("fabric", &contact_fabric, "Contact-normal fabric (1/N) sum n n, (3, 3), trace 1.")
       .def("network", &network,
-           "Redundancy index I_R in three ways of counting, coordination numbers, shares of contacts that slide and "
-           "roll.")
+           "Redundancy index I_R of the packing's contact law, in which 1 is isostatic, with the constraints of a "
+           "contact and\n"
+           "the coordination number at which it is 1 if nothing yields; Eq. (2) of the paper and two other counts; "
+           "coordination\n"
+           "numbers; shares of contacts that slide and roll.")
       .def("anisotropies", &fabric_anisotropies,
            "Second-order anisotropies of contacts, normal and tangential forces, (3, 3) each, and the mean normal "
            "force, N.")

@@ -53,7 +53,7 @@ class Compare(ReportTest):
         text = (self.folder / "compare.html").read_text(encoding="utf-8")
         p0 = json.loads((self.runs / "one/summary.json").read_text(encoding="utf-8"))["p0"]
         self.assertIn(f'<td>p0 (kPa)</td><td class="number">{p0 / 1e3:.6g}</td>', text)
-        self.assertIn("<td>worst_overshoot (kPa)</td>", text)
+        self.assertIn("<td>p_end (kPa)</td>", text)
         self.assertEqual(named("biaxial", "peak_stress_Pa"), "peak_stress (kPa)")
         self.assertEqual(converted("biaxial", "peak_stress_Pa", 2.5e5), 250)
         self.assertEqual(converted("soil_column", "settlement", None), None)

@@ -139,7 +139,8 @@ class DamagedCheckpoints(AppTest):
             del file[f"vectors/{name}"]
             file[f"vectors/{name}"] = np.append(values, 0.)
 
-        for name in ("peak_gamma", "peak_line_ru", "peak_acceleration", "waiting_rows", "motion_bands"):
+        for name in ("peak_gamma", "peak_line_ru", "peak_acceleration", "peak_velocity", "waiting_rows",
+                     "motion_bands"):
             with self.subTest(name):
                 self.refuse("soil_column", arguments, parts, functools.partial(lengthen, name), f"{name} are ")
 

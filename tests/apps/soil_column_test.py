@@ -51,6 +51,18 @@ class Scenes(ColumnTest):
             self.assert_near(file["peak_gamma"][()].max(), summary["peak_gamma"], 5e-16, digits)
             self.assert_near(file["peak_acceleration"][0], summary["peak_surface"], 5e-13, digits)
             self.assert_near(file["peak_acceleration"][-1], summary["peak_input"], 5e-13, digits)
+            node = {name: file[f"node_{name}"][()] for name in ("displacement_x", "velocity_x", "displacement_z")}
+            at = np.searchsorted(rows["time"], file["time"][()] - 1e-9)
+            self.assert_close(node["displacement_x"][:, 0], rows["surface_ux"][at], 1e-9, "digits of the history")
+            self.assert_close(node["velocity_x"][:, 0], rows["surface_vx"][at], 1e-9, "digits of the history")
+            self.assertEqual(node["displacement_x"].shape, (21, len(file["node_depth"])))
+            self.assertFalse(node["displacement_x"][:, -1].any(), "the base is what they count from")
+            self.assert_close(file["peak_displacement"][0], np.abs(u).max(), 1e-9, "digits of the history")
+            self.assert_close(file["peak_velocity"][0], np.abs(v).max(), 1e-4, "half a step beside a row")
+            for name in ("velocity", "displacement"):
+                self.assert_near(file[f"peak_{name}"][()].max(), summary[f"peak_{name}"], 5e-13, digits)
+                at = list(file["node_depth"]).index(summary[f"peak_{name}_depth"])
+                self.assertEqual(file[f"peak_{name}"][at], summary[f"peak_{name}"])
         vtu = (folder / "paraview/column_00002.vtu").read_text(encoding="utf-8")
         self.assertIn('NumberOfPoints="120" NumberOfCells="80"', vtu)  # an element of degree 2 is two lines
         self.assertEqual((folder / "paraview/column.pvd").read_text(encoding="utf-8").count("<DataSet"), 3)

@@ -26,12 +26,24 @@ class MeasuresTest(ToleranceTest):
 
     def test_the_network_is_counted_as_in_the_history(self):
         network = self.packing.network()
-        for name, column in (("redundancy_index", "IR"), ("redundancy_index_without_twist", "IR_no_twist"),
+        for name, column in (("redundancy_index", "IR"), ("redundancy_index_eq2", "IR_eq2"),
+                             ("constraints_of_a_contact", "IR_constraints"),
+                             ("redundancy_index_without_twist", "IR_no_twist"),
                              ("redundancy_index_sliding", "IR_sliding"), ("coordination_number", "Z"),
                              ("neither", "f_NSR"), ("sliding", "f_S"), ("grains_without_contact", "N0")):
             self.assertEqual(network[name], self.measures[column], name)
         self.assertGreater(self.packing.anisotropies()["mean_normal_force"], 0)
         self.assertGreater(min(self.packing.stored_energy().values()), -1e-30)
+
+    def test_the_redundancy_index_is_that_of_the_law(self):
+        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact={"friction": "18 deg"},
+                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
+        with tempfile.TemporaryDirectory() as cache:
+            network = isostat.prepare(scene, cache=cache).snapshot.network()
+        self.assertEqual((network["constraints_of_a_contact"], network["isostatic_coordination_number"]), (3, 4))
+        self.assertEqual(network["redundancy_index"], network["redundancy_index_sliding"])
+        self.assertGreater(network["redundancy_index_eq2"], 1.9 * network["redundancy_index"], "moments count")
+        self.assertEqual(self.packing.network()["redundancy_index"], self.packing.network()["redundancy_index_eq2"])
 
     def test_every_measure_has_its_unit(self):
         self.assertEqual(set(isostat.measure_units()), set(self.measures))

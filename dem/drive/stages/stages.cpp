@@ -88,14 +88,15 @@ constexpr Key keys[] = {
              "of, with what was reached."}),
   of<&Repeat::stages>(
     {.path = "stages", .kind = Kind::integer, .value = "1", .range = {1, 1e3},
-     .text = "So many stages before this one are done again, in their order; a repeat among them counts as one."}),
+     .text = "So many stages before this one are done again, in their order; a repeat among them counts as one. "
+             "At most as many as there are."}),
   of<&Repeat::times>(
     {.path = "times", .kind = Kind::integer, .presence = Presence::required, .value = "10", .range = {1, 1e6},
      .text = "How often they are done in all, the first time included."}),
   of<&Friction::friction>(
     {.path = "friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
      .presence = Presence::required, .value = "18 deg", .range = ranges::right_angle, .reason = ranges::because_tan,
-     .text = "Angle of friction between grains from here on."}),
+     .text = "Angle of friction between grains from here on. Above 0 deg only where `contact.friction` is."}),
 };
 // clang-format on
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/redundancy.hpp"
 #include "tests/support/near.hpp"
@@ -66,8 +67,49 @@ TEST(Redundancy, HandMadeClasses)
   EXPECT_EQ(network.classes.sr, 1u);
   EXPECT_EQ(network.fraction(network.classes.sr), 0.25);
   EXPECT_DOUBLE_EQ(network.redundancy_index(), (6 + 4 + 4 + 2) / 30.0);
+  EXPECT_DOUBLE_EQ(network.redundancy_index_eq2(), (6 + 4 + 4 + 2) / 30.0);
   EXPECT_DOUBLE_EQ(network.redundancy_index_without_twist(), (5 + 3 + 3 + 1) / 30.0);
   EXPECT_DOUBLE_EQ(network.redundancy_index_sliding(), (3 + 1 + 3 + 1) / 30.0);
+}
+
+TEST(Redundancy, IsThatOfTheLawInWhichOneIsIsostatic)
+{
+  struct Case
+  {
+    LawFeatures on;
+    int constraints;
+    double isostatic_at, nothing_yields; // Z; index of the ring below, Z = 2
+    double one_of_each;                  // of one_of_each_class(), five grains
+    const char *name;
+  };
+  const Case cases[] = {
+      {{true, true, true}, 6, 2, 1, (6 + 4 + 4 + 2) / 30.0, "6 constraints a contact (Eq. 2), isostatic at Z = 2"},
+      {{true, true, false}, 5, 2.4, 5 / 6.0, (5 + 3 + 3 + 1) / 30.0, "5 constraints a contact, isostatic at Z = 2.4"},
+      {{true, false, true}, 4, 3, 4 / 6.0, (4 + 2 + 4 + 2) / 30.0, "4 constraints a contact, isostatic at Z = 3"},
+      {{true, false, false}, 3, 4, 3 / 6.0, (3 + 1 + 3 + 1) / 30.0, "3 constraints a contact, isostatic at Z = 4"},
+      {{false, false, false}, 1, 6, 1 / 3.0, 4 / 15.0, "1 constraint a contact, isostatic at Z = 6"},
+  };
+  Snapshot ring = loose_grains(5);
+  for (std::uint32_t i = 0; i < 5; ++i)
+    ring.contacts.push_back(contact(ring, i, (i + 1) % 5, 0.5, 0.5));
+  for (const Case &c : cases)
+    {
+      ring.law = with_features(LinearRolling(), c.on);
+      const ContactNetwork network = contact_network(ring);
+      EXPECT_EQ(network.law.number(), c.constraints);
+      EXPECT_DOUBLE_EQ(isostatic_coordination(c.constraints), c.isostatic_at);
+      EXPECT_DOUBLE_EQ(network.redundancy_index(), c.nothing_yields);
+      EXPECT_DOUBLE_EQ(network.redundancy_index(), network.coordination_number() / c.isostatic_at);
+      EXPECT_DOUBLE_EQ(network.redundancy_index_eq2(), 1) << "whatever the law";
+      EXPECT_EQ(index_name(c.constraints), c.name);
+      Snapshot yielding = one_of_each_class();
+      yielding.law = ring.law;
+      EXPECT_DOUBLE_EQ(contact_network(yielding).redundancy_index(), c.one_of_each) << c.name;
+    }
+  ring.law = HertzMindlin(); // the springs of any law
+  EXPECT_EQ(constraints_of(ring.law).number(), 6);
+  ring.law->friction = 0;
+  EXPECT_EQ(constraints_of(ring.law).number(), 1);
 }
 
 TEST(Redundancy, IsTheFormulaOfThePaperOnRecordedClasses)

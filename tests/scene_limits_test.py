@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every key that a scene may be refused for, beyond its own range, has the limit in its row of the scene reference."""
+import pathlib
+import re
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/biaxial/scene.cpp",
+           "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp", "fem/material/mohr_coulomb_scene.cpp",
+           "fem/solve/newton_scene.cpp")
+# The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
+# {"cohesion", "must be ..."} of mohr_coulomb_problem().
+REFUSED = re.compile(r'(?:refuse\(\s*|key\()(?:\w+ \+ |fmt::format\(\s*)?"([\w.{}]+)"|return \{"(\w+)",\s*"')
+# Words of the limit in the row of the key; "": what is refused is said elsewhere (of the section, of another key).
+STATED = {
+    "scene": {
+        "specimen.pressure": "a twentieth of the modulus", "specimen.e_min": "Below `e_max`",
+        "specimen.consolidation": "in the periodic-cell only; not together with `file`",
+        "specimen.relative_density": "",
+        "specimen.file": "", "contact.rolling": "Needs `friction`", "contact.twisting": "Needs `friction`",
+        "stage.friction": "Above 0 deg only where", "stage.stages": "At most as many as there are",
+        "stage.kind": "need the domain periodic-cell", "stage.deviator_average": "q must lie between them"},
+    "column_scene": {
+        "mesh.degree": '2 where drainage is "coupled"', "mesh.dimension": "1: a column",
+        "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
+        "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
+        "water.drainage": "a column only", "water.lagged_compressibility": "Undrained only",
+        "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",
+        "water.table": "Less than the height of the soil", "slope.angle": "Less than the soil can bear",
+        "layer.saturation": "Below 1 only below the water table", "layer.density": "Above that of the water",
+        "layer.permeability": "Must be given if the drainage is coupled", "layer.cell_size": "At most 1000000 elements",
+        "layer.material": "", "layer.table": "",
+        "layer.phase_transformation_ratio": "at most `strength_ratio`",
+        "layer.cohesion": "Above 0 kPa without friction",
+        "layer.dilatancy_angle": "at most `friction_angle`", "layer.softening_strain": "Above 0 with a residual value",
+        "layer.residual_friction_angle": "at most `friction_angle`", "layer.residual_cohesion": "at most `cohesion`",
+        "layer.residual_dilatancy_angle": "at most `dilatancy_angle`",
+        "layer.mixed_realisations": "1, or at least `grains.realisations`",
+        "layer.lot": "Only with `mixed_realisations` above 1", "layer.lot_length": "", "base.kind": "",
+        "base.p_velocity": "More than 1.155 times", "motion.axis": "A motion along z needs a rigid base",
+        "motion.file": "1e-5 s to 10 s apart and within 1e6 m/s2", "motion.ramp": "At most half of `duration`",
+        "load.kind": "", "load.surcharge_from": "on a boundary between elements",
+        "load.surcharge_to": "Between `surcharge_from` and the width", "grains.library": "Needed by soil of grains",
+        "grains.path_depths": "Within the soil", "grains.snapshot_depths": "Within the soil",
+        "analysis.kind": "A consolidation needs", "analysis.last_time": "After `first_time`",
+        "analysis.duration": "At most 1e15 time steps", "analysis.from": "on a boundary between elements",
+        "analysis.to": "likewise", "analysis.displacement": "less than the extent of the soil",
+        "analysis.max_iterations": "0: relaxation alone", "output.depths": "Within the soil",
+        "output.profile_interval": "", "output.x": "Of a strip"},
+    "biaxial_scene": {
+        "water.drainage": "degree 2 with 3 points", "water.permeability": "undrained block",
+        "nonlocal.length": "needs newton.max_iterations = 0", "weak.cells": "The square lies in the block",
+        "weak.column": "", "weak.row": "", "mesh.degree": "", "mesh.points": "leaves modes without stiffness"},
+}
+WHOLE_SECTIONS = {"motion", "grains"}  # a table that is refused, not a key
+
+
+def rows_of(page):
+    """{key: text of all its rows} of a reference."""
+    rows, section = {}, ""
+    for line in (ROOT / f"docs/{page}_reference.md").read_text(encoding="utf-8").splitlines():
+        if heading := re.match(r"## \[+(\w+)\]+", line):
+            section = heading[1] + "."
+        if row := re.match(r"\| `([\w.]+)` \|", line):
+            rows[section + row[1]] = rows.get(section + row[1], "") + line
+    return rows
+
+
+class Limits(unittest.TestCase):
+    def test_rows_state_them(self):
+        for page, keys in STATED.items():
+            rows = rows_of(page)
+            for key, words in keys.items():
+                with self.subTest(page=page, key=key):
+                    self.assertIn(words, rows.get(key, "no such key in the reference"))
+
+    def test_every_refusal_is_listed(self):
+        listed = {key.split(".")[-1] for keys in STATED.values() for key in keys} | WHOLE_SECTIONS
+        for source in SOURCES:
+            found = [one or other for one, other in REFUSED.findall((ROOT / source).read_text(encoding="utf-8"))]
+            self.assertTrue(found or source.endswith("newton_scene.cpp"), source)
+            for key in found:
+                name = key.split(".")[-1]
+                if name not in ("", "{}"):  # else it is made of other words
+                    self.assertIn(name, listed, f"{source} refuses {key}: state the limit in the text of the key, and "
+                                                "its words here")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
