@@ -98,10 +98,10 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   if (!run.folder)
     run.folder = open_result_folder(folder, use); // only now that everything else went well may older results go
   if (!run.resumed)
-    write_provenance(folder, scene, command_line);
+    write_provenance(folder, scene, command_line, run.specimen);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   if (run.resumed) // only now: the files may be refused
-    write_provenance(folder, scene, command_line);
+    write_provenance(folder, scene, command_line, run.specimen);
   Watched observer(output, watcher);
   const std::uint64_t first_step = run.assembly->step();
   const Stopwatch watch;

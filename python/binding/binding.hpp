@@ -15,6 +15,9 @@ void bind_files(py::module_ &module);
 void bind_run(py::module_ &module);
 void bind_rve(py::module_ &module);
 
+/// Warns in Python, of a call that is no run.   @throws py::error_already_set  where warnings are errors
+void warn_of(const std::vector<std::string> &notes);
+
 /// Looks for Ctrl-C now and then during long calls in which the GIL is released.
 class SignalWatch
 {

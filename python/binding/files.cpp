@@ -41,20 +41,13 @@ auto to_new_file(void (*write)(const fs_path &, const What &))
   };
 }
 
-void warn(const std::vector<std::string> &notes)
-{
-  for (const std::string &note : notes)
-    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
-      throw py::error_already_set();
-}
-
 Specimen read_packing(const fs_path &path, const std::string &length_unit, double density, const std::string &domain,
                       const Law &law, bool anyway)
 {
   const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
   const CheckedPacking packing =
       read_any_packing(path.string(), {{law, density, scale}, domain, anyway, density != ReadOptions{}.density});
-  warn(packing.notes);
+  warn_of(packing.notes);
   return packing.specimen;
 }
 
@@ -78,7 +71,7 @@ void bind_packings(py::module_ &module)
       "write_packing",
       [](const fs_path &path, const Specimen &specimen, const std::string &format, bool overwrite) {
         check_new(path, overwrite);
-        warn(write_packing(path, specimen, wanted_format(path, format)));
+        warn_of(write_packing(path, specimen, wanted_format(path, format)));
       },
       py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "", py::arg("overwrite") = false,
       "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
@@ -91,7 +84,7 @@ void bind_packings(py::module_ &module)
          const std::string &domain, const std::string &format, bool anyway, bool overwrite) {
         check_new(to, overwrite);
         const PackingFormat wanted = wanted_format(to, format);
-        warn(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
+        warn_of(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
       },
       py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
       py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false, py::arg("overwrite") = false,
@@ -126,8 +119,9 @@ void bind_files(py::module_ &module)
       "import_tables",
       [](const fs_path &path, const Law &law, double density) {
         const Snapshot read = import_tables(path, law, density);
-        warn(check_packing(read, path.string(), [](const std::string &unit) {
-          return fmt::format("give length_unit=\"{}\" to isostat.read_packing()", unit);
+        warn_of(check_packing(read, path.string(), [](const std::string &unit) {
+          return fmt::format("give {} to isostat.read_packing()",
+                             unit == "m" ? "anyway=True" : "length_unit=\"" + unit + "\"");
         }));
         return read;
       },

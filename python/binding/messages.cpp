@@ -15,6 +15,7 @@ constexpr std::pair<std::string_view, std::string_view> keywords[] = {{"--overwr
                                                                       {"--anyway", "anyway=True"},
                                                                       {"--length-unit mm", "length_unit=\"mm\""},
                                                                       {"--length-unit um", "length_unit=\"um\""},
+                                                                      {"--length-unit m", "anyway=True"},
                                                                       {"--domain", "domain"},
                                                                       {"--output", "output"},
                                                                       {"--set", "set"},
@@ -52,6 +53,13 @@ void translate(std::exception_ptr thrown)
     }
 }
 } // namespace
+
+void warn_of(const std::vector<std::string> &notes)
+{
+  for (const std::string &note : notes)
+    if (PyErr_WarnEx(PyExc_UserWarning, in_python(note).c_str(), 1) != 0)
+      throw py::error_already_set();
+}
 
 void bind_errors(py::module_ &module)
 {

@@ -7,8 +7,10 @@
 #include "base/files/replace_file.hpp"
 #include "base/tell.hpp"
 #include "dem/io/specimen_file.hpp"
+#include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 #include <fmt/format.h>
 
@@ -107,6 +109,15 @@ private:
   SignalWatch signals_;
 };
 
+using Threads = Given<int, "threads">;
+
+int checked(Threads threads)
+{
+  if (threads < 0)
+    throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads.value));
+  return threads;
+}
+
 /// Without the GIL.
 Specimen prepared(const Scene &scene, const std::string &cache, int threads, bool quiet)
 {
@@ -155,10 +166,8 @@ constexpr const char *kept_specimen = "specimen.h5"; ///< in the results folder,
 /// The scene names the specimen that is kept beside it instead of what it says of preparation.
 void name_kept_specimen(Scene &scene)
 {
+  scene.specimen = without_preparation(scene.specimen);
   scene.specimen.file = kept_specimen;
-  scene.specimen.relative_density.reset();
-  scene.specimen.void_ratio.reset();
-  scene.specimen.preparation_friction.reset();
 }
 
 /// From a specimen that is given. It is kept with the results, so that their scene can be run again.
@@ -292,20 +301,23 @@ void bind_moment(py::module_ &module)
 void bind_run(py::module_ &module)
 {
   bind_moment(module);
-  module.def("prepare", &prepared, py::call_guard<py::gil_scoped_release>(), py::arg("scene"), py::arg("cache"),
-             py::arg("threads"), py::arg("quiet"));
+  module.def(
+      "prepare",
+      [](const Scene &scene, const std::string &cache, Threads threads, bool quiet) {
+        const py::gil_scoped_release free;
+        return prepared(scene, cache, checked(threads), quiet);
+      },
+      py::arg("scene"), py::arg("cache"), py::arg("threads"), py::arg("quiet"));
   py::class_<Result>(module, "Result")
       .def_readonly("finished", &Result::finished)
       .def_readonly("snapshot", &Result::snapshot)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
   module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
-                       const Specimen *specimen, bool overwrite, bool resume, int threads, bool quiet,
-                       const py::object &on_record, const py::object &on_step, std::uint64_t every) {
-    if (threads < 0)
-      throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads));
+                       const Specimen *specimen, bool overwrite, bool resume, Threads threads, bool quiet,
+                       const py::object &on_record, const py::object &on_step, Given<std::uint64_t, "every"> every) {
     const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
-    return run({scene, output, cache, use, threads, quiet, specimen}, on_record, on_step, every);
+    return run({scene, output, cache, use, checked(threads), quiet, specimen}, on_record, on_step, every);
   });
 }
 } // namespace isostat::python

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Preparing specimens and running scenes.   tested: tests/python/run_test.py"""
 import csv
+import json
 import os
 import pathlib
 import tempfile
@@ -20,6 +21,8 @@ Callback = Callable[[_core.Moment], object]
 
 def as_scene(scene: SceneLike) -> Scene:
     """The Scene itself, or one that is made from what is given."""
+    if scene is None:
+        raise _core.InputError("scene: must be a Scene, a path, TOML text or a dictionary, but is None.")
     return scene if isinstance(scene, Scene) else Scene(scene)
 
 
@@ -42,8 +45,10 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
     scene       a Scene, or what one is made from: a path, text or a dictionary
     output      folder for history, snapshots, ParaView files, checkpoints and summary; None: nothing is written but
                 prepared specimens
-    specimen    a Specimen or Snapshot to start from, instead of what the scene says; it is kept in `output` as
-                specimen.h5, which the scene there names
+    specimen    a Specimen or Snapshot to start from. Its grains, their number, sizes and density, its void ratio and its
+                stress count; where the scene says otherwise is a warning, and not in the scene of the results. Its domain
+                and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
+                stiffness). It is kept in `output` as specimen.h5, which the scene there names
     cache       folder of prepared specimens; None: beside the output folder, as the program does
     overwrite   replaces results that are there          resume   goes on from the newest checkpoint of `output`
     threads     0: as many as the packing can feed; changes no bit of the result
@@ -58,6 +63,12 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
     scene = as_scene(scene)
     if isinstance(specimen, _core.Snapshot):
         specimen = _core.Specimen(specimen)
+    if not isinstance(specimen, _core.Specimen | None):
+        raise _core.InputError(f"specimen: must be a Specimen or a Snapshot, but is {specimen!r}. Read a file with "
+                               "read_specimen() or read_packing().")
+    for name, function in (("on_record", on_record), ("on_step", on_step)):
+        if function is not None and not callable(function):
+            raise _core.InputError(f"{name}: must be a function of a Moment, but is {function!r}.")
     if (resume or overwrite) and output is None:
         raise _core.InputError("resume and overwrite need the output folder. Give output.")
     folder = os.fspath(output) if output is not None else ""
@@ -87,6 +98,7 @@ class Run:
         """The axes of one of the figures of element_test: run.draw("fig_stress_path")."""
         with tempfile.TemporaryDirectory() as name_of_folder:
             folder = pathlib.Path(name_of_folder)
+            (folder / "summary.json").write_text(json.dumps({"title": self.scene.title}), encoding="utf-8")
             (folder / "scene.toml").write_text(self.scene.text, encoding="utf-8")
             with open(folder / "history.csv", "w", newline="", encoding="utf-8") as file:
                 writer = csv.writer(file)

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs from Python: the same bits as element_test, callbacks, stopping and resuming, results as arrays."""
+import contextlib
+import io
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 import numpy as np
@@ -70,6 +73,12 @@ class RunTest(ToleranceTest):
             for line, other in zip(drawn.lines, stored.lines):
                 self.assert_near(np.asarray(line.get_ydata(), float), np.asarray(other.get_ydata(), float), 1e-6,
                                  "digits of a history file")
+
+    def test_figures_of_a_run_without_a_folder_name_no_file(self):
+        run = self.run_scene(on_step=lambda moment: moment.step < 500, every=1)
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            run.draw("fig_stress_path")
+        self.assertEqual(said.getvalue(), "")
 
     def test_callbacks_see_the_packing(self):
         seen, moved = [], []
@@ -152,6 +161,40 @@ times = 2
         self.assertEqual((folder / "history.csv").read_bytes(), (self.folder / "again/history.csv").read_bytes())
         with self.assertRaisesRegex(isostat.InputError, "specimen that is given: a specimen in a periodic-cell"):
             isostat.run(self.scene.with_(**{"specimen.domain": "rigid-box"}), specimen=end)
+
+    def test_what_a_given_packing_fixes_is_taken_from_it(self):
+        other = self.scene.with_(**{"grading.grains": 500, "grading.seed": 4, "specimen.pressure": "100 kPa",
+                                    "specimen.preparation_friction": "20 deg", "stage.0.until.cycles": 1})
+        folder = self.folder / "other"
+        program = ("import sys; sys.path.insert(0, sys.argv[1])\nimport isostat\n"
+                   "isostat.run(sys.argv[2], sys.argv[3], specimen=isostat.read_specimen(sys.argv[4]), quiet=False)\n")
+        isostat.write_specimen(self.folder / "made.h5", self.specimen)
+        done = subprocess.run([sys.executable, "-c", program, BINARIES.parent / "python", other.text, folder,
+                               self.folder / "made.h5"], capture_output=True, text=True, check=True)
+        for part in ("grading.grains = 500 (300)", "grading.seed = 4 (1)", "preparation_friction = 20 deg (12 deg)",
+                     "specimen.pressure = 100 kPa; the test starts from what it has"):
+            self.assertIn(part, done.stderr)
+        results = isostat.read(folder)
+        self.assertEqual(results.scene.to_dict()["grading"].get("grains"), None)
+        self.assertNotIn("pressure", tomllib.loads((folder / "scene.toml").read_text())["specimen"])
+        self.assertRegex(results.provenance, "seed +1\nspecimen +300 grains, d50 0.[0-9]+ mm, e 0.[0-9]+, p' 200 kPa")
+        self.assert_close(results.history["p"][0], 200e3, 0.01, "the servo stops within 0.3 %")
+        self.assert_close(results.history["unbalanced"][0], self.specimen.numbers["unbalanced_force"], 0.5,
+                          "velocities are those of a step further")
+        again = isostat.run(folder / "scene.toml", self.folder / "other_again", threads=1)
+        np.testing.assert_array_equal(again.history["p"], results.history["p"])
+
+    def test_another_contact_stiffness_than_that_of_the_packing(self):
+        soft = self.scene.with_(**{"contact.young": "2 GPa"})
+        with self.assertRaisesRegex(isostat.InputError, r"the specimen that is given: was made with another contact "
+                                    r"stiffness than contact.young = 2 GPa \(10 GPa\): .* by 80 % .*`rebalance`"):
+            isostat.run(soft, specimen=self.specimen)
+        isostat.write_specimen(self.folder / "stiff.h5", self.specimen)
+        with self.assertRaisesRegex(isostat.InputError, r"stiff.h5: was made .* contact.young = 2 GPa \(10 GPa\)"):
+            isostat.run(soft.with_(**{"specimen.file": str(self.folder / "stiff.h5")}))
+        stages = [{"kind": "rebalance"}, {"kind": "hold"}]
+        run = isostat.run(isostat.Scene({**soft.to_dict(), "stage": stages}), specimen=self.specimen)
+        self.assert_close(run.history["p"][-1], 200e3, 0.01, "the servo stops within 0.3 %")
 
     def test_a_moment_keeps_its_numbers(self):
         kept, taken = [], []
