@@ -2,6 +2,7 @@
 // Packings in and out.   tested: tests/python/snapshot_test.py
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "dem/io/packing_files.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/io/text_tables.hpp"
@@ -41,21 +42,59 @@ auto to_new_file(void (*write)(const fs_path &, const What &))
   };
 }
 
-void warn(const std::vector<std::string> &notes)
-{
-  for (const std::string &note : notes)
-    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
-      throw py::error_already_set();
-}
-
 Specimen read_packing(const fs_path &path, const std::string &length_unit, double density, const std::string &domain,
                       const Law &law, bool anyway)
 {
   const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
   const CheckedPacking packing =
       read_any_packing(path.string(), {{law, density, scale}, domain, anyway, density != ReadOptions{}.density});
-  warn(packing.notes);
+  warn_of(packing.notes);
   return packing.specimen;
+}
+
+/// Adds what it does not say: figures, and a seed, which no other one has.   @return the names of the entries
+std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen> specimens, bool overwrite,
+                                       bool append)
+{
+  std::error_code ignored;
+  const bool extend = append && std::filesystem::exists(path, ignored);
+  if (path.extension() != ".h5")
+    throw InputError(fmt::format("{}: must end in .h5, because scenes tell a library by it.", path.string()));
+  if (!extend)
+    check_new(path, overwrite);
+  double next_seed = 1;
+  const auto count = [&](const std::map<std::string, double> &numbers) {
+    if (const auto seed = numbers.find("seed"); seed != numbers.end())
+      next_seed = std::max(next_seed, seed->second + 1);
+  };
+  for (const LibraryEntry &entry : extend ? list_library(path) : std::vector<LibraryEntry>{})
+    count(entry.numbers);
+  for (const Specimen &specimen : specimens)
+    count(specimen.numbers);
+  LibraryWriter library = extend ? LibraryWriter::append(path) : LibraryWriter::create(path);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < specimens.size(); ++k)
+    {
+      if (!specimens[k].state.cell)
+        throw InputError(fmt::format("specimen {}: is between rigid walls, but a library is for volume elements, which "
+                                     "are periodic. Prepare it with specimen.domain = \"periodic-cell\".",
+                                     k));
+      add_figures(specimens[k]);
+      if (specimens[k].numbers.try_emplace("seed", next_seed).second)
+        next_seed += 1;
+      names.push_back(library.next_name());
+      library.add(names.back(), specimens[k]);
+    }
+  library.commit();
+  return names;
+}
+
+std::map<std::string, std::map<std::string, double>> numbers_of_library(const fs_path &path)
+{
+  std::map<std::string, std::map<std::string, double>> entries;
+  for (const LibraryEntry &entry : list_library(path))
+    entries[entry.name] = entry.numbers;
+  return entries;
 }
 
 PackingFormat wanted_format(const fs_path &path, const std::string &format)
@@ -78,7 +117,7 @@ void bind_packings(py::module_ &module)
       "write_packing",
       [](const fs_path &path, const Specimen &specimen, const std::string &format, bool overwrite) {
         check_new(path, overwrite);
-        warn(write_packing(path, specimen, wanted_format(path, format)));
+        warn_of(write_packing(path, specimen, wanted_format(path, format)));
       },
       py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "", py::arg("overwrite") = false,
       "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
@@ -91,7 +130,7 @@ void bind_packings(py::module_ &module)
          const std::string &domain, const std::string &format, bool anyway, bool overwrite) {
         check_new(to, overwrite);
         const PackingFormat wanted = wanted_format(to, format);
-        warn(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
+        warn_of(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
       },
       py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
       py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false, py::arg("overwrite") = false,
@@ -104,7 +143,9 @@ void bind_files(py::module_ &module)
   bind_packings(module);
   py::class_<Specimen>(module, "Specimen", "A prepared packing with the story of how it was made.")
       .def(py::init([](const Snapshot &state) {
-             return Specimen{state, {}, {}};
+             Specimen specimen{state, {}, {}};
+             add_figures(specimen);
+             return specimen;
            }),
            py::arg("snapshot"))
       .def_property_readonly(
@@ -123,10 +164,19 @@ void bind_files(py::module_ &module)
   module.def("write_specimen", to_new_file<Specimen>(&write_specimen), py::arg("path"), py::arg("specimen"),
              py::kw_only(), py::arg("overwrite") = false, "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
+      "write_library", &write_library, py::arg("path"), py::arg("specimens"), py::kw_only(),
+      py::arg("overwrite") = false, py::arg("append") = false,
+      "Writes periodic specimens into one file, as the program specimen_library does: a column takes its packings\n"
+      "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
+      "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
+      "one are counted on.");
+  module.def("list_library", &numbers_of_library, py::arg("path"),
+             "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
+  module.def(
       "import_tables",
       [](const fs_path &path, const Law &law, double density) {
         const Snapshot read = import_tables(path, law, density);
-        warn(check_packing(read, path.string(), [](const std::string &unit) {
+        warn_of(check_packing(read, path.string(), [](const std::string &unit) {
           return fmt::format("give length_unit=\"{}\" to isostat.read_packing()", unit);
         }));
         return read;

@@ -5,12 +5,13 @@
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-#include "base/tell.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/io/specimen_file.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat::python
 {
@@ -93,11 +94,19 @@ private:
   }
 };
 
-/// Preparation that Ctrl-C can stop.
+/// Preparation that Ctrl-C can stop, and that warns as a run does.
 class WatchedPreparation : public PreparationOutput
 {
 public:
   using PreparationOutput::PreparationOutput;
+  void event(const std::string &line) override
+  {
+    constexpr std::string_view head = "warning: ";
+    if (line.starts_with(head))
+      warn(line.substr(head.size()));
+    else
+      PreparationOutput::event(line);
+  }
   bool after_step(const Assembly &assembly, const DriveState &state, const Observation &seen) override
   {
     return signals_.go_on() && PreparationOutput::after_step(assembly, state, seen);
@@ -118,6 +127,7 @@ Specimen prepared(const Scene &scene, const std::string &cache, int threads, boo
 struct Result
 {
   bool finished = false;
+  std::string summary; ///< as summary.json, of a run without files that came to its end
   std::shared_ptr<Snapshot> snapshot;
   std::vector<RecordColumn> columns; ///< of a run without files
   std::vector<std::vector<double>> rows;
@@ -196,11 +206,18 @@ TestRun begin(Request &request)
 void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Result &result)
 {
   watcher.keep_rows = true;
-  result.finished = run_programme(request.scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
-  for (const std::string &line : stage_warnings(run.state, request.scene))
-    tell(fmt::format("warning: {}\n", line));
-  result.columns = history_columns(request.scene);
+  const Stopwatch watch;
+  const Scene &scene = request.scene;
+  result.finished = run_programme(scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
+  result.columns = history_columns(scene);
   result.rows = std::move(watcher.rows);
+  if (!result.finished)
+    return;
+  for (const std::string &line : stage_warnings(run.state, scene))
+    warn(line);
+  TestSummary summary = summarise({result.columns, result.rows}, scene, run.specimen, run.state, watch.seconds());
+  summary.steps = summary.last_steps = static_cast<double>(run.assembly->step());
+  result.summary = to_json(summary).dump();
 }
 
 void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Result &result)
@@ -226,8 +243,10 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
     }
 }
 
-Result run(Request request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
+Result run(Request request, const py::list &warnings, const py::object &on_record, const py::object &on_step,
+           std::uint64_t every)
 {
+  const WarningsListed listed(warnings);
   Result result;
   Watcher watcher;
   watcher.on_record = on_record;
@@ -292,20 +311,26 @@ void bind_moment(py::module_ &module)
 void bind_run(py::module_ &module)
 {
   bind_moment(module);
-  module.def("prepare", &prepared, py::call_guard<py::gil_scoped_release>(), py::arg("scene"), py::arg("cache"),
-             py::arg("threads"), py::arg("quiet"));
+  module.def("prepare",
+             [](const Scene &scene, const std::string &cache, int threads, bool quiet, const py::list &warnings) {
+               const WarningsListed listed(warnings);
+               const py::gil_scoped_release free;
+               return prepared(scene, cache, threads, quiet);
+             });
   py::class_<Result>(module, "Result")
       .def_readonly("finished", &Result::finished)
+      .def_readonly("summary", &Result::summary)
       .def_readonly("snapshot", &Result::snapshot)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
   module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
                        const Specimen *specimen, bool overwrite, bool resume, int threads, bool quiet,
-                       const py::object &on_record, const py::object &on_step, std::uint64_t every) {
+                       const py::list &warnings, const py::object &on_record, const py::object &on_step,
+                       std::uint64_t every) {
     if (threads < 0)
       throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads));
     const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
-    return run({scene, output, cache, use, threads, quiet, specimen}, on_record, on_step, every);
+    return run({scene, output, cache, use, threads, quiet, specimen}, warnings, on_record, on_step, every);
   });
 }
 } // namespace isostat::python
