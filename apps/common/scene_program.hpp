@@ -70,9 +70,11 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
 void note_instruction_set(const std::string &made_with);
 
 /// Whether a run that --resume asks for has finished: its summaries are there.
+/// @param end_may_change  another scene may put the end off: it goes on if there is a checkpoint, which knows
 /// @throws InputError  it was another scene
 /// tested: tests/apps/kill_resume_test.py, tests/apps/soil_column_resume_test.py
-bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene);
+bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene,
+                  bool end_may_change = false);
 
 /// What there is to do about it: says so on stdout, and draws what is missing of its figures and report, if `figures`.
 /// @throws Interrupted  as draw_figures()

@@ -167,6 +167,7 @@ SpecimenSpec without_preparation(SpecimenSpec spec)
   spec.relative_density.reset();
   spec.void_ratio.reset();
   spec.preparation_friction.reset();
+  spec.consolidation = SpecimenSpec{}.consolidation;
   if (has_default_limits(spec))
     {
       spec.e_min.reset();

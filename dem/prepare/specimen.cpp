@@ -7,7 +7,6 @@
 #include "base/tell.hpp"
 #include "dem/io/packing_files.hpp"
 #include "dem/measure/stress.hpp"
-#include "dem/measure/summary.hpp"
 #include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/packing_check.hpp"
@@ -30,29 +29,13 @@ constexpr int density_attempts = 3;
 
 void describe(const Scene &scene, Specimen &specimen)
 {
-  const Snapshot &state = specimen.state;
-  const Micromechanics m = micromechanics(state);
-  const double e = m.void_ratio;
+  add_figures(specimen);
   auto &numbers = specimen.numbers;
-  numbers["void_ratio"] = e;
   if (const SpecimenSpec &spec = scene.specimen; spec.has_limits()) // else what the file says of it
     {
-      numbers["relative_density"] = relative_density(e, *spec.e_min, *spec.e_max);
+      numbers["relative_density"] = relative_density(numbers.at("void_ratio"), *spec.e_min, *spec.e_max);
       numbers["e_min"] = *spec.e_min;
       numbers["e_max"] = *spec.e_max;
-    }
-  numbers["pressure_Pa"] = m.wall.p;
-  numbers["grains"] = static_cast<double>(state.grains.n_grains());
-  numbers["coordination"] = m.network.coordination_number();
-  numbers["coordination_mechanical"] = m.network.mechanical_coordination_number();
-  numbers["redundancy_index"] = m.network.redundancy_index();
-  numbers["unbalanced_force"] = m.unbalanced;
-  numbers["d50_m"] = state.grains.d50();
-  if (state.cell)
-    {
-      const Vec3 stress = -contact_stress(state).diagonal();
-      numbers["vertical_stress_Pa"] = stress[1];
-      numbers["K0"] = 0.5 * (stress[0] + stress[2]) / stress[1];
     }
 }
 
@@ -258,7 +241,7 @@ void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserv
     }
   catch (const std::exception &error)
     {
-      tell(fmt::format("warning: the specimen is not kept, and will be prepared again next time: {}\n", error.what()));
+      warn(fmt::format("the specimen is not kept, and will be prepared again next time: {}", error.what()));
     }
 }
 

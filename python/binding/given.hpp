@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <concepts>
+#include <filesystem>
 #include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
 
 namespace isostat::python
 {
@@ -24,6 +26,7 @@ struct Given
 {
   T value{};
   operator const T &() const { return value; }
+  decltype(auto) operator*() const requires std::is_pointer_v<T> { return *value; }
 };
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -40,6 +43,12 @@ std::string expected()
     return "an array of numbers";
   else if constexpr (std::same_as<T, std::vector<double>>)
     return "an array of numbers of shape (n)";
+  else if constexpr (std::same_as<T, std::string>)
+    return "text";
+  else if constexpr (std::same_as<T, std::filesystem::path>)
+    return "a path";
+  else if constexpr (std::same_as<T, bool>)
+    return "True or False";
   else if constexpr (std::same_as<T, std::uint64_t>)
     return "a whole number, 0 or more";
   else if constexpr (std::integral<T>)

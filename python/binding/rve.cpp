@@ -193,8 +193,8 @@ void bind_rve(py::module_ &module)
       .def("snapshot", alone(+[](Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); }),
            "A copy of the packing with its contacts, in the laboratory frame.")
       .def("save", alone(+[](Rve &rve) { return rve.save(); }), "Its complete state, for restore().")
-      .def("restore", alone(+[](Rve &rve, const RveState &state) { rve.restore(state); }), py::arg("state"),
-           "Of this element, or of one with the same grains and law.")
+      .def("restore", alone(+[](Rve &rve, Given<const RveState *, "state"> state) { rve.restore(*state); }),
+           py::arg("state"), "Of this element, or of one with the same grains and law.")
       .def("pack", alone(&packed), "The element as bytes for another process on the same type of machine.")
       .def_static(
           "unpack",

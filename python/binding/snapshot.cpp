@@ -93,7 +93,7 @@ void check_spheres(const Snapshot &snapshot, bool anyway)
 Snapshot from_spheres(const Given<Doubles, "centres"> &centres, const Given<std::vector<double>, "radii"> &given_radii,
                       Given<double, "density"> density, const Given<std::optional<Doubles>, "box"> &box,
                       const Given<std::optional<Doubles>, "cell"> &cell, const Given<const Law *, "law"> &law,
-                      bool anyway)
+                      Given<bool, "anyway"> anyway)
 {
   const std::vector<Vec3> x = points(centres, "centres");
   const std::vector<double> &radii = given_radii;

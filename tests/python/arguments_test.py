@@ -54,6 +54,20 @@ class ArgumentsTest(ToleranceTest):
                                    ("density", "heavy", "a number, but is 'heavy'")):
             self.expect(f"{name}: must be {words}", spheres, **{name: wrong})
 
+    def test_of_files(self):
+        for words, function, arguments, keywords in (
+                ("path: must be a path, but is 5", isostat.read_packing, (5,), {}),
+                ("length_unit: must be text, but is 5", isostat.read_packing, ("p.csv",), {"length_unit": 5}),
+                ("length_unit: must be a length .*\"el\"", isostat.read_packing, ("p.csv",), {"length_unit": "el"}),
+                ("path: must be a path, but is None", isostat.read_specimen, (None,), {}),
+                ("specimen: must be an isostat.Specimen, but is of type Snapshot", isostat.write_specimen,
+                 ("p.h5", spheres()), {}),
+                ("snapshot: must be an isostat.Snapshot, but is of type Specimen", isostat.write_vtp,
+                 ("p.vtp", isostat.Specimen(spheres())), {}),
+                ("snapshot: must be an isostat.Snapshot, but is 5", isostat.Specimen, (5,), {}),
+                ("target: must be a path, but is 7", isostat.convert, ("p.csv", 7), {})):
+            self.expect(words, function, *arguments, **keywords)
+
     def test_of_runs(self):
         scene = isostat.Scene(contact={}, specimen={"domain": "periodic-cell", "void_ratio": 1}, stage=[STAGE])
         for name, wrong, words in (("every", -1, "a whole number, 0 or more, but is -1"),

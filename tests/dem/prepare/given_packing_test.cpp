@@ -124,7 +124,9 @@ TEST(GivenPacking, SceneIsWrittenWithoutWhatThePackingHas)
 
 TEST(GivenPacking, NothingRemainsOfItsPreparation)
 {
-  const SpecimenSpec given = without_preparation(scene("", usual, "relative_density = 0.5").specimen);
+  const Scene k0 = scene("", usual, "relative_density = 0.5\nconsolidation = \"k0\"");
+  const SpecimenSpec given = without_preparation(k0.specimen);
+  EXPECT_EQ(given.consolidation, "isotropic") << "else no scene with its file could be read";
   EXPECT_FALSE(given.relative_density || given.has_limits());
   const SpecimenSpec own = without_preparation(scene("", usual, "void_ratio = 0.7\ne_min = 0.5\ne_max = 0.8").specimen);
   EXPECT_FALSE(own.void_ratio);
