@@ -100,6 +100,8 @@ class Run:
         with tempfile.TemporaryDirectory() as name_of_folder:
             folder = pathlib.Path(name_of_folder)
             (folder / "scene.toml").write_text(self.scene.text, encoding="utf-8")
+            if self.summary:
+                (folder / "summary.json").write_text(json.dumps(self.summary), encoding="utf-8")
             with open(folder / "history.csv", "w", newline="", encoding="utf-8") as file:
                 writer = csv.writer(file)
                 writer.writerow(f"{column} ({self.history.units[column]})" for column in self.history)
