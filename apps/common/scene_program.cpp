@@ -115,7 +115,7 @@ void note_instruction_set(const std::string &made_with)
     warn(note);
 }
 
-void tell_finished(const std::filesystem::path &folder, const char *program, bool figures)
+void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint)
 {
   fmt::print("{}: this run has finished, there is nothing to resume; its results are in summary.txt.", folder.string());
   if (figures && !std::filesystem::exists(folder / "report.html"))
@@ -125,7 +125,7 @@ void tell_finished(const std::filesystem::path &folder, const char *program, boo
       fmt::print("  {}\n", draw_figures(folder, program));
     }
   else
-    fmt::print(" Start it anew with --overwrite.\n");
+    fmt::print("{} Start it anew with --overwrite.\n", hint);
 }
 
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene, bool end_may_change)

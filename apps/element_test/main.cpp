@@ -33,7 +33,8 @@ void run(const SceneOptions &options)
 {
   const RunRequest<Scene> request(read_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene), true))
-    return tell_finished(request.folder, "element_test", !options.no_figures);
+    return tell_finished(request.folder, "element_test", !options.no_figures,
+                         " It goes on to a later end with --set, of stage.0.until.cycles say.");
   check_result_folder(request.folder, request.use);
   const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
   TestRun test =

@@ -28,6 +28,13 @@ kind = "undrained-cyclic"
 deviator_amplitude = "40 kPa"
 until = { cycles = 4, reversals_after_liquefaction = 1 }
 """
+DRAINED = '''[[stage]]
+kind = "drained"
+strain = 2e-4
+[[stage]]
+kind = "undrained-simple-shear"
+strain = 1e-3
+'''
 
 
 class RunTest(ToleranceTest):
@@ -40,7 +47,10 @@ class RunTest(ToleranceTest):
         cls.specimen = isostat.prepare(cls.scene, cache=cls.cache)
 
     def run_scene(self, *arguments, **keywords):
-        return isostat.run(self.scene, *arguments, cache=self.cache, **keywords)
+        return self.run_scene_of(self.scene, *arguments, **keywords)
+
+    def run_scene_of(self, scene, *arguments, **keywords):
+        return isostat.run(scene, *arguments, cache=self.cache, **keywords)
 
     def test_another_python_is_told_which_one_the_package_is_for(self):
         """Without site packages NumPy is missing, as under most other Pythons."""
@@ -69,6 +79,11 @@ class RunTest(ToleranceTest):
             self.assert_near(in_memory.history[name], results.history[name], 1e-9 * np.abs(results.history[name]),
                              f"digits of a history file, in {name}")
         np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
+        for name, value in results.summary.items():
+            if isinstance(value, float) and name != "seconds":
+                self.assert_near(in_memory.summary[name], value, 1e-9 * abs(value), f"digits of a history file, in {name}")
+            elif name not in ("seconds", "cyclic_response", "liquefaction"):
+                self.assertEqual(in_memory.summary[name], value, name)
         for drawn, stored in zip(in_memory.draw("fig_stress_path"), results.draw("fig_stress_path")):
             for line, other in zip(drawn.lines, stored.lines):
                 self.assert_near(np.asarray(line.get_ydata(), float), np.asarray(other.get_ydata(), float), 1e-6,
@@ -79,6 +94,33 @@ class RunTest(ToleranceTest):
         with contextlib.redirect_stderr(io.StringIO()) as said:
             run.draw("fig_stress_path")
         self.assertEqual(said.getvalue(), "")
+
+    def test_strain_of_volume_pore_pressure_and_cycles(self):
+        history = self.run_scene().history
+        self.assert_near(history["eps_v"], sum(history[f"eps_{axis}"] for axis in "xyz"), 1e-15, "rounding of the sum")
+        self.assert_near(history["r_u"], 1 - history["p"] / history["p"][0], 0.01, "rows have all parts of the stress")
+        cycles, turns = history["cycles"], np.flatnonzero(np.diff(history["reversals"])) + 1
+        np.testing.assert_array_equal(cycles[turns], history["reversals"][turns] / 2)
+        self.assertTrue((np.diff(cycles) >= 0).all())
+        self.assertGreater(len(np.unique(cycles)), 10 * len(turns))
+        scene = SCENE[:SCENE.index("[[stage]]")] + '[contact]\nfriction = "18 deg"\n' + DRAINED
+        drained = self.run_scene_of(isostat.Scene(scene)).history
+        self.assertGreater(np.abs(drained["eps_v"]).max(), 1e-6)
+        np.testing.assert_array_equal(drained["r_u"][drained["stage"] == 0], 0)
+        undrained = drained["stage"] == 1
+        self.assert_near(drained["r_u"][undrained][0], 0, 1e-9, "it counts from where the volume begins to be kept")
+        self.assertGreater(drained["r_u"][undrained].max(), 0.001)
+
+    def test_a_finished_run_goes_on_to_a_later_end(self):
+        short = self.scene.with_(**{"stage.0.until.cycles": 1})
+        self.assertEqual(self.run_scene_of(short, self.folder / "longer").summary["reversals"], 2)
+        later = self.run_scene_of(self.scene, self.folder / "longer", resume=True)
+        whole = self.run_scene()
+        self.assertGreater(later.summary["reversals"], 2)
+        self.assertEqual(later.summary["ended"], whole.summary["ended"])
+        np.testing.assert_array_equal(later.snapshot.positions, whole.snapshot.positions)
+        with self.assertRaisesRegex(isostat.InputError, "stage.0.until.cycles = 1, but the checkpoint has 4: an end can"):
+            self.run_scene_of(short, self.folder / "longer", resume=True)
 
     def test_callbacks_see_the_packing(self):
         seen, moved = [], []
