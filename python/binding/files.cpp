@@ -175,7 +175,8 @@ void bind_files(py::module_ &module)
       .def_property_readonly(
           "snapshot", [](const Specimen &s) { return std::make_shared<Snapshot>(s.state); }, "A copy of the packing.")
       .def_readonly("provenance", &Specimen::provenance, "Title, recipe, versions: text.")
-      .def_readonly("numbers", &Specimen::numbers, "Void ratio, relative density, pressure (Pa), seed ... by name.");
+      .def_readonly("numbers", &Specimen::numbers,
+                    "Void ratio, relative density, pressure (Pa, compression positive), seed ... by name.");
   module.def(
       "read_snapshot", [](const Path &path) { return read_snapshot_file(path); }, py::arg("path"),
       "A snapshot_*.h5 of a run, or the packing of a specimen.");
