@@ -3,7 +3,6 @@
 
 #include "base/error.hpp"
 #include "dem/contact/law_parameters.hpp"
-#include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/relative_density.hpp"
 
@@ -11,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 
 namespace isostat
 {
@@ -189,18 +189,21 @@ std::vector<std::string> check_given_packing(const Scene &scene, const Specimen 
 
 std::string foreign_to_default_limits(const Scene &scene)
 {
+  const auto parameters = [](Law law) {
+    std::map<std::string, double> found;
+    for_each_parameter(*law.operator->(),
+                       [&](const std::string &name, auto value) { found[name] = static_cast<double>(value); });
+    return found;
+  };
+  std::map<std::string, double> usual = parameters(Law()), own = parameters(scene.contact);
   std::vector<std::string> words;
-  const LinearRolling usual;
-  const auto *law = dynamic_cast<const RollingResistance *>(scene.contact.operator->());
-  if (!law)
-    words.push_back(fmt::format("contact.law = \"{}\"", scene.contact->name()));
-  else if (std::abs(law->friction - usual.friction) > 1e-6)
-    words.push_back(fmt::format("contact.friction = {:.4g} deg", degrees(law->friction)));
-  if (law && !law->rolling)
+  if (std::abs(own["friction"] - usual["friction"]) > 1e-6)
+    words.push_back(fmt::format("contact.friction = {:.4g} deg", degrees(own["friction"])));
+  if (own["feature_rolling"] == 0)
     words.emplace_back("no contact.rolling");
-  else if (law && (law->rolling_stiffness != usual.rolling_stiffness || law->rolling_limit != usual.rolling_limit))
-    words.push_back(fmt::format("contact.rolling = {{ stiffness = {:g}, limit = {:g} }}", law->rolling_stiffness,
-                                law->rolling_limit));
+  else if (own["rolling_stiffness"] != usual["rolling_stiffness"] || own["rolling_limit"] != usual["rolling_limit"])
+    words.push_back(fmt::format("contact.rolling = {{ stiffness = {:g}, limit = {:g} }}", own["rolling_stiffness"],
+                                own["rolling_limit"]));
   if (const GradingSpec whole;
       scene.grading.finest_percent != whole.finest_percent || scene.grading.coarsest_percent != whole.coarsest_percent)
     words.push_back(
