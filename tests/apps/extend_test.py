@@ -95,8 +95,8 @@ times = 2
                             "stage.0.max_steps = 3000, but the checkpoint has 2500: this stage is over")
         for key, value in (("stage.1.deviator_amplitude", "50 kPa"), ("motion.damping", "0.3"),
                            ("stage.1.liquefaction_ratio", "0.02"), ("output.record_steps", "70")):
-            self.assert_refused(self.run_to("out", 3, "--resume", "--set", f"{key}={value}"), "belongs to another scene",
-                                key.rpartition(".")[2])
+            self.assert_refused(self.run_to("out", 3, "--resume", "--set", f"{key}={value}"),
+                                "belongs to another scene", key.rpartition(".")[2])
         self.assertEqual(before, contents(self.folder / "out"))
         result = self.run_to("out", 2, "--resume")
         self.assert_done(result)
