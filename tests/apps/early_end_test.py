@@ -57,7 +57,7 @@ class EarlyEnd(AppTest):
         result = self.run_test(self.scene("default", stage), "-o", "default", "--set", "stage.0.until.strain=1e-4")
         self.assert_done(result)
         self.assertRegex(result.stdout, r"ended by until.strain = 0.01 % \(0.01\d* %\), before until.cycles = 60 "
-                                        r"\([\d.]+ reached\), until.reversals_after_liquefaction = 10 \(not liquefied\)")
+                         r"\([\d.]+ reached\), until.reversals_after_liquefaction = 10 \(not liquefied\)")
 
     def test_a_condition_that_is_met_when_it_begins_is_told(self):
         result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
