@@ -13,7 +13,7 @@ namespace isostat
 inline void tell(const std::string &text) { std::fputs(text.c_str(), stderr); }
 
 /// Takes the warnings of its thread while it lives, for a program that has its own way to warn, as Python does.
-/// tested: tests/python/run_test.py
+/// tested: tests/python/warnings_test.py
 class WarningsTaken
 {
 public:

@@ -162,7 +162,8 @@ class DamagedCheckpoints(AppTest):
             damage(last, "state/grains/velocity", None, np.nan)
         result = self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "parts", "--resume")
         self.assert_done(result)
-        self.assertRegex(result.stderr, r"warning: damaged checkpoint:\n.*last.h5: grain \d+ \(id \d+\) has a value of nan in its velocity")
+        self.assertRegex(result.stderr, r"warning: damaged checkpoint:\n.*last.h5: grain \d+ \(id \d+\) has a value of "
+                                        "nan in its velocity")
         self.assertIn("goes on from the checkpoint before", result.stderr)
         self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
         self.assertEqual(results(parts), results(self.folder / "whole"))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From a scene to a column of packings without leaving Python: libraries of specimens, and a single specimen as one."""
 import pathlib
+import pickle
 import tempfile
 import unittest
 
@@ -31,7 +32,11 @@ class LibraryTest(ToleranceTest):
 
     def run_column(self, library, name, **grains):
         scene = column.ColumnScene({**COLUMN, "title": "grains", "grains": {"library": library, **grains}})
-        return column.run(scene, self.folder / name)
+        self.assertEqual(pickle.loads(pickle.dumps(scene)), scene)
+        with self.assertWarnsRegex(isostat.IsostatWarning, f"/{name}: the analysis ends at 0.01 s"):
+            results = column.run(scene, self.folder / name)
+        self.assertTrue(results.warnings[0].startswith("the analysis ends"))
+        return results
 
     def test_a_library_is_written_and_read(self):
         library = self.folder / "library.h5"
@@ -66,7 +71,8 @@ class LibraryTest(ToleranceTest):
                 np.testing.assert_array_equal(of_one.history[name], values, err_msg=f"{path.name}: {name}")
         with self.assertRaisesRegex(isostat.InputError, "single.h5: the library has 1 realisations.*needs 2.*"
                                                         r"write_library\(\)"):
-            self.run_column(single, "too_many", realisations=2)
+            column.run(column.ColumnScene({**COLUMN, "title": "two", "grains": {"library": single, "realisations": 2}}),
+                       self.folder / "too_many")
         self.assertTrue(self.run_column(library, "two", realisations=2).finished)
 
 

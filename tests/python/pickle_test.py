@@ -50,8 +50,8 @@ class PickleTest(ToleranceTest):
         cls.done = run(1, None, cls.folder / "specimens")
 
     def assert_same_packing(self, one, other):
-        for name in ("positions", "velocities", "spins", "radii", "ids", "contact_pairs", "normal_forces", "shear_forces",
-                     "bending_moments", "cell", "strain"):
+        for name in ("positions", "velocities", "spins", "radii", "ids", "contact_pairs", "normal_forces",
+                     "shear_forces", "bending_moments", "cell", "strain"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
         self.assertEqual((one.time, one.step, one.law, one.density), (other.time, other.step, other.law, other.density))
 

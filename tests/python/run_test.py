@@ -81,7 +81,7 @@ class RunTest(ToleranceTest):
         np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
         for name, value in results.summary.items():
             if isinstance(value, float) and name != "seconds":
-                self.assert_near(in_memory.summary[name], value, 1e-9 * abs(value), f"digits of a history file, in {name}")
+                self.assert_near(in_memory.summary[name], value, 1e-9 * abs(value), f"digits of a file, in {name}")
             elif name not in ("seconds", "cyclic_response", "liquefaction"):
                 self.assertEqual(in_memory.summary[name], value, name)
         for drawn, stored in zip(in_memory.draw("fig_stress_path"), results.draw("fig_stress_path")):
@@ -119,7 +119,7 @@ class RunTest(ToleranceTest):
         self.assertGreater(later.summary["reversals"], 2)
         self.assertEqual(later.summary["ended"], whole.summary["ended"])
         np.testing.assert_array_equal(later.snapshot.positions, whole.snapshot.positions)
-        with self.assertRaisesRegex(isostat.InputError, "stage.0.until.cycles = 1, but the checkpoint has 4: an end can"):
+        with self.assertRaisesRegex(isostat.InputError, "cycles = 1, but the checkpoint has 4: an end can be put off"):
             self.run_scene_of(short, self.folder / "longer", resume=True)
 
     def test_callbacks_see_the_packing(self):
