@@ -29,6 +29,7 @@ struct Given
   decltype(auto) operator*() const requires std::is_pointer_v<T> { return *value; }
 };
 
+using Threads = Given<std::uint64_t, "threads">;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// What an argument must be, in words.

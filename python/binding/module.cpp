@@ -6,16 +6,6 @@
 
 namespace isostat::python
 {
-std::string described(py::handle value)
-{
-  if (py::hasattr(value, "shape"))
-    return "an array of shape " + std::string(py::str(value.attr("shape")));
-  const bool plain = value.is_none() || py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value) ||
-                     py::isinstance<py::str>(value);
-  const std::string text = plain ? std::string(py::repr(value)) : "";
-  return plain && text.size() < 60 ? text : "of type " + std::string(py::str(py::type::of(value).attr("__name__")));
-}
-
 std::vector<Vec3> points(const py::array_t<double, py::array::c_style | py::array::forcecast> &array, const char *name)
 {
   if (array.ndim() != 2 || array.shape(1) != 3)

@@ -118,15 +118,6 @@ private:
   SignalWatch signals_;
 };
 
-using Threads = Given<int, "threads">;
-
-int checked(Threads threads)
-{
-  if (threads < 0)
-    throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads.value));
-  return threads;
-}
-
 /// Without the GIL.
 Specimen prepared(const Scene &scene, const std::string &cache, int threads, bool quiet)
 {
@@ -328,7 +319,7 @@ void bind_run(py::module_ &module)
              [](const Scene &scene, const std::string &cache, Threads threads, bool quiet, const py::list &warnings) {
                const WarningsListed listed(warnings);
                const py::gil_scoped_release free;
-               return prepared(scene, cache, checked(threads), quiet);
+               return prepared(scene, cache, static_cast<int>(threads), quiet);
              });
   py::class_<Result>(module, "Result")
       .def_readonly("finished", &Result::finished)
@@ -336,12 +327,13 @@ void bind_run(py::module_ &module)
       .def_readonly("snapshot", &Result::snapshot)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
-  module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
-                       const Specimen *specimen, bool overwrite, bool resume, Threads threads, bool quiet,
-                       const py::list &warnings, const py::object &on_record, const py::object &on_step,
-                       Given<std::uint64_t, "every"> every) {
-    const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
-    return run({scene, output, cache, use, checked(threads), quiet, specimen}, warnings, on_record, on_step, every);
-  });
+  module.def("run",
+             [](const Scene &scene, const std::string &output, const std::string &cache, const Specimen *specimen,
+                bool overwrite, bool resume, Threads threads, bool quiet, const py::list &warnings,
+                const py::object &on_record, const py::object &on_step, Given<std::uint64_t, "every"> every) {
+               const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
+               return run({scene, output, cache, use, static_cast<int>(threads), quiet, specimen}, warnings, on_record,
+                          on_step, every);
+             });
 }
 } // namespace isostat::python

@@ -108,6 +108,8 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
     Returns Results. Ctrl-C and SIGTERM write a checkpoint and raise KeyboardInterrupt. Raises InputError, and RunFailure with the
     step, the time and the last checkpoint; what a Material raises passes through.
     """
+    if not isinstance(scene, ColumnScene):
+        raise _core.InputError(f"scene: must be an isostat.column.ColumnScene, but is {scene!r}.")
     folder = os.fspath(output) if output is not None else scene.folder
     if not folder:
         raise _core.InputError("output: is missing, and the scene names no folder. Give one.")

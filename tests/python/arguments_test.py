@@ -71,11 +71,11 @@ class ArgumentsTest(ToleranceTest):
     def test_of_runs(self):
         scene = isostat.Scene(contact={}, specimen={"domain": "periodic-cell", "void_ratio": 1}, stage=[STAGE])
         for name, wrong, words in (("every", -1, "a whole number, 0 or more, but is -1"),
-                                   ("threads", "all", "a whole number, but is 'all'"),
+                                   ("threads", "all", "a whole number, 0 or more, but is 'all'"),
                                    ("specimen", "p.h5", "a Specimen or a Snapshot, but is 'p.h5'. Read a file"),
                                    ("on_step", 5, "a function of a Moment, but is 5")):
             self.expect(f"{name}: must be {words}", isostat.run, scene, **{"specimen": spheres(), name: wrong})
-        self.expect("threads = -1: must be 0", isostat.prepare, scene, threads=-1)
+        self.expect("threads: must be a whole number, 0 or more, but is -1", isostat.prepare, scene, threads=-1)
         for wrong in (None, 5):
             self.expect(f"scene: must be a.*, but is {wrong}", isostat.run, wrong)
 

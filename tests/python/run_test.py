@@ -288,7 +288,7 @@ times = 2
             self.run_scene(self.folder / "read")
         with self.assertRaisesRegex(isostat.InputError, "there is no number 99"):
             results.packing(99)
-        with self.assertRaisesRegex(isostat.InputError, "threads = -3: must be 0"):
+        with self.assertRaisesRegex(isostat.InputError, "threads: must be a whole number, 0 or more"):
             self.run_scene(threads=-3)
         self.assertRegex(isostat.__version__, r"^\d+\.\d+")
 

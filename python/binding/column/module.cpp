@@ -10,6 +10,7 @@
 #include "coupling/batch/wave_moduli_cache.hpp"
 #include "fem/libraries.hpp"
 #include "python/binding/column/python_material.hpp"
+#include "python/binding/given.hpp"
 #include "python/binding/warnings.hpp"
 
 #include <algorithm>
@@ -75,7 +76,7 @@ UserMaterials user_materials(const py::dict &laws)
 }
 
 void run(const ColumnScene &scene, const std::string &output, const py::dict &materials, bool overwrite, bool resume,
-         int threads, bool quiet, const py::list &warnings)
+         Threads threads, bool quiet, const py::list &warnings)
 {
   const WarningsListed listed(warnings);
   static std::recursive_mutex columns; // PETSc, MPI and signals serve one thread at a time
@@ -90,7 +91,7 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
   options.command_line = "isostat.column.run() in Python";
   options.overwrite = overwrite;
   options.resume = resume;
-  options.threads = threads;
+  options.threads = static_cast<int>(threads);
   options.quiet = quiet;
   ColumnRequest request(scene, options);
   request.materials = user_materials(materials);
@@ -106,10 +107,11 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
 }
 
 /// (n, 2) of (n, 6, 6).
-py::array_t<double> wave_moduli(const py::array_t<double, py::array::c_style | py::array::forcecast> &stiffness)
+py::array_t<double> wave_moduli(const Given<Doubles, "stiffness"> &given)
 {
+  const Doubles &stiffness = given;
   if (stiffness.ndim() != 3 || stiffness.shape(1) != 6 || stiffness.shape(2) != 6)
-    throw InputError("stiffness: must be an array of shape (n, 6, 6).");
+    throw InputError(fmt::format("stiffness: must be an array of shape (n, 6, 6), but is {}.", described(stiffness)));
   py::array_t<double> found({stiffness.shape(0), py::ssize_t(2)});
   WaveModuli moduli;
   for (py::ssize_t q = 0; q < stiffness.shape(0); ++q)
