@@ -65,7 +65,7 @@ INNER = {
         "drive": STEP,
         "scene": BY_NAME | {"drive"},
         "io": BY_NAME | GRAINS | {"measure", "drive"},
-        "prepare": STEP | {"scene", "io", "drive"},
+        "prepare": STEP | BY_NAME | {"scene", "io", "drive"},
         "rve": STEP | BY_NAME | {"scene", "io", "drive"},
     },
     "fem": {

@@ -2,7 +2,6 @@
 // From the history of a test and the driver's state to what is reported of it.
 #include "apps/common/test_summary.hpp"
 
-#include "base/files/csv_table.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/drive/stages/cyclic_response.hpp"
 
@@ -29,13 +28,13 @@ enum Column
   residual
 };
 
-CsvTable read_history(const std::filesystem::path &folder, bool energy)
+HistoryRows rows_of(const RunHistory &run, bool energy)
 {
-  std::vector<std::string> names = {"stage (-)", "eps_y (-)",  "liquefied (-)",      "p (Pa)",        "q (Pa)",
-                                    "IR (-)",    "IR_eq2 (-)", "IR_constraints (-)", "indicator (-)", "reversals (-)"};
+  std::vector<std::string> names = {"stage", "eps_y",  "liquefied",      "p",         "q",
+                                    "IR",    "IR_eq2", "IR_constraints", "indicator", "reversals"};
   if (energy)
-    names.insert(names.end(), {"W_boundary (J)", "residual (J)"});
-  return CsvTable(folder / "history.csv", names);
+    names.insert(names.end(), {"W_boundary", "residual"});
+  return run.of(names);
 }
 
 bool is_simple_shear(const Stage &stage)
@@ -69,7 +68,7 @@ bool may_liquefy(const Stage &stage)
   return as<ConstantVolume>(stage) || (path && path->shears() && path->keeps_volume());
 }
 
-RedundancyOfRow redundancy(const CsvTable &history, std::size_t row)
+RedundancyOfRow redundancy(const HistoryRows &history, std::size_t row)
 {
   return {history(row, ir), history(row, ir_eq2), static_cast<int>(history(row, constraints))};
 }
@@ -78,19 +77,19 @@ RedundancyOfRow redundancy(const CsvTable &history, std::size_t row)
 class StageOfRow
 {
 public:
-  StageOfRow(const CsvTable &history, const Scene &scene) : history_(history), scene_(scene) {}
+  StageOfRow(const HistoryRows &history, const Scene &scene) : history_(history), scene_(scene) {}
   const Stage &operator()(std::size_t row) const
   {
     return scene_.stages[static_cast<std::size_t>(history_(row, stage))];
   }
 
 private:
-  const CsvTable &history_;
+  const HistoryRows &history_;
   const Scene &scene_;
 };
 
 /// I_R in the last row of each half cycle after the onset in which p'/p0 comes back above the ratio, and the smallest.
-void add_recoveries(const CsvTable &history, double limit, LiquefactionRecord &record)
+void add_recoveries(const HistoryRows &history, double limit, LiquefactionRecord &record)
 {
   double sum = 0, last = 0, half_cycle = history(record.row, reversals);
   const auto count = [&] {
@@ -111,7 +110,7 @@ void add_recoveries(const CsvTable &history, double limit, LiquefactionRecord &r
   record.recovered = record.n_recoveries > 0 ? sum / record.n_recoveries : 0;
 }
 
-std::optional<LiquefactionRecord> liquefaction(const CsvTable &history, const StageOfRow &stage_of,
+std::optional<LiquefactionRecord> liquefaction(const HistoryRows &history, const StageOfRow &stage_of,
                                                const DriveState &state)
 {
   std::size_t row = 0;
@@ -133,7 +132,7 @@ std::optional<LiquefactionRecord> liquefaction(const CsvTable &history, const St
   return record;
 }
 
-std::optional<ShearRecord> shear_record(const CsvTable &history, const StageOfRow &stage_of, double p0)
+std::optional<ShearRecord> shear_record(const HistoryRows &history, const StageOfRow &stage_of, double p0)
 {
   std::optional<ShearRecord> record;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
@@ -162,7 +161,7 @@ bool comes_first(const ShearExtremes &a, const ShearExtremes &b)
   return has != other_has ? has : a.max_ratio > b.max_ratio;
 }
 
-std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
+std::optional<ShearExtremes> shear_extremes(const RunHistory &run, const Scene &scene)
 {
   if (std::none_of(scene.stages.begin(), scene.stages.end(), is_simple_shear))
     return std::nullopt;
@@ -174,12 +173,12 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
     sigma_y,
     done
   };
-  std::vector<std::string> names = {"stage (-)", "gamma_xy (-)", "tau_xy (Pa)", "sigma_y (Pa)"};
+  std::vector<std::string> names = {"stage", "gamma_xy", "tau_xy", "sigma_y"};
   const bool repeated =
       std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &s) { return as<Repeat>(s); });
   if (repeated)
-    names.push_back("done (-)");
-  const CsvTable history(folder / "history.csv", names);
+    names.push_back("done");
+  const HistoryRows history = run.of(names);
   const std::size_t which = repeated ? done : at_stage; // what changes from one stage to the next
   ShearExtremes all, now;
   for (std::size_t row = 0; row < history.n_rows(); ++row)
@@ -201,7 +200,7 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
   return all;
 }
 
-double energy_residual(const CsvTable &history)
+double energy_residual(const HistoryRows &history)
 {
   double done = 0, worst = 0;
   for (std::size_t row = 1; row < history.n_rows(); ++row)
@@ -228,8 +227,8 @@ void add_specimen(const std::map<std::string, double> &specimen, TestSummary &su
 }
 } // namespace
 
-TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
-                      const std::map<std::string, double> &specimen, const DriveState &state, double seconds)
+TestSummary summarise(const RunHistory &run, const Scene &scene, const std::map<std::string, double> &specimen,
+                      const DriveState &state, double seconds)
 {
   const auto any = [&](bool (*is)(const Stage &)) { return std::ranges::any_of(scene.stages, is); };
   TestSummary summary;
@@ -244,14 +243,14 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
     summary.worst_overshoot = state.undrained.worst_overshoot;
   summary.losses = state.control.losses;
   summary.stages = stages_text(state, scene);
-  summary.early_ends = told_ends(state, scene);
+  summary.ends = told_ends(state, scene);
   for (const Stage &s : scene.stages)
     if (const auto *shear = as<ShearStage>(s);
         shear && shear->notes_response() && (summary.reversals > 0 || state.undrained.response.flow))
       summary.response = response_name(state.undrained, shear->mode());
-  summary.drained = drained_stages(folder, scene);
+  summary.drained = drained_stages(run, scene);
   summary.cycles = state.undrained.response;
-  const CsvTable history = read_history(folder, scene.output.energy);
+  const HistoryRows history = rows_of(run, scene.output.energy);
   const StageOfRow stage_of(history, scene);
   for (std::size_t row = 0; row < history.n_rows(); ++row)
     if (const int n = redundancy(history, row).constraints;
@@ -259,7 +258,7 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
       summary.constraints.push_back(n);
   summary.shearing = shear_record(history, stage_of, state.path.p0());
   if (summary.shearing)
-    summary.shearing->simple_shear = shear_extremes(folder, scene);
+    summary.shearing->simple_shear = shear_extremes(run, scene);
   summary.liquefaction = liquefaction(history, stage_of, state);
   if (const std::size_t n = history.n_rows(); n > 0)
     summary.last = LastRow{history(n - 1, p), redundancy(history, n - 1)};

@@ -164,7 +164,7 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   return text + to_text(s.drained) + s.stages + "\n";
 }
 
-void write_json(const std::filesystem::path &path, const TestSummary &s)
+Json to_json(const TestSummary &s)
 {
   const std::optional<ShearRecord> &shearing = s.shearing;
   Json json{{"title", s.title},
@@ -194,8 +194,9 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   if (!s.drained.empty())
     json["drained"] = to_json(s.drained);
   json["control_lost"] = control_json(s.losses);
-  json["ended_early"] = early_ends_json(s.early_ends);
+  json["ended"] = ends_json(s.ends);
+  json["ended_early"] = early_ends_json(s.ends);
   json["liquefaction"] = s.liquefaction ? liquefaction_json(*s.liquefaction) : Json();
-  write_json(path, json);
+  return json;
 }
 } // namespace isostat

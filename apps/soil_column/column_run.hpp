@@ -59,7 +59,7 @@ public:
         start();
         for (const std::string &warning : warnings_)
           if (!resumed_ && ranks().first())
-            tell(fmt::format("warning: {}\n", warning));
+            warn(warning);
         while (!is_done())
           {
             step();

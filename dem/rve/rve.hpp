@@ -32,8 +32,8 @@ struct RveSettings
 /// Prescribed strain in some components, target stress in the others: one increment of a laboratory test.
 struct MixedIncrement
 {
-  Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; symmetric parts under stress control are ignored
-  Mat3 stress = Mat3::Zero();   ///< target Cauchy effective stress, Pa, tension positive, where `controlled`
+  Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; its symmetric part is 0 where `controlled`
+  Mat3 stress = Mat3::Zero();   ///< target Cauchy effective stress, Pa, tension positive, symmetric where `controlled`
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false); ///< symmetric
   double tolerance = 1e-3; ///< |stress - target| / max(p', 0.05 p0) at the end
 };
@@ -111,7 +111,8 @@ public:
   RveResponse advance(const Mat3 &displacement_gradient);
   /// The same without the volumetric part of ln(I + dH): an element whose pores are closed.
   RveResponse undrained(const Mat3 &displacement_gradient);
-  /// Prescribed strain and target stress: drained, K0, constant p' and other tests.
+  /// Prescribed strain and target stress: drained, K0, constant p' and other tests. Rejected at once: a target that
+  /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1.
   RveResponse advance(const MixedIncrement &increment);
 
   /// Cauchy effective stress, Pa, tension positive, laboratory.
@@ -148,7 +149,8 @@ private:
   void run_mixed(const MixedIncrement &own);
   void step(const Mat3 &own_gradient);
   void review();
-  double mean_stress() const; ///< compression positive, Pa
+  double mean_stress() const;  ///< compression positive, Pa
+  double stress_scale() const; ///< what a tolerance of stress is relative to, Pa
   Mat3 to_own(const Mat3 &laboratory) const;
 
   RveSettings settings_;

@@ -3,6 +3,7 @@
 #include "dem/rve/rve.hpp"
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 #include <atomic>
 #include <fmt/format.h>
@@ -11,21 +12,29 @@ namespace isostat::python
 {
 namespace
 {
+using InertialNumber = Given<std::optional<double>, "inertial_number">;
+using Damping = Given<std::optional<double>, "damping">;
+using StrainRate = Given<std::optional<double>, "strain_rate">;
+using Frame = Given<std::optional<Mat3>, "frame">;
+using MinSteps = Given<std::uint64_t, "min_steps">;
+using MaxIncrement = Given<double, "max_increment">;
+using MaxSteps = Given<std::uint64_t, "max_steps">;
+using Gradient = Given<Mat3, "gradient">;
+
 /// Keys of [motion] that are given, over the defaults of an element.
-RveSettings settings_of(const std::optional<double> &inertial_number, const std::optional<double> &damping,
-                        const std::optional<double> &strain_rate, const std::optional<Mat3> &frame,
-                        std::uint64_t min_steps, double max_increment, std::uint64_t max_steps)
+RveSettings settings_of(const InertialNumber &inertial_number, const Damping &damping, const StrainRate &strain_rate,
+                        const Frame &frame, MinSteps min_steps, MaxIncrement max_increment, MaxSteps max_steps)
 {
   RveSettings settings;
   settings.motion = controlled_motion();
-  if (inertial_number)
+  if (inertial_number.value)
     settings.motion.inertial_number = inertial_number;
-  if (damping)
-    settings.motion.damping = *damping;
-  if (strain_rate)
+  if (damping.value)
+    settings.motion.damping = *damping.value;
+  if (strain_rate.value)
     settings.motion.strain_rate = strain_rate;
-  if (frame)
-    settings.frame = *frame;
+  if (frame.value)
+    settings.frame = *frame.value;
   settings.min_steps = min_steps;
   settings.max_increment = max_increment;
   settings.max_steps = max_steps;
@@ -85,18 +94,19 @@ RveResponse taken(const Increment &increment)
   return response;
 }
 
-RveResponse advance(Rve &rve, const Mat3 &gradient)
+RveResponse advance(Rve &rve, const Gradient &gradient)
 {
   return taken([&] { return rve.advance(gradient); });
 }
 
-RveResponse undrained(Rve &rve, const Mat3 &gradient)
+RveResponse undrained(Rve &rve, const Gradient &gradient)
 {
   return taken([&] { return rve.undrained(gradient); });
 }
 
-RveResponse mixed(Rve &rve, const Mat3 &gradient, const Mat3 &stress, const Eigen::Matrix<bool, 3, 3> &controlled,
-                  double tolerance)
+RveResponse mixed(Rve &rve, const Gradient &gradient, const Given<Mat3, "stress"> &stress,
+                  const Given<Eigen::Matrix<bool, 3, 3>, "controlled"> &controlled,
+                  Given<double, "tolerance"> tolerance)
 {
   return taken([&] { return rve.advance(MixedIncrement{gradient, stress, controlled, tolerance}); });
 }
@@ -143,12 +153,12 @@ void bind_rve(py::module_ &module)
                       "may use it; another one gets a RunFailure. Displacement gradients (3, 3) are relative to the "
                       "present shape; stress\n"
                       "is the Cauchy effective stress, tension positive, Pa.")
-      .def(py::init([](const Snapshot &specimen, const std::optional<double> &inertial_number,
-                       const std::optional<double> &damping, const std::optional<double> &strain_rate,
-                       const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment,
-                       std::uint64_t max_steps) {
-             return std::make_unique<Element>(Rve(specimen, settings_of(inertial_number, damping, strain_rate, frame,
-                                                                        min_steps, max_increment, max_steps)));
+      .def(py::init([](const Given<const Snapshot *, "specimen"> &specimen, const InertialNumber &inertial_number,
+                       const Damping &damping, const StrainRate &strain_rate, const Frame &frame, MinSteps min_steps,
+                       MaxIncrement max_increment, MaxSteps max_steps) {
+             return std::make_unique<Element>(
+                 Rve(*specimen.value,
+                     settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps)));
            }),
            py::arg("specimen"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
            py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
@@ -159,16 +169,22 @@ void bind_rve(py::module_ &module)
            "min_steps: time steps that an increment takes at least; with few of them small strains are not "
            "quasi-static.\n"
            "max_increment: norm of the gradient above which an increment is rejected [-], at most 0.1.\n"
-           "max_steps: an increment that takes more time steps is rejected, so a target stress that cannot be reached\n"
-           "ends there.\n"
+           "max_steps: an increment that takes more time steps is rejected.\n"
            "Ctrl-C takes an increment back. Raises InputError for settings out of range, naming it.")
-      .def("advance", alone(&advance), py::arg("gradient"), "Strains it by a displacement gradient (3, 3).")
-      .def("undrained", alone(&undrained), py::arg("gradient"), "The same without its volumetric part.")
+      .def("advance", alone(&advance), py::arg("gradient"),
+           "Strains it by a displacement gradient (3, 3), extension positive.")
+      .def("undrained", alone(&undrained), py::arg("gradient"),
+           "The same without its volumetric part; extension positive.")
       .def("mixed", alone(&mixed), py::arg("gradient"), py::arg("stress"), py::arg("controlled"),
            py::arg("tolerance") = 1e-3,
-           "Prescribed strain in some components, target stress (Pa, tension positive) where `controlled` (3, 3) is "
-           "true.\n"
-           "Rejected where the element has a frame other than identity. tolerance: of the stress, over p' [-].")
+           "Prescribed strain in some components, target stress where `controlled` is true.\n\n"
+           "gradient: displacement gradient (3, 3), extension positive; its symmetric part is 0 where stress is "
+           "controlled.\n"
+           "stress: target (3, 3), Pa, tension positive: compression is negative, not as in a history. Symmetric where "
+           "it is\ncontrolled, not looked at elsewhere.\n"
+           "controlled: (3, 3), symmetric. tolerance: of the stress, over p' [-].\n"
+           "Rejected at once: a target that needs tension, a component with strain and stress, a frame other than "
+           "identity.\nRejected on the way: stress control strains it by more than 0.1, or takes max_steps.")
       .def_property_readonly("stress", alone(+[](Rve &rve) { return rve.stress(); }), "(3, 3), Pa, tension positive.")
       .def_property_readonly("void_ratio", alone(+[](Rve &rve) { return rve.void_ratio(); }), "e.")
       .def_property_readonly("dry_density", alone(+[](Rve &rve) { return rve.dry_density(); }),
@@ -177,14 +193,14 @@ void bind_rve(py::module_ &module)
       .def("snapshot", alone(+[](Rve &rve) { return std::make_shared<Snapshot>(rve.snapshot()); }),
            "A copy of the packing with its contacts, in the laboratory frame.")
       .def("save", alone(+[](Rve &rve) { return rve.save(); }), "Its complete state, for restore().")
-      .def("restore", alone(+[](Rve &rve, const RveState &state) { rve.restore(state); }), py::arg("state"),
-           "Of this element, or of one with the same grains and law.")
+      .def("restore", alone(+[](Rve &rve, Given<const RveState *, "state"> state) { rve.restore(*state); }),
+           py::arg("state"), "Of this element, or of one with the same grains and law.")
       .def("pack", alone(&packed), "The element as bytes for another process on the same type of machine.")
       .def_static(
           "unpack",
-          [](const std::string &bytes, const std::optional<double> &inertial_number,
-             const std::optional<double> &damping, const std::optional<double> &strain_rate,
-             const std::optional<Mat3> &frame, std::uint64_t min_steps, double max_increment, std::uint64_t max_steps) {
+          [](const std::string &bytes, const InertialNumber &inertial_number, const Damping &damping,
+             const StrainRate &strain_rate, const Frame &frame, MinSteps min_steps, MaxIncrement max_increment,
+             MaxSteps max_steps) {
             return std::make_unique<Element>(Rve::unpack(
                 std::as_bytes(std::span(bytes.data(), bytes.size())),
                 settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps)));

@@ -39,12 +39,25 @@ class EarlyEnd(AppTest):
         report = (self.folder / "limited/report.html").read_text(encoding="utf-8")
         self.assertIn("ended by max_steps = 400 before any of its conditions was met", report)
 
-    def test_a_stage_that_comes_to_its_end_says_nothing(self):
+    def test_what_ended_a_stage_is_said(self):
         stages = PATH + 'max_steps = 400\nuntil.strain = 1e-4\n' + PATH + "max_steps = 50\n"
         result = self.run_test(self.scene("whole", stages), "-o", "whole")
         self.assert_done(result)
-        self.assertNotIn("ended", result.stderr)
-        self.assertEqual(self.numbers("whole")["ended_early"], [])
+        self.assertNotIn("warning", result.stderr)
+        self.assertNotIn("ended early", result.stdout)
+        self.assertIn("ended                    stage 0 (path): ended by until.strain = 0.01 % (", result.stdout)
+        self.assertIn("ended                    stage 1 (path): ended by max_steps = 50\n", result.stdout)
+        numbers = self.numbers("whole")
+        self.assertEqual(numbers["ended_early"], [])
+        self.assertEqual([(end["stage"], end["by"], end["early"]) for end in numbers["ended"]],
+                         [(0, "strain", False), (1, "max_steps", False)])
+
+    def test_a_default_that_comes_before_what_was_asked_for_is_named(self):
+        stage = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "40 kPa"\nuntil.cycles = 60\n'
+        result = self.run_test(self.scene("default", stage), "-o", "default", "--set", "stage.0.until.strain=1e-4")
+        self.assert_done(result)
+        self.assertRegex(result.stdout, r"ended by until.strain = 0.01 % \(0.01\d* %\), before until.cycles = 60 "
+                         r"\([\d.]+ reached\), until.reversals_after_liquefaction = 10 \(not liquefied\)")
 
     def test_a_condition_that_is_met_when_it_begins_is_told(self):
         result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")

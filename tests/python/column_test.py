@@ -234,6 +234,12 @@ class ColumnTest(ToleranceTest):
                                    ({"sand": 3}, "must be an isostat.column.Material")]:
             with self.subTest(message), self.assertRaisesRegex(isostat.InputError, message):
                 column.run(self.scene, self.folder / "none", materials=materials)
+        with self.assertRaisesRegex(isostat.InputError, "^threads: must be a whole number, 0 or more, but is 'two'"):
+            self.run_with(Elastic(), "none", threads="two")
+        with self.assertRaisesRegex(isostat.InputError, "^scene: must be an isostat.column.ColumnScene, but is 5"):
+            column.run(5)
+        with self.assertRaisesRegex(isostat.InputError, "^stiffness: must be an array of numbers, but is 'stiff'"):
+            isostat._column.wave_moduli("stiff")
         self.assertEqual(list(self.folder.glob("none/*")), [])
 
     def test_the_program_says_where_a_user_material_comes_from(self):

@@ -20,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 EARLY_STEPS, EARLY, EARLY_COUNTED, LATE = 300, 1e-6, 5e-3, 1e-3
 COUNTED = ("IR", "f_")  # what a contact on the threshold of yielding changes
-LEFT_OUT = {"indicator (-)", "unbalanced (-)", "residual (J)"}  # differences of nearly equal numbers
+LEFT_OUT = {"indicator (-)", "unbalanced (-)", "residual (J)", "eps_v (-)"}  # differences of nearly equal numbers
 SMOOTH = ("(Pa)", "(s)", "(1/s)", "(J)")  # units of what no single contact can change
 
 

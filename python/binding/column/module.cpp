@@ -10,7 +10,10 @@
 #include "coupling/batch/wave_moduli_cache.hpp"
 #include "fem/libraries.hpp"
 #include "python/binding/column/python_material.hpp"
+#include "python/binding/given.hpp"
+#include "python/binding/warnings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <fmt/format.h>
@@ -73,8 +76,9 @@ UserMaterials user_materials(const py::dict &laws)
 }
 
 void run(const ColumnScene &scene, const std::string &output, const py::dict &materials, bool overwrite, bool resume,
-         int threads, bool quiet)
+         Threads threads, bool quiet, const py::list &warnings)
 {
+  const WarningsListed listed(warnings);
   static std::recursive_mutex columns; // PETSc, MPI and signals serve one thread at a time
   std::unique_lock turn(columns, std::defer_lock);
   {
@@ -87,7 +91,7 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
   options.command_line = "isostat.column.run() in Python";
   options.overwrite = overwrite;
   options.resume = resume;
-  options.threads = threads;
+  options.threads = static_cast<int>(threads);
   options.quiet = quiet;
   ColumnRequest request(scene, options);
   request.materials = user_materials(materials);
@@ -103,14 +107,18 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
 }
 
 /// (n, 2) of (n, 6, 6).
-py::array_t<double> wave_moduli(const py::array_t<double, py::array::c_style | py::array::forcecast> &stiffness)
+py::array_t<double> wave_moduli(const Given<Doubles, "stiffness"> &given)
 {
+  const Doubles &stiffness = given;
   if (stiffness.ndim() != 3 || stiffness.shape(1) != 6 || stiffness.shape(2) != 6)
-    throw InputError("stiffness: must be an array of shape (n, 6, 6).");
+    throw InputError(fmt::format("stiffness: must be an array of shape (n, 6, 6), but is {}.", described(stiffness)));
   py::array_t<double> found({stiffness.shape(0), py::ssize_t(2)});
+  WaveModuli moduli;
   for (py::ssize_t q = 0; q < stiffness.shape(0); ++q)
     {
-      const WaveModuli moduli = max_wave_moduli(Eigen::Map<const Stiffness>(stiffness.data() + 36 * q).transpose());
+      const double *of_point = stiffness.data() + 36 * q;
+      if (q == 0 || !std::equal(of_point, of_point + 36, of_point - 36)) // else as the point before
+        moduli = max_wave_moduli(Eigen::Map<const Stiffness>(of_point).transpose());
       found.mutable_at(q, 0) = moduli.p;
       found.mutable_at(q, 1) = moduli.s;
     }
