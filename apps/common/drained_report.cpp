@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/drained_report.hpp"
 
-#include "base/files/csv_table.hpp"
 #include "dem/drive/stages/cycles.hpp"
 
 #include <algorithm>
@@ -31,7 +30,7 @@ bool unloads(const DrainedPath &path)
 }
 } // namespace
 
-std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, const Scene &scene)
+std::vector<DrainedStage> drained_stages(const RunHistory &run, const Scene &scene)
 {
   if (std::none_of(scene.stages.begin(), scene.stages.end(), is_drained))
     return {};
@@ -45,11 +44,11 @@ std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, co
     q,
     done
   };
-  std::vector<std::string> names = {"stage (-)", "eps_x (-)", "eps_y (-)", "eps_z (-)", "p (Pa)", "q (Pa)"};
+  std::vector<std::string> names = {"stage", "eps_x", "eps_y", "eps_z", "p", "q"};
   const bool repeated = !repeats_text(scene.stages).empty();
   if (repeated)
-    names.push_back("done (-)");
-  const CsvTable history(folder / "history.csv", names);
+    names.push_back("done");
+  const HistoryRows history = run.of(names);
   const auto stage_of = [&](std::size_t row) { return static_cast<std::size_t>(history(row, at_stage)); };
   std::vector<DrainedStage> stages;
   for (std::size_t k = 0; k < scene.stages.size(); ++k)

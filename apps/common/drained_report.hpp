@@ -2,11 +2,11 @@
 // Strength and dilatancy of the drained triaxial stages of a test, for its summary.
 // tested: tests/apps/drained_report_test.py
 #pragma once
+#include "apps/common/run_history.hpp"
 #include "base/files/json.hpp"
 #include "dem/measure/strength.hpp"
 #include "dem/scene/scene.hpp"
 
-#include <filesystem>
 #include <string>
 
 namespace isostat
@@ -18,9 +18,9 @@ struct DrainedStage
   DrainedStrength strength;
 };
 
-/// Of each stage that drives the axial strain while a servo keeps stresses, from history.csv; of one that is repeated
+/// Of each stage that drives the axial strain while a servo keeps stresses, from the history; of one that is repeated
 /// the last time. Stages that unload have no strength.
-std::vector<DrainedStage> drained_stages(const std::filesystem::path &folder, const Scene &scene);
+std::vector<DrainedStage> drained_stages(const RunHistory &run, const Scene &scene);
 
 /// Lines for the terminal, each after a line break.
 std::string to_text(const std::vector<DrainedStage> &stages);

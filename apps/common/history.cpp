@@ -20,6 +20,14 @@ double major_angle(const Mat3 &stress)
   return 0.5 * std::atan2(2 * stress(0, 1), stress(0, 0) - stress(1, 1)) * 180 / std::numbers::pi;
 }
 
+/// Excess pore pressure over the effective stress from which the volume is kept; 0 while water drains.
+double pore_pressure_ratio(const PathState &path, const Observation &seen)
+{
+  if (!path.undrained || path.undrained->stress <= 0)
+    return 0;
+  return 1 - (path.undrained->vertical ? seen.stress[1] : seen.p) / path.undrained->stress;
+}
+
 /// It has a stage whose three normal stresses p and q do not tell.
 bool has_path(const Scene &scene)
 {
@@ -55,6 +63,7 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
     for (const char *name : {"W_boundary", "D_sliding", "D_rolling", "D_released", "D_damping", "D_contact_damping",
                              "D_free_grains", "created", "residual"})
       columns.push_back({name, "J"});
+  columns.insert(columns.end(), {{"eps_v", "-"}, {"r_u", "-"}, {"cycles", "-"}});
   return columns;
 }
 
@@ -93,6 +102,8 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
       row.insert(row.end(), {e.boundary_work, e.sliding, e.rolling, e.released, e.damping, e.contact_damping,
                              e.free_grains, e.created, e.residual()});
     }
+  row.insert(row.end(), {strain.sum(), pore_pressure_ratio(state.path, seen),
+                         0.5 * (static_cast<double>(state.undrained.reversals) + state.loading.half_cycle)});
   return row;
 }
 } // namespace isostat

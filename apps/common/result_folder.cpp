@@ -226,10 +226,19 @@ void write_provenance(const fs::path &folder, const std::string &scene_text, con
   write_replacing(folder / scene_name, scene_text); // last: who finds it finds both
 }
 
-void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line)
+void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line,
+                      const std::map<std::string, double> &specimen)
 {
-  write_provenance(folder, to_toml(scene), command_line,
-                   {{"instruction set", instruction_set()}, {"seed", std::to_string(scene.grading.seed)}});
+  const auto has = [&](const char *name) { return specimen.find(name) != specimen.end(); };
+  const std::string seed = has("seed")                   ? fmt::format("{:g}", specimen.at("seed"))
+                           : scene.specimen.file.empty() ? std::to_string(scene.grading.seed)
+                                                         : "unknown";
+  MoreProvenance more = {{"instruction set", instruction_set()}, {"seed", seed}};
+  if (has("grains") && has("d50_m") && has("void_ratio") && has("pressure_Pa"))
+    more.emplace_back("specimen", fmt::format("{:.0f} grains, d50 {:.4g} mm, e {:.4f}, p' {:.4g} kPa",
+                                              specimen.at("grains"), 1e3 * specimen.at("d50_m"),
+                                              specimen.at("void_ratio"), specimen.at("pressure_Pa") / 1e3));
+  write_provenance(folder, to_toml(scene), command_line, more);
 }
 
 std::vector<std::string> report_command(const std::vector<std::string> &words)

@@ -5,6 +5,7 @@
 #include "dem/scene/scene.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,7 +61,9 @@ void make_writable_folder(const std::filesystem::path &folder);
 void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
                       const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
 /// The same of a scene of grains, with instruction set and seed.
-void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line);
+/// @param specimen  numbers of the packing that is run, which go before what the scene says; empty: there is none yet
+void write_provenance(const std::filesystem::path &folder, const Scene &scene, const std::string &command_line,
+                      const std::map<std::string, double> &specimen = {});
 
 /// The Python package `report` with these words, which `execv` takes: figures and reports are its work.
 std::vector<std::string> report_command(const std::vector<std::string> &words);

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
+constexpr std::uint64_t steps_kept = 2000; ///< between two states that are kept in memory; a copy costs some steps
 
 /// The state of a test for the progress line.
 std::string in_words(const Assembly &assembly, const Observation &seen, double redundancy)
@@ -53,7 +54,7 @@ RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::st
   for (std::uint64_t k = 0; k < written_.snapshots; ++k)
     n_missing += !fs::exists(snapshot_file(k), ignored);
   if (n_missing > 0)
-    tell(fmt::format("warning: {}: {} of {} snapshots are not there any more; the run goes on without them\n",
+    warn(fmt::format("{}: {} of {} snapshots are not there any more; the run goes on without them",
                      (folder_ / "snapshots").string(), n_missing, written_.snapshots));
 }
 
@@ -102,18 +103,33 @@ bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, co
     }
   if (assembly.step() % 256 == 0 && since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
     save_checkpoint(assembly, state);
+  if (!kept_ || assembly.step() % steps_kept == 0)
+    kept_ = checkpoint_of(assembly, state);
   return true;
+}
+
+Checkpoint RunOutput::checkpoint_of(const Assembly &assembly, const DriveState &state) const
+{
+  WrittenSoFar written = written_;
+  written.rows = recorder_.n_rows();
+  Checkpoint checkpoint{assembly.checkpoint(), state, written, {}, specimen_, scene_text_};
+  EnergyMemory::for_each(assembly.energy_memory(),
+                         [&](const std::string &name, double value) { checkpoint.assembly[name] = value; });
+  return checkpoint;
 }
 
 void RunOutput::save_checkpoint(const Assembly &assembly, const DriveState &state)
 {
   recorder_.flush();
-  written_.rows = recorder_.n_rows();
-  Checkpoint checkpoint{assembly.checkpoint(), state, written_, {}, specimen_, scene_text_};
-  EnergyMemory::for_each(assembly.energy_memory(),
-                         [&](const std::string &name, double value) { checkpoint.assembly[name] = value; });
-  write_checkpoint(folder_ / "checkpoint", checkpoint);
+  write_checkpoint(folder_ / "checkpoint", checkpoint_of(assembly, state));
   since_checkpoint_.restart();
+}
+
+void RunOutput::finish()
+{
+  recorder_.flush();
+  if (kept_)
+    write_checkpoint(folder_ / "checkpoint", *kept_);
 }
 
 void restore(const Checkpoint &checkpoint, Assembly &assembly)

@@ -27,7 +27,8 @@ private:
 };
 
 /// Columns of history.csv: where the run stands, the micromechanics, of a periodic cell its stress tensor and shear
-/// strain, of a box the normal stresses where a stage is a path, and the energy balance where it is measured.
+/// strain, of a box the normal stresses where a stage is a path, the energy balance where it is measured; volumetric
+/// strain, ratio of excess pore pressure (0 while water drains), and cycles with the share of the present one.
 std::vector<RecordColumn> history_columns(const Scene &scene);
 
 /// One row of them.
@@ -47,9 +48,13 @@ public:
   bool after_step(const Assembly &, const DriveState &, const Observation &) override;
 
   void save_checkpoint(const Assembly &assembly, const DriveState &state);
-  void finish() { recorder_.flush(); }
+  /// Brings the files up to date.
+  void flush() { recorder_.flush(); }
+  /// Of a run that has come to its end: its checkpoint is from shortly before, so that the end can be put off.
+  void finish();
 
 private:
+  Checkpoint checkpoint_of(const Assembly &assembly, const DriveState &state) const;
   void store_snapshot(const Snapshot &snapshot);
   std::filesystem::path snapshot_file(std::uint64_t k) const;
 
@@ -62,6 +67,7 @@ private:
   PvdCollection grains_, chains_;
   Progress progress_;
   Stopwatch since_checkpoint_;
+  std::optional<Checkpoint> kept_; ///< in memory
 };
 
 /// Puts the sums of a checkpoint back into the assembly.

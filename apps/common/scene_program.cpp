@@ -112,10 +112,10 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
 void note_instruction_set(const std::string &made_with)
 {
   if (const std::string note = other_instruction_set(made_with); !note.empty())
-    tell(fmt::format("note: {}\n", note));
+    warn(note);
 }
 
-void tell_finished(const std::filesystem::path &folder, const char *program, bool figures)
+void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint)
 {
   fmt::print("{}: this run has finished, there is nothing to resume; its results are in summary.txt.", folder.string());
   if (figures && !std::filesystem::exists(folder / "report.html"))
@@ -125,15 +125,18 @@ void tell_finished(const std::filesystem::path &folder, const char *program, boo
       fmt::print("  {}\n", draw_figures(folder, program));
     }
   else
-    fmt::print(" Start it anew with --overwrite.\n");
+    fmt::print("{} Start it anew with --overwrite.\n", hint);
 }
 
-bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene)
+bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene, bool end_may_change)
 {
   if (use != FolderUse::resume || !std::filesystem::exists(folder / "summary.json") ||
       !std::filesystem::exists(folder / "summary.txt")) // the last of its files
     return false;
-  check_same_scene(folder, read_scene_text((folder / "scene.toml").string()), scene);
+  const std::string before = read_scene_text((folder / "scene.toml").string());
+  if (end_may_change && before != scene && std::filesystem::exists(folder / "checkpoint"))
+    return false;
+  check_same_scene(folder, before, scene);
   return true;
 }
 

@@ -70,14 +70,17 @@ void check_same_scene(const std::filesystem::path &folder, const std::string &ch
 void note_instruction_set(const std::string &made_with);
 
 /// Whether a run that --resume asks for has finished: its summaries are there.
+/// @param end_may_change  another scene may put the end off: it goes on if there is a checkpoint, which knows
 /// @throws InputError  it was another scene
 /// tested: tests/apps/kill_resume_test.py, tests/apps/soil_column_resume_test.py
-bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene);
+bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene,
+                  bool end_may_change = false);
 
 /// What there is to do about it: says so on stdout, and draws what is missing of its figures and report, if `figures`.
+/// @param hint  a sentence on how it could go on
 /// @throws Interrupted  as draw_figures()
 /// tested: tests/apps/figures_interrupt_test.py
-void tell_finished(const std::filesystem::path &folder, const char *program, bool figures);
+void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint = "");
 
 /// A failure with what a last attempt to bring its files up to date had to say, and a line about the last checkpoint.
 /// tested: tests/apps/shared_folder_test.py, tests/apps/failures_test.py

@@ -3,7 +3,7 @@
 
 #include "dem/drive/stages/cycles.hpp"
 #include "dem/drive/stages/cyclic_response.hpp"
-#include "dem/drive/stages/early_end.hpp"
+#include "dem/drive/stages/stage_end.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -49,8 +49,8 @@ Json response_json(const std::string &name, const CyclicResponse &cycles)
 std::vector<ToldEnd> told_ends(const DriveState &state, const Scene &scene)
 {
   std::vector<ToldEnd> ends;
-  for (const EarlyEnd &end : state.early_ends)
-    ends.push_back({end, to_text(end, scene.stages)});
+  for (const StageEnd &end : state.ends)
+    ends.push_back({end, is_early(end, scene.stages), to_text(end, scene.stages)});
   return ends;
 }
 
@@ -60,7 +60,7 @@ std::string stages_text(const DriveState &state, const Scene &scene)
   for (const std::string &repeat : repeats_text(scene.stages))
     text += "\n  repeated                 " + repeat;
   for (const ToldEnd &told : told_ends(state, scene))
-    text += "\n  ended early              " + told.text;
+    text += fmt::format("\n  {:<25}{}", told.early ? "ended early" : "ended", told.text);
   for (const ControlLoss &loss : state.control.losses)
     text += "\n  control lost             " + loss_text(loss, scene);
   return text;
@@ -70,7 +70,8 @@ std::vector<std::string> stage_warnings(const DriveState &state, const Scene &sc
 {
   std::vector<std::string> lines;
   for (const ToldEnd &told : told_ends(state, scene))
-    lines.push_back(told.text);
+    if (told.early)
+      lines.push_back(told.text);
   for (const ControlLoss &loss : state.control.losses)
     lines.push_back("control lost: " + loss_text(loss, scene));
   return lines;
@@ -90,12 +91,26 @@ Json control_json(const std::vector<ControlLoss> &losses)
   return list;
 }
 
+Json ends_json(const std::vector<ToldEnd> &ends)
+{
+  Json list = Json::array();
+  for (const auto &[end, early, text] : ends)
+    list.push_back({{"stage", end.stage},
+                    {"by", name_of(end.by)},
+                    {"step", end.step},
+                    {"times", end.times},
+                    {"early", early},
+                    {"text", text}});
+  return list;
+}
+
 Json early_ends_json(const std::vector<ToldEnd> &ends)
 {
   Json list = Json::array();
-  for (const auto &[end, text] : ends)
-    list.push_back(
-        {{"stage", end.stage}, {"step", end.step}, {"times", end.times}, {"at_once", end.at_once}, {"text", text}});
+  for (const auto &[end, early, text] : ends)
+    if (early)
+      list.push_back(
+          {{"stage", end.stage}, {"step", end.step}, {"times", end.times}, {"at_once", end.at_once}, {"text", text}});
   return list;
 }
 } // namespace isostat

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/test_run.hpp"
 
+#include "apps/common/resumed_scene.hpp"
 #include "apps/common/run_output.hpp"
 #include "apps/common/stage_report.hpp"
 #include "base/error.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -65,7 +67,7 @@ namespace
 void check_stages(const DriveState &state, std::size_t n_stages, const fs::path &folder)
 {
   const auto has = [&](const auto &told) { return told.stage < n_stages; };
-  if (state.place.stage > n_stages || !std::ranges::all_of(state.early_ends, has) ||
+  if (state.place.stage > n_stages || !std::ranges::all_of(state.ends, has) ||
       !std::ranges::all_of(state.control.losses, has))
     throw InputError(fmt::format("{}: the checkpoint speaks of stages beyond the {} of the scene; it is damaged. Start "
                                  "anew with --overwrite.",
@@ -77,7 +79,7 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
 {
   TestRun run;
   run.resumed = std::make_unique<Checkpoint>(read_checkpoint(folder / "checkpoint"));
-  check_same_scene(folder, run.resumed->scene, to_toml(scene));
+  check_resumed_scene(folder, *run.resumed, scene);
   if (run.resumed->written.snapshots > run.resumed->written.rows)
     throw InputError(
         fmt::format("{}: the checkpoint speaks of {} snapshots and {} rows, but there is a row of each; it is "
@@ -98,10 +100,14 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   if (!run.folder)
     run.folder = open_result_folder(folder, use); // only now that everything else went well may older results go
   if (!run.resumed)
-    write_provenance(folder, scene, command_line);
+    write_provenance(folder, scene, command_line, run.specimen);
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   if (run.resumed) // only now: the files may be refused
-    write_provenance(folder, scene, command_line);
+    {
+      for (const char *of_the_end : {"summary.json", "summary.txt"}) // which is put off
+        fs::remove(folder / of_the_end);
+      write_provenance(folder, scene, command_line, run.specimen);
+    }
   Watched observer(output, watcher);
   const std::uint64_t first_step = run.assembly->step();
   const Stopwatch watch;
@@ -114,18 +120,18 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
     }
   catch (const RunFailure &failure)
     {
-      throw failure_of_run(failure, folder, [&] { output.finish(); });
+      throw failure_of_run(failure, folder, [&] { output.flush(); });
     }
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
     throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
 
-  TestSummary summary = summarise(folder, scene, run.specimen, run.state, seconds);
+  TestSummary summary = summarise(RunHistory::read(folder, scene), scene, run.specimen, run.state, seconds);
   summary.steps = static_cast<double>(run.assembly->step());
   summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
-  write_json(folder / "summary.json", summary);
+  write_json(folder / "summary.json", to_json(summary));
   for (const std::string &line : stage_warnings(run.state, scene))
-    tell(fmt::format("warning: {}\n", line));
+    warn(line);
   return summary;
 }
 } // namespace isostat

@@ -25,7 +25,8 @@ struct TestRun
 
 /// On a specimen, with the law of the scene.
 TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSettings &how);
-/// From the newest checkpoint of a results folder.   @throws InputError  it is of another scene, damaged, or not there
+/// From the newest checkpoint of a results folder. The scene may put the end off (apps/common/resumed_scene.hpp).
+/// @throws InputError  it is of another scene, damaged, or not there
 TestRun resume_test(const Scene &scene, const std::filesystem::path &folder, const StepSettings &how);
 
 /// Runs the stages and leaves history, snapshots, checkpoints and summary.json in the folder of the request.

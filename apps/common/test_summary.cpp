@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/test_summary.hpp"
 
-#include "base/files/csv_table.hpp"
 #include "base/files/json.hpp"
 #include "dem/drive/programme.hpp"
 #include "dem/drive/rate_control.hpp"
@@ -33,13 +32,12 @@ enum Column
   residual
 };
 
-CsvTable read_history(const std::filesystem::path &folder, bool energy)
+HistoryRows rows_of(const RunHistory &run, bool energy)
 {
-  std::vector<std::string> names = {"stage (-)", "eps_y (-)", "liquefied (-)", "p (Pa)",
-                                    "q (Pa)",    "IR (-)",    "indicator (-)", "reversals (-)"};
+  std::vector<std::string> names = {"stage", "eps_y", "liquefied", "p", "q", "IR", "indicator", "reversals"};
   if (energy)
-    names.insert(names.end(), {"W_boundary (J)", "residual (J)"});
-  return CsvTable(folder / "history.csv", names);
+    names.insert(names.end(), {"W_boundary", "residual"});
+  return run.of(names);
 }
 
 double liquefaction_ratio(const Scene &scene)
@@ -55,7 +53,7 @@ double liquefaction_ratio(const Scene &scene)
 
 /// I_R in the last row of each half cycle after liquefaction in which p'/p0 comes back above the ratio, and the
 /// smallest.
-void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
+void add_recoveries(const HistoryRows &history, double limit, TestSummary &summary)
 {
   double sum = 0, last = 0, half_cycle = 0;
   const auto count = [&] {
@@ -79,7 +77,7 @@ void add_recoveries(const CsvTable &history, double limit, TestSummary &summary)
   summary.redundancy_recovered = summary.n_recoveries > 0 ? sum / summary.n_recoveries : 0;
 }
 
-void add_path(const CsvTable &history, const Scene &scene, TestSummary &summary)
+void add_path(const HistoryRows &history, const Scene &scene, TestSummary &summary)
 {
   bool started = false;
   summary.min_p = summary.p0;
@@ -144,7 +142,7 @@ bool shears_in(const Stage &stage, const ShearMode &mode)
 bool is_simple_shear(const Stage &stage) { return shears_in(stage, simple_shear_mode); }
 bool is_axial(const Stage &stage) { return as<ShearStage>(stage) && !is_simple_shear(stage); }
 
-std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder, const Scene &scene)
+std::optional<ShearExtremes> shear_extremes(const RunHistory &run, const Scene &scene)
 {
   if (std::none_of(scene.stages.begin(), scene.stages.end(), is_simple_shear))
     return std::nullopt;
@@ -155,7 +153,7 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
     tau,
     sigma_y
   };
-  const CsvTable history(folder / "history.csv", {"stage (-)", "gamma_xy (-)", "tau_xy (Pa)", "sigma_y (Pa)"});
+  const HistoryRows history = run.of({"stage", "gamma_xy", "tau_xy", "sigma_y"});
   ShearExtremes shear;
   for (const Stage &s : scene.stages)
     if (const auto *cyclic = as<UndrainedCyclicSimpleShear>(s))
@@ -173,7 +171,7 @@ std::optional<ShearExtremes> shear_extremes(const std::filesystem::path &folder,
   return shear;
 }
 
-double energy_residual(const CsvTable &history)
+double energy_residual(const HistoryRows &history)
 {
   double done = 0, worst = 0;
   for (std::size_t row = 1; row < history.n_rows(); ++row)
@@ -240,8 +238,8 @@ Json liquefaction_json(const TestSummary &s)
 }
 } // namespace
 
-TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
-                      const std::map<std::string, double> &specimen, const DriveState &state, double seconds)
+TestSummary summarise(const RunHistory &run, const Scene &scene, const std::map<std::string, double> &specimen,
+                      const DriveState &state, double seconds)
 {
   TestSummary summary;
   const auto number = [&](const char *name, double otherwise) {
@@ -263,18 +261,18 @@ TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
   summary.worst_overshoot = state.undrained.worst_overshoot;
   summary.cyclic = std::any_of(scene.stages.begin(), scene.stages.end(), is_cyclic);
   summary.axial = std::any_of(scene.stages.begin(), scene.stages.end(), is_axial);
-  summary.shear = shear_extremes(folder, scene);
+  summary.shear = shear_extremes(run, scene);
   summary.cycles_to_liquefaction = static_cast<double>(state.undrained.reversals_to_liquefaction()) / 2;
   summary.losses = state.control.losses;
   summary.stages = stages_text(state, scene);
-  summary.early_ends = told_ends(state, scene);
+  summary.ends = told_ends(state, scene);
   for (const Stage &stage : scene.stages)
     if (const auto *shear = as<ShearStage>(stage); shear && shear->notes_response())
       summary.response = response_name(state.undrained, shear->mode());
-  summary.drained = drained_stages(folder, scene);
+  summary.drained = drained_stages(run, scene);
   summary.cycles = state.undrained.response;
   summary.strain_before = state.undrained.max_strain_before;
-  const CsvTable history = read_history(folder, scene.output.energy);
+  const HistoryRows history = rows_of(run, scene.output.energy);
   add_path(history, scene, summary);
   add_recoveries(history, liquefaction_ratio(scene) * state.path.p0(), summary);
   if (scene.output.energy)
@@ -321,7 +319,7 @@ std::string to_text(const TestSummary &s, const Scene &scene)
   return text + to_text(s.drained) + s.stages + "\n";
 }
 
-void write_json(const std::filesystem::path &path, const TestSummary &s)
+Json to_json(const TestSummary &s)
 {
   Json json{{"title", s.title},
             {"contact_law", s.law},
@@ -346,8 +344,9 @@ void write_json(const std::filesystem::path &path, const TestSummary &s)
   if (!s.drained.empty())
     json["drained"] = to_json(s.drained);
   json["control_lost"] = control_json(s.losses);
-  json["ended_early"] = early_ends_json(s.early_ends);
+  json["ended"] = ends_json(s.ends);
+  json["ended_early"] = early_ends_json(s.ends);
   json["liquefaction"] = liquefaction_json(s);
-  write_json(path, json);
+  return json;
 }
 } // namespace isostat

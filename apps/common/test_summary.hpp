@@ -6,7 +6,6 @@
 #include "dem/drive/drive_state.hpp"
 #include "dem/scene/scene.hpp"
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,7 +21,7 @@ struct ShearExtremes
   double requested_ratio = 0; ///< CSR of the scene; 0 if no stage is cyclic [-]
 };
 
-/// What is reported of a finished test, from its history.csv and the driver's state.
+/// What is reported of a finished test, from its history and the driver's state.
 struct TestSummary
 {
   std::string title, law; ///< as the scene names them
@@ -49,16 +48,16 @@ struct TestSummary
   CyclicResponse cycles;              ///< its figures
   std::vector<DrainedStage> drained;  ///< stages that a servo drains
   std::vector<ControlLoss> losses;    ///< of control, in all stages (dem/drive/control.hpp)
-  std::vector<ToldEnd> early_ends;    ///< stages that did not end by themselves (apps/common/stage_report.hpp)
+  std::vector<ToldEnd> ends;          ///< of stages (apps/common/stage_report.hpp)
   std::string stages;                 ///< lines about single stages
 };
 
 /// @param specimen  its figures (Specimen::numbers)
-TestSummary summarise(const std::filesystem::path &folder, const Scene &scene,
-                      const std::map<std::string, double> &specimen, const DriveState &state, double seconds);
+TestSummary summarise(const RunHistory &run, const Scene &scene, const std::map<std::string, double> &specimen,
+                      const DriveState &state, double seconds);
 
 /// For the terminal.
 std::string to_text(const TestSummary &summary, const Scene &scene);
 /// summary.json, read by apps/figures/element_test.py.
-void write_json(const std::filesystem::path &path, const TestSummary &summary);
+Json to_json(const TestSummary &summary);
 } // namespace isostat

@@ -75,7 +75,7 @@ void run(ConvertLine asked)
   const Snapshot &state = packing.specimen.state;
   fmt::print("{}\n{}", asked.out, figures_text(packing_figures(state), state));
   for (const std::string &note : notes)
-    tell(fmt::format("warning: {}\n", note));
+    warn(note);
 }
 } // namespace
 

@@ -84,8 +84,8 @@ Snapshot with_contacts(const Snapshot &stored, const fs::path &path)
   Snapshot state = assembly.snapshot();
   for (Contact &contact : state.contacts)
     contact.history.shear_force = contact.history.bending_moment = contact.history.twisting_moment = Vec3::Zero();
-  tell(fmt::format("warning: {}: it is stored without contacts, as packings of other programs are. Its {} contacts are "
-                   "the pairs that overlap, with the normal forces of the law in the file, without shear forces.\n",
+  warn(fmt::format("{}: it is stored without contacts, as packings of other programs are. Its {} contacts are "
+                   "the pairs that overlap, with the normal forces of the law in the file, without shear forces.",
                    path.string(), state.contacts.size()));
   return state;
 }

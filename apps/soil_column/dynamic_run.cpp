@@ -72,7 +72,7 @@ private:
                                     resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
     for (const std::string &warning : this->warnings_)
       if (!resumed_ && ranks().first())
-        tell(fmt::format("warning: {}\n", warning));
+        warn(warning);
     soil_.material->seconds = 0;
   }
 

@@ -192,7 +192,7 @@ void print_library(const fs::path &path)
   fmt::print("{}: {} specimens\n{}", path.string(), entries.size(), library_table(entries));
   for (const LibraryEntry &entry : entries)
     if (const double density = entry.number("relative_density"); !density_remark(density).empty())
-      tell(fmt::format("warning: {}: D_r = {:.3f}{}\n", entry.name, density, density_remark(density)));
+      warn(fmt::format("{}: D_r = {:.3f}{}", entry.name, density, density_remark(density)));
 }
 
 void report_failures(const std::vector<Task> &tasks)

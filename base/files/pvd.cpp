@@ -34,10 +34,10 @@ PvdCollection::PvdCollection(std::filesystem::path path, std::size_t resume_entr
       entries_.emplace_back(entry.attribute("timestep").value(), file);
   n_lost_ = resume_entries - std::min(resume_entries, entries_.size());
   if (n_lost_ > 0)
-    tell(
-        fmt::format("warning: {}: {} of {} files of the run are not in this list any more{}; ParaView still opens them "
-                    "one by one\n",
-                    path_.string(), n_lost_, resume_entries, parsed ? "" : fmt::format(" ({})", parsed.description())));
+    warn(fmt::format("{}: {} of {} files of the run are not in this list any more{}; ParaView still opens them "
+                     "one by one",
+                     path_.string(), n_lost_, resume_entries,
+                     parsed ? "" : fmt::format(" ({})", parsed.description())));
 }
 
 void PvdCollection::append(double time, const std::string &file)

@@ -45,7 +45,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
         {
           read(path);
           if (!problems.empty())
-            tell(fmt::format("warning:{}\n  This run goes on from the checkpoint before, {}.\n", problems,
+            warn(fmt::format("damaged checkpoint:{}\n  This run goes on from the checkpoint before, {}.", problems,
                              path.string()));
           return;
         }

@@ -181,8 +181,8 @@ void Recorder::mend_csv()
   n_waiting_lines_ = 0;
   flush_hdf5();
   with_own_file([&] { copy_to_csv(); });
-  tell(fmt::format("warning: {} was removed or changed while the run writes it; it has been written anew from {}\n",
-                   csv_.string(), hdf5_.string()));
+  warn(fmt::format("{} was removed or changed while the run writes it; it has been written anew from {}", csv_.string(),
+                   hdf5_.string()));
 }
 
 void Recorder::append(std::span<const double> row)

@@ -91,7 +91,7 @@ toml::table parse_override(const std::string &value)
 
 SceneDocument::SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                              const std::vector<std::string> &overrides)
-    : schema_(schema), name_(name), root_(parse_toml(text, name))
+    : schema_(schema), name_(name.empty() ? "scene" : name), has_lines_(!name.empty()), root_(parse_toml(text, name))
 {
   for (const std::string &override : overrides)
     apply(override);
@@ -216,7 +216,7 @@ std::string SceneDocument::where(std::string_view path) const
       path = path.substr(0, path.rfind('.'));
       node = find(path);
     }
-  if (!node || node->source().begin.line == 0)
+  if (!has_lines_ || !node || node->source().begin.line == 0)
     return name_;
   return fmt::format("{}:{}", name_, node->source().begin.line);
 }

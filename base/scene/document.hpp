@@ -22,6 +22,7 @@ inline double number_of(const toml::node &node)
 class SceneDocument
 {
 public:
+  /// @param name  of the file in messages; empty: the text is of a program, and messages name no lines
   /// @throws InputError for text that is no TOML, or an override that is none
   SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                 const std::vector<std::string> &overrides);
@@ -30,7 +31,8 @@ public:
   const toml::table &root() const { return root_; }
   const toml::node *find(std::string_view path) const; ///< null if nothing is there
 
-  /// "scene.toml:14", or "--set motion.damping"; of a path that is not there, the line of the table it belongs to.
+  /// "scene.toml:14", or "--set motion.damping"; of a path that is not there, the line of the table it belongs to;
+  /// "scene" where the document has no name.
   std::string where(std::string_view path) const;
 
   /// In the place of entry i of an array of tables as many of it as there are rows, each without the key `instead` and
@@ -50,6 +52,7 @@ private:
 
   const SceneSchema &schema_;
   std::string name_;
+  bool has_lines_;
   toml::table root_;
   std::vector<std::string> overridden_; ///< paths given by --set
 };

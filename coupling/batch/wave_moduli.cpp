@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace isostat
 {
@@ -20,10 +21,24 @@ void update_maximum(const Eigen::Vector3d &n, const Stiffness &stiffness, WaveMo
   maximum.p = std::max(maximum.p, values[2]);
   maximum.s = std::max(maximum.s, values[1]);
 }
+
+/// Of lambda and mu, as far as rounding goes; none of any other symmetry.
+std::optional<WaveModuli> isotropic_moduli(const Stiffness &stiffness)
+{
+  const double lambda = stiffness(0, 1), mu = stiffness(3, 3);
+  Stiffness isotropic = Stiffness::Zero();
+  isotropic.topLeftCorner<3, 3>().setConstant(lambda);
+  isotropic.diagonal() << Eigen::Vector3d::Constant(lambda + 2 * mu), Eigen::Vector3d::Constant(mu);
+  const bool is = (stiffness - isotropic).cwiseAbs().maxCoeff() <= 1e-12 * stiffness.cwiseAbs().maxCoeff();
+  return is && lambda + mu >= 0 ? std::optional(WaveModuli{std::max(lambda + 2 * mu, 0.0), std::max(mu, 0.0)})
+                                : std::nullopt;
+}
 } // namespace
 
 WaveModuli max_wave_moduli(const Stiffness &stiffness)
 {
+  if (const std::optional<WaveModuli> moduli = isotropic_moduli(stiffness))
+    return *moduli;
   constexpr int n = 200;
   WaveModuli maximum;
   for (int axis = 0; axis < 3; ++axis)

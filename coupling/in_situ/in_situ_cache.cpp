@@ -126,7 +126,7 @@ void InSituCache::add(const std::vector<InSituState> &states) const
     }
   catch (const std::exception &error) // the run has its states
     {
-      tell(fmt::format("warning: states in situ are not kept, and will be made again next time: {}\n", error.what()));
+      warn(fmt::format("states in situ are not kept, and will be made again next time: {}", error.what()));
     }
 }
 
@@ -136,7 +136,7 @@ void InSituCache::write(const std::vector<InSituState> &states) const
     {
       const std::string aside = path_.string() + ".damaged";
       std::filesystem::rename(path_, aside);
-      tell(fmt::format("states in situ were made anew, because their cache was damaged; it is kept as {}\n", aside));
+      warn(fmt::format("states in situ were made anew, because their cache was damaged; it is kept as {}", aside));
     }
   std::set<std::string> taken;
   if (std::filesystem::exists(path_)) // as it is now, another program may have added something

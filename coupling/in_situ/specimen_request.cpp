@@ -2,6 +2,7 @@
 #include "coupling/in_situ/specimen_request.hpp"
 
 #include "base/error.hpp"
+#include "dem/io/packing_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,8 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
   if (request.realisation >= seeds.size())
     throw InputError(fmt::format(
-        "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append. It has:\n{}",
+        "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append, or in Python "
+        "with isostat.write_library(). It has:\n{}",
         seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, *request.relative_density),
         request.realisation + 1, library_table(entries, lines_in_message)));
   const auto distance = [&](const LibraryEntry *e) {
@@ -46,6 +48,21 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   return **std::min_element(fits.begin(), fits.end(), [&](auto *a, auto *b) { return distance(a) < distance(b); });
 }
 
+std::vector<LibraryEntry> list_specimens(const std::filesystem::path &path)
+{
+  if (is_specimen_library(path))
+    return list_library(path);
+  Specimen specimen = read_stored_packing(path, {});
+  if (!specimen.state.cell)
+    throw InputError(
+        fmt::format("{}: a specimen between rigid walls, but a point of a column is a periodic cell. Prepare "
+                    "it with specimen.domain = \"periodic-cell\".",
+                    path.string()));
+  add_figures(specimen);
+  specimen.numbers.try_emplace("seed", 0);
+  return {{"specimen", specimen.provenance, specimen.numbers}};
+}
+
 void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t n_seeds,
                  const std::string &what)
 {
@@ -53,7 +70,7 @@ void check_seeds(const std::filesystem::path &library, SpecimenRequest request, 
   request.realisation = n_seeds - 1;
   try
     {
-      nearest_entry(list_library(library), request, any_stress, any_stress);
+      nearest_entry(list_specimens(library), request, any_stress, any_stress);
     }
   catch (const InputError &error)
     {
@@ -62,7 +79,7 @@ void check_seeds(const std::filesystem::path &library, SpecimenRequest request, 
 }
 
 NearestSpecimens::NearestSpecimens(std::filesystem::path library)
-    : library_(std::move(library)), entries_(list_library(library_))
+    : library_(std::move(library)), entries_(list_specimens(library_))
 {}
 
 std::shared_ptr<const StartingSpecimen> NearestSpecimens::find(const SpecimenRequest &request, double vertical,
@@ -71,7 +88,8 @@ std::shared_ptr<const StartingSpecimen> NearestSpecimens::find(const SpecimenReq
   const std::string &name = nearest_entry(entries_, request, vertical, horizontal).name;
   auto &specimen = read_[name];
   if (!specimen)
-    specimen = std::make_shared<StartingSpecimen>(StartingSpecimen{read_library_entry(library_, name).state, name});
+    specimen = std::make_shared<StartingSpecimen>(
+        StartingSpecimen{read_stored_packing(library_, is_specimen_library(library_) ? name : "").state, name});
   return specimen;
 }
 } // namespace isostat

@@ -38,6 +38,12 @@ struct SpecimenRequest
 const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, const SpecimenRequest &request,
                                   double vertical, double horizontal);
 
+/// What a column may take packings from: the entries of a library or, of a file with one specimen, that one as the
+/// entry "specimen" of seed 0, unless it says another one.
+/// @throws InputError  as list_library(); a specimen between rigid walls
+/// tested: tests/python/library_test.py
+std::vector<LibraryEntry> list_specimens(const std::filesystem::path &path);
+
 /// Before any work: whether a library has so many seeds of the density of a request.
 /// @param what  who needs them, at the head of the message
 /// @throws InputError  as nearest_entry(), naming the library
@@ -57,7 +63,7 @@ struct StartingSpecimen
 class NearestSpecimens
 {
 public:
-  /// @throws InputError  not a specimen library
+  /// @throws InputError  as list_specimens()
   explicit NearestSpecimens(std::filesystem::path library);
 
   /// That of nearest_entry().

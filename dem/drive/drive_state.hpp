@@ -61,8 +61,11 @@ struct Loading
   double slope = 0;                          ///< |d load/d strain|, Pa
   double window_load = 0, window_strain = 0; ///< where the window began that the slope is taken over, Pa and [-]
   std::uint64_t window_steps = 0;            ///< since then
+  double begun_load = 0, begun_strain = 0;   ///< where this direction began, Pa and [-]
+  double half_cycle = 0;                     ///< share of the way to the next turn that is done, 0..1; never falls
 
-  ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain, window_steps)
+  ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain, window_steps, begun_load,
+                 begun_strain, half_cycle)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.
@@ -74,14 +77,24 @@ struct ShearStart
   ISOSTAT_FIELDS(edges, p0)
 };
 
+/// The effective stress from which the volume is kept: what excess pore pressure counts from.
+struct UndrainedStart
+{
+  double stress = 0;     ///< p', or the vertical one, Pa
+  bool vertical = false; ///< in simple shear
+
+  ISOSTAT_FIELDS(stress, vertical)
+};
+
 /// The way that the specimen went.
 struct PathState
 {
-  RigidBox reference;                 ///< box at the start of this stage
-  Vec3 lateral_target = Vec3::Zero(); ///< stresses at the start of this shear stage: kept laterally if drained, Pa
-  std::optional<ShearStart> start;    ///< none before the first shear stage
-  Vec3 cell_strain = Vec3::Zero();    ///< of a cell: sum of L dt along x, y, z since then, tension positive [-]
-  double gamma = 0;                   ///< of a cell: sum of L_xy dt since then [-]
+  RigidBox reference;                      ///< box at the start of this stage
+  Vec3 lateral_target = Vec3::Zero();      ///< stresses at the start of this shear stage: kept laterally if drained, Pa
+  std::optional<ShearStart> start;         ///< none before the first shear stage
+  Vec3 cell_strain = Vec3::Zero();         ///< of a cell: sum of L dt along x, y, z since then, tension positive [-]
+  double gamma = 0;                        ///< of a cell: sum of L_xy dt since then [-]
+  std::optional<UndrainedStart> undrained; ///< none while water drains
 
   double p0() const { return start ? start->p0 : 0.0; }
   /// p0', or before the specimen is sheared the mean stress with which the present stage began, Pa.
@@ -90,9 +103,10 @@ struct PathState
   template <class Self, class F>
   static void for_each(Self &self, F &&f)
   {
-    auto &[reference_, lateral_target_, start_, cell_strain_, gamma_] = self;
+    auto &[reference_, lateral_target_, start_, cell_strain_, gamma_, undrained_] = self;
     f("reference_lower", reference_.lower), f("reference_upper", reference_.upper);
     f("lateral_target", lateral_target_), f("start", start_), f("cell_strain", cell_strain_), f("gamma", gamma_);
+    f("undrained", undrained_);
   }
 };
 
@@ -201,16 +215,33 @@ struct StageFigures
                  since_liquefied)
 };
 
-/// A stage that did not come to its end by itself (dem/drive/stages/early_end.hpp).
-struct EarlyEnd
+/// What ends a stage.
+enum class EndCondition
+{
+  max_steps,
+  strain,
+  volumetric_strain,
+  q,
+  p,
+  stress_ratio,
+  cycles,
+  reversals_after_liquefaction,
+  balance,
+  course ///< of a path that drives nothing
+};
+constexpr EndCondition last_of(EndCondition) { return EndCondition::course; }
+
+/// How a stage ended (dem/drive/stages/stage_end.hpp).
+struct StageEnd
 {
   std::uint64_t stage = 0, done = 0; ///< its number, and the stages that were over then, each as often as repeated
   std::uint64_t step = 0;            ///< of the run
   std::uint64_t times = 0;           ///< that it ended so in all, where it is repeated; the rest is of the first time
-  bool at_once = false;              ///< in its first step, because what is to end it was met; else by max_steps
+  bool at_once = false;              ///< in its first step
+  EndCondition by = EndCondition::max_steps;
   StageFigures figures;
 
-  ISOSTAT_FIELDS(stage, done, step, times, at_once, figures)
+  ISOSTAT_FIELDS(stage, done, step, times, at_once, by, figures)
 };
 
 /// What a stage is to have under control (dem/drive/control.hpp).
@@ -285,8 +316,8 @@ struct DriveState
   UndrainedRecord undrained;
   RecordedState recorded;
   ControlState control;
-  std::vector<EarlyEnd> early_ends;
+  std::vector<StageEnd> ends;
 
-  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control, early_ends)
+  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control, ends)
 };
 } // namespace isostat

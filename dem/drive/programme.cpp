@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/stages/cycles.hpp"
-#include "dem/drive/stages/early_end.hpp"
+#include "dem/drive/stages/stage_end.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
 
@@ -39,12 +39,12 @@ public:
         assembly_.compute_forces();
         const Observation seen = look();
         const Verdict verdict = stage_.judge(context_, seen);
-        finished = verdict.finished;
+        finished = verdict.end.has_value();
         record_if_due(seen, verdict);
         if (stage_.drives())
           look_at_control(seen, finished);
         if (finished)
-          look_at_end(seen, verdict);
+          look_at_end(seen, *verdict.end);
         move(seen, finished);
         state_.place.steps += 1;
         if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
@@ -61,6 +61,8 @@ private:
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
     state_.control.restart();
+    if (!stage_.keeps_volume())
+      state_.path.undrained.reset();
     state_.pace.rate = 0; // of a shear stage: when it begins to shear
     if (const std::string cycle = cycle_text(programme_.stages, state_.place.done); !cycle.empty())
       observer_.event(fmt::format("stage {} ({}){}", state_.place.stage, stage_.kind(), cycle));
@@ -84,7 +86,7 @@ private:
     const RecordSpec &spec = programme_.record;
     RecordedState &last = state_.recorded;
     const double load = stage_.load(seen), strain = stage_.strain(seen);
-    const bool always = state_.place.steps == 0 || verdict.finished || verdict.notable;
+    const bool always = state_.place.steps == 0 || verdict.end || verdict.notable;
     if (!always && last.step && seen.step - *last.step < spec.record_steps &&
         std::abs(seen.p - last.p) < spec.record_stress && std::abs(load - last.load) < spec.record_stress &&
         std::abs(strain - last.strain) < stage_.row_strain(spec.record_strain) &&
@@ -109,11 +111,12 @@ private:
   }
 
   /// Of the last step of a stage.
-  void look_at_end(const Observation &seen, const Verdict &verdict)
+  void look_at_end(const Observation &seen, EndCondition by)
   {
-    const bool at_once = state_.place.steps == 0 && !verdict.limited;
-    if ((verdict.limited || at_once) && note_early_end(stage_, context_, seen, at_once))
-      observer_.event(to_text(state_.early_ends.back(), programme_.stages));
+    if (!note_end(stage_, context_, seen, by))
+      return;
+    if (const StageEnd &end = state_.ends.back(); stage_.shears() || is_early(end, programme_.stages))
+      observer_.event(to_text(end, programme_.stages));
   }
 
   void look_at_control(const Observation &seen, bool finished)

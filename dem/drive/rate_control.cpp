@@ -89,6 +89,9 @@ double wave_time(const Assembly &assembly, double p0)
 void start_loading(Loading &loading, double load, double slope)
 {
   loading.signed_rate = 0;
+  loading.begun_load = load;
+  loading.begun_strain = loading.strain;
+  loading.half_cycle = 0;
   begin_window(loading, load, slope);
 }
 

@@ -33,6 +33,10 @@ ForeignPacking read_foreign_packing(const std::filesystem::path &path, const Rea
 /// tested: tests/dem/io/packing_files_test.cpp, tests/python/run_test.py
 void count_from_here(Snapshot &state);
 
+/// Sets what its `numbers` say of the packing: void ratio, stresses, coordination ...; none of what grains that do not
+/// touch do not have. The others stay as they are.   tested: tests/python/library_test.py
+void add_figures(Specimen &specimen);
+
 /// An HDF5 file of Isostat: a specimen, an entry of a library, or a snapshot of a run (which has no story: the file is
 /// its provenance). @param entry  of a library; empty: none
 /// @throws InputError  as read_specimen() does

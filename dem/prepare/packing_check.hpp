@@ -38,7 +38,8 @@ PackingFigures packing_figures(const Snapshot &snapshot);
 /// The figures as lines of text with a name each, indented by two.
 std::string figures_text(const PackingFigures &figures, const Snapshot &snapshot);
 
-/// How lengths in the unit "mm" or "um" are scaled, such as "give --length-unit mm"; for messages.
+/// How lengths in the unit "mm" or "um" are scaled, such as "give --length-unit mm", and how the user says that "m" is
+/// meant; for messages.
 using ScalingRemedy = std::function<std::string(const std::string &unit)>;
 
 /// Guards whatever another program has written: refuses what no packing of soil is.

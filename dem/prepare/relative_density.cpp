@@ -15,8 +15,6 @@ namespace
 {
 constexpr double bracket = 2e-3; // of tan phi, 0.1 deg: finer differences drown in the noise of a packing
 
-double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
-
 /// The next friction on the way to the end of what is possible, 0 or the loosest, by halves or doubles: without
 /// friction a packing rests late, a cell, which has no wall to lean on, only after a million steps.
 double further(double friction, double end)
@@ -84,10 +82,12 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
   if (at_near * at_other > 0)
     throw InputError(fmt::format(
         "specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
-        "compression {} gives {:.4f}, the {} there is. Choose a {} density, or another grading or pressure; walls "
-        "loosen a box of few grains: more grains, or specimen.domain = \"periodic-cell\", pack denser.",
+        "compression {} gives {:.4f}, the {} there is. Choose a {} density, or another grading or pressure.{}",
         target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
-        other == 0 ? "densest" : "loosest", other == 0 ? "lower" : "higher"));
+        other == 0 ? "densest" : "loosest", other == 0 ? "lower" : "higher",
+        other == 0 && how.specimen.domain == "rigid-box"
+            ? " Walls loosen a box of few grains: more grains, or specimen.domain = \"periodic-cell\", pack denser."
+            : ""));
   const double low = std::min(near, other), high = std::max(near, other);
   const double at_low = low == near ? at_near : at_other, at_high = low == near ? at_other : at_near;
   std::uintmax_t evaluations = 12;

@@ -2,8 +2,14 @@
 #pragma once
 #include "dem/prepare/compact.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace isostat
 {
+/// An angle of friction in degrees, of its tangent.
+inline double degrees(double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; }
+
 /// D_r = (e_max - e)/(e_max - e_min)      (docs/theory.md, section 1)
 inline double relative_density(double void_ratio, double e_min, double e_max)
 {

@@ -7,7 +7,7 @@
 #include "base/tell.hpp"
 #include "dem/io/packing_files.hpp"
 #include "dem/measure/stress.hpp"
-#include "dem/measure/summary.hpp"
+#include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/packing_check.hpp"
 #include "dem/prepare/relative_density.hpp"
@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 namespace isostat
 {
@@ -30,29 +29,13 @@ constexpr int density_attempts = 3;
 
 void describe(const Scene &scene, Specimen &specimen)
 {
-  const Snapshot &state = specimen.state;
-  const Micromechanics m = micromechanics(state);
-  const double e = m.void_ratio;
+  add_figures(specimen);
   auto &numbers = specimen.numbers;
-  numbers["void_ratio"] = e;
   if (const SpecimenSpec &spec = scene.specimen; spec.has_limits()) // else what the file says of it
     {
-      numbers["relative_density"] = relative_density(e, *spec.e_min, *spec.e_max);
+      numbers["relative_density"] = relative_density(numbers.at("void_ratio"), *spec.e_min, *spec.e_max);
       numbers["e_min"] = *spec.e_min;
       numbers["e_max"] = *spec.e_max;
-    }
-  numbers["pressure_Pa"] = m.wall.p;
-  numbers["grains"] = static_cast<double>(state.grains.n_grains());
-  numbers["coordination"] = m.network.coordination_number();
-  numbers["coordination_mechanical"] = m.network.mechanical_coordination_number();
-  numbers["redundancy_index"] = m.network.redundancy_index();
-  numbers["unbalanced_force"] = m.unbalanced;
-  numbers["d50_m"] = state.grains.d50();
-  if (state.cell)
-    {
-      const Vec3 stress = -contact_stress(state).diagonal();
-      numbers["vertical_stress_Pa"] = stress[1];
-      numbers["K0"] = 0.5 * (stress[0] + stress[2]) / stress[1];
     }
 }
 
@@ -157,7 +140,8 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
     }
   else
     specimen.state = reach_density(cloud, scene, prepared, how);
-  specimen.numbers["preparation_friction_deg"] = std::atan(prepared.friction) * 180 / std::numbers::pi;
+  specimen.numbers["preparation_friction_deg"] = degrees(prepared.friction);
+  specimen.numbers["void_ratio_compressed"] = void_ratio(prepared.state.volume(), prepared.state.grains.solid_volume());
   specimen.numbers["compressions"] = prepared.compressions;
   specimen.numbers["upscaling"] = cloud.upscaling;
   specimen.numbers["seed"] = static_cast<double>(scene.grading.seed);
@@ -168,32 +152,11 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
   return specimen;
 }
 
-void check_domain(const Scene &scene, const Snapshot &state, const std::string &name)
+/// What check_given_packing() says of it.
+void note_differences(const Scene &scene, const Specimen &given, const std::string &name, RunObserver &observer)
 {
-  const std::string is = state.cell ? "periodic-cell" : "rigid-box";
-  if (scene.specimen.domain != is)
-    throw InputError(fmt::format("{}: a specimen in a {}, but the scene has specimen.domain = \"{}\". Give the other "
-                                 "domain or another specimen.",
-                                 name, is, scene.specimen.domain));
-}
-
-/// What a scene says of its grains and of its pressure, and what its file has instead, which is taken.
-void note_differences(const Scene &scene, const Snapshot &state, RunObserver &observer)
-{
-  const std::string file = scene.specimen.file.empty() ? "the specimen that is given" : scene.specimen.file;
-  if (const double is = state.grains.density, said = scene.grading.density; std::abs(is - said) > 1e-3 * said)
-    observer.event(fmt::format("warning: {}: its grains have a density of {:g} kg/m3, and keep it; grading.density = "
-                               "{:g} kg/m3 is without effect",
-                               file, is, said));
-  if (state.contacts.empty() || scene.stages.empty() || as<Compress>(scene.stages[0]) ||
-      scene.specimen.consolidation != "isotropic")
-    return;
-  const double p = invariants(contact_stress(state)).p;
-  if (const double said = scene.specimen.pressure; std::abs(p - said) > 0.05 * said)
-    observer.event(
-        fmt::format("warning: {}: its mean effective stress is {:.4g} kPa, specimen.pressure = {:g} kPa; the "
-                    "test starts from what the file has. Bring it there by a stage `compress`",
-                    file, p / 1e3, said / 1e3));
+  for (const std::string &warning : check_given_packing(scene, given, name))
+    observer.event("warning: " + warning);
 }
 
 Specimen import(const Scene &scene, RunObserver &observer)
@@ -203,9 +166,8 @@ Specimen import(const Scene &scene, RunObserver &observer)
   if (path.extension() == ".h5")
     {
       Specimen specimen = read_stored_packing(path, place.entry);
-      check_domain(scene, specimen.state, scene.specimen.file);
+      note_differences(scene, specimen, scene.specimen.file, observer);
       specimen.state.law = scene.contact;
-      note_differences(scene, specimen.state, observer);
       describe(scene, specimen);
       return specimen;
     }
@@ -220,8 +182,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
     observer.event(fmt::format("warning: {}: {}", path.string(), note));
   Specimen specimen;
   specimen.state = sorted_along_curve(read.state);
-  check_domain(scene, specimen.state, scene.specimen.file);
-  note_differences(scene, specimen.state, observer);
+  note_differences(scene, specimen, scene.specimen.file, observer);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
   describe(scene, specimen);
@@ -229,7 +190,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
   return specimen;
 }
 
-/// A friction left out is none: says so where the packing was made with more than the test will ever have.
+/// A friction left out is none: says so where the packing is made with more than the test will ever have.
 void note_friction(const Scene &scene, RunObserver &observer)
 {
   double friction = scene.contact->friction;
@@ -237,11 +198,35 @@ void note_friction(const Scene &scene, RunObserver &observer)
     if (const auto *set = as<Friction>(stage))
       friction = std::max(friction, set->friction);
   const double made_with = scene.specimen.preparation_friction.value_or(0);
-  const auto degrees = [](double tangent) { return std::atan(tangent) * 180 / std::numbers::pi; };
   if (made_with > friction)
     observer.event(fmt::format("warning: the packing is prepared with a friction of {:.4g} deg and tested with {:.4g} "
                                "deg; give contact.friction the angle of the test, or prepare with less",
                                degrees(made_with), degrees(friction)));
+}
+
+/// What its friction costs a packing that is made with more.
+void note_void_ratio(const Scene &scene, const Specimen &specimen, RunObserver &observer)
+{
+  const double made_with = scene.specimen.preparation_friction.value_or(0);
+  const auto compressed = specimen.numbers.find("void_ratio_compressed"); // not in files of older versions
+  if (made_with > scene.contact->friction && compressed != specimen.numbers.end())
+    observer.event(fmt::format(
+        "warning: with the friction of {:.4g} deg of the test in place of {:.4g} deg the void ratio "
+        "falls from {:.4f} to {:.4f}; preparation_friction does not set it",
+        degrees(scene.contact->friction), degrees(made_with), compressed->second, specimen.numbers.at("void_ratio")));
+}
+
+/// The default limits of the void ratio belong to the grains of the paper.
+void note_limits(const Scene &scene, RunObserver &observer)
+{
+  if (const std::string other = has_default_limits(scene.specimen) ? foreign_to_default_limits(scene) : "";
+      !other.empty())
+    observer.event(
+        fmt::format("warning: D_r is relative to e_min = {:g} and e_max = {:g} of Karlsruhe fine sand with grains of "
+                    "friction 18 deg "
+                    "and rolling = {{ stiffness = 0.3, limit = 0.5 }}, but this scene has {}. Find its own limits with "
+                    "void_ratio_limits and give specimen.e_min and specimen.e_max",
+                    *scene.specimen.e_min, *scene.specimen.e_max, other));
 }
 
 /// Keeps it in the cache. The run has its specimen: that the cache cannot be written is said, and no reason to end it.
@@ -256,7 +241,7 @@ void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserv
     }
   catch (const std::exception &error)
     {
-      tell(fmt::format("warning: the specimen is not kept, and will be prepared again next time: {}\n", error.what()));
+      warn(fmt::format("the specimen is not kept, and will be prepared again next time: {}", error.what()));
     }
 }
 
@@ -295,11 +280,12 @@ std::string specimen_recipe(const Scene &scene)
 
 Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer)
 {
-  check_domain(scene, given.state, "the specimen that is given");
+  note_differences(scene, given, "the specimen that is given", observer);
   count_from_here(given.state);
   given.state.law = scene.contact;
-  note_differences(scene, given.state, observer);
-  describe(scene, given);
+  Scene described = scene;
+  described.specimen = without_preparation(scene.specimen);
+  describe(described, given);
   return given;
 }
 
@@ -308,6 +294,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
   if (!scene.specimen.file.empty())
     return import(scene, observer);
   note_friction(scene, observer);
+  note_limits(scene, observer);
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
   if (std::optional<Specimen> cached = from_cache(path, recipe, observer))
@@ -315,10 +302,12 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;
       describe(scene, *cached); // an older version may have told less
+      note_void_ratio(scene, *cached, observer);
       return *cached;
     }
   Specimen specimen = prepare(scene, observer, threads);
   keep(specimen, path, observer);
+  note_void_ratio(scene, specimen, observer);
   return specimen;
 }
 } // namespace isostat

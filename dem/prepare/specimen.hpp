@@ -22,7 +22,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
                          int threads = 1);
 
 /// A packing that a program gives, as the specimen of a scene: time and strain count from here, its figures are those
-/// of the packing, the contact law is the scene's.   @throws InputError  it is in another domain than the scene's
+/// of the packing, the contact law is the scene's.   @throws InputError  as check_given_packing()
 /// tested: tests/python/run_test.py
 Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer);
 

@@ -87,11 +87,12 @@ isostat_status isostat_rve_advance(isostat_rve *rve, const double *gradient, iso
 isostat_status isostat_rve_undrained(isostat_rve *rve, const double *gradient, isostat_rve_response *response);
 
 /// Prescribed strain in some components, target stress in the others: drained, K0, constant p' and other tests.
-/// @param gradient  as above; its symmetric part does not count in components whose stress is controlled
+/// @param gradient  as above; its symmetric part is 0 in components whose stress is controlled
 /// @param stress  targets, Pa (6); looked at where controlled
 /// @param controlled  0: strain is prescribed, else stress (6)
 /// @param tolerance  |stress - target| / max(p', 0.05 p0') at the end, > 0; 1e-3 is usual
-/// @return as isostat_rve_advance(); rejected, too, where the frame is not the identity
+/// @return as isostat_rve_advance(); rejected, too, where the frame is not the identity, the target needs tension, or a
+///         component has strain and stress
 isostat_status isostat_rve_mixed(isostat_rve *rve, const double *gradient, const double *stress, const int *controlled,
                                  double tolerance, isostat_rve_response *response);
 

@@ -42,8 +42,8 @@ struct RveSettings
 /// Prescribed strain in some components, target stress in the others: one increment of a laboratory test.
 struct MixedIncrement
 {
-  Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; symmetric parts under stress control are ignored
-  Mat3 stress = Mat3::Zero();   ///< target Cauchy effective stress, Pa, tension positive, where `controlled`
+  Mat3 gradient = Mat3::Zero(); ///< displacement gradient, laboratory; its symmetric part is 0 where `controlled`
+  Mat3 stress = Mat3::Zero();   ///< target Cauchy effective stress, Pa, tension positive, symmetric where `controlled`
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false); ///< symmetric
   double tolerance = 1e-3; ///< |stress - target| / max(p', 0.05 p0) at the end
 };
@@ -125,7 +125,8 @@ public:
   /// Takes the grains to balance at the present strain: what stress(), stiffness() and small probes of it then mean does
   /// not hang on how fast the element was strained before.
   RveResponse relax(const BalanceSpec &spec = {});
-  /// Prescribed strain and target stress: drained, K0, constant p' and other tests.
+  /// Prescribed strain and target stress: drained, K0, constant p' and other tests. Rejected at once: a target that
+  /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1.
   RveResponse advance(const MixedIncrement &increment);
 
   /// Cauchy effective stress, Pa, tension positive, laboratory.
@@ -163,7 +164,8 @@ private:
   void run_mixed(const MixedIncrement &own);
   void step(const Mat3 &own_gradient);
   void review();
-  double mean_stress() const; ///< compression positive, Pa
+  double mean_stress() const;  ///< compression positive, Pa
+  double stress_scale() const; ///< what a tolerance of stress is relative to, Pa
   Mat3 to_own(const Mat3 &laboratory) const;
 
   RveSettings settings_;

@@ -68,7 +68,7 @@ void check_pressure(const SceneDocument &document, const Scene &scene)
   double most = scene.specimen.pressure;
   for (int i = 0; i < 50; ++i) // converges at once where the modulus is constant, else by its small exponent
     most = 0.05 * scene.contact->modulus(most);
-  if (scene.specimen.pressure > most)
+  if (takes_pressure(scene) && scene.specimen.pressure > most)
     document.refuse("specimen.pressure",
                     fmt::format("must be at most {:g} kPa, a twentieth of the modulus of contacts with contact.young = "
                                 "{:g} GPa, because spheres that overlap by more are no contacts. Lower it, or give "

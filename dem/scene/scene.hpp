@@ -112,15 +112,16 @@ enum class LeftOutLoads
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {},
                  LeftOutLoads left_out = LeftOutLoads::default_ones);
 
-/// The same from text; `name` stands for the file in messages. Does not touch the disk: specimen.file is not looked
-/// for, and an output folder left out stays empty.
+/// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Does not touch the disk:
+/// specimen.file is not looked for, and an output folder left out stays empty.
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {});
 
 /// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s to the bit
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
 /// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign
-/// to the kind of its stage, the control of a scene without stages, and of the consolidation in a rigid box.
+/// to the kind of its stage, the control of a scene without stages, the consolidation in a rigid box, and, of a scene
+/// whose packing comes from a file, the grading and a pressure that no stage takes.
 std::string to_toml(const Scene &scene);
 
 /// A commented TOML scene with all defaults, units, ranges and one sentence per key (--print-defaults).

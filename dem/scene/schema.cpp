@@ -218,15 +218,18 @@ A scene is one TOML file that says all about a run. This page is generated from 
 // clang-format on
 
 /// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
-/// controlled. Not writing them keeps the
-/// recipes of specimens that are in caches.
+/// controlled. Not writing them keeps the recipes of specimens that are in caches. A packing from a file has grains and
+/// a stress of its own; only files of other programs may lack the density.
 bool is_implied(const Key &key, const void *scene)
 {
   const Scene &s = *static_cast<const Scene *>(scene);
   const std::string_view path = key.path;
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
          (path == "contact.law" && is_default(s.contact)) ||
-         (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{});
+         (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
+         (path.starts_with("grading.") && !s.specimen.file.empty() &&
+          (path != "grading.density" || specimen_place(s.specimen.file).path.ends_with(".h5"))) ||
+         (path == "specimen.pressure" && !takes_pressure(s));
 }
 
 /// The word of contact.law is a number of registered_laws().
@@ -296,6 +299,14 @@ struct WholeSchema
   }
 };
 } // namespace
+
+bool takes_pressure(const Scene &scene)
+{
+  return scene.specimen.file.empty() || std::ranges::any_of(scene.stages, [](const Stage &stage) {
+           const auto *servo = as<ServoStage>(stage);
+           return servo && servo->pressure == 0;
+         });
+}
 
 const SceneSchema &scene_schema()
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of the module; each adds its classes and functions.
 #pragma once
-#include "python/binding/arrays.hpp"
+#include "python/binding/warnings.hpp"
 
 #include <functional>
 
@@ -15,7 +15,10 @@ void bind_files(py::module_ &module);
 void bind_run(py::module_ &module);
 void bind_rve(py::module_ &module);
 
-/// Looks for Ctrl-C now and then during long calls in which the GIL is released.
+/// Warns in Python, of a call that is no run.   @throws py::error_already_set  where warnings are errors
+void warn_of(const std::vector<std::string> &notes);
+
+/// Looks for Ctrl-C, and for other signals that the package handles, now and then during long calls in which the GIL is released.
 class SignalWatch
 {
 public:

@@ -2,6 +2,7 @@
 // Packings in and out.   tested: tests/python/snapshot_test.py
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "dem/io/packing_files.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
 #include "dem/io/text_tables.hpp"
@@ -10,9 +11,9 @@
 #include "dem/prepare/packing_check.hpp"
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 #include <fmt/format.h>
-#include <pybind11/stl/filesystem.h>
 
 namespace isostat::python
 {
@@ -21,7 +22,14 @@ namespace
 /// Paths as strings or pathlib.Path.
 using fs_path = std::filesystem::path;
 
-Snapshot read_stored(const fs_path &path) { return read_snapshot_file(path); }
+using Path = Given<fs_path, "path">;
+using LengthUnit = Given<std::string, "length_unit">;
+using Density = Given<double, "density">;
+using Domain = Given<std::string, "domain">;
+using Format = Given<std::string, "format">;
+using Overwrite = Given<bool, "overwrite">;
+using Anyway = Given<bool, "anyway">;
+using AnyLaw = Given<const Law *, "law">;
 
 /// As the command line does.
 void check_new(const fs_path &path, bool overwrite)
@@ -32,30 +40,81 @@ void check_new(const fs_path &path, bool overwrite)
 }
 
 /// A writer that replaces a file only if it is told to.
-template <typename What>
+template <Name name, typename What>
 auto to_new_file(void (*write)(const fs_path &, const What &))
 {
-  return [write](const fs_path &path, const What &what, bool overwrite) {
+  return [write](const Path &path, Given<const What *, name> what, Overwrite overwrite) {
     check_new(path, overwrite);
-    write(path, what);
+    write(path, *what);
   };
 }
 
-void warn(const std::vector<std::string> &notes)
+/// Of a unit of length, m.   @throws InputError
+double scale_of(const std::string &unit)
 {
-  for (const std::string &note : notes)
-    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
-      throw py::error_already_set();
+  try
+    {
+      return parse_quantity("1 " + unit, Dimension::length).value;
+    }
+  catch (const InputError &error)
+    {
+      throw InputError(fmt::format("length_unit: {}", error.what()));
+    }
 }
 
 Specimen read_packing(const fs_path &path, const std::string &length_unit, double density, const std::string &domain,
                       const Law &law, bool anyway)
 {
-  const double scale = parse_quantity("1 " + length_unit, Dimension::length).value;
+  const double scale = scale_of(length_unit);
   const CheckedPacking packing =
       read_any_packing(path.string(), {{law, density, scale}, domain, anyway, density != ReadOptions{}.density});
-  warn(packing.notes);
+  warn_of(packing.notes);
   return packing.specimen;
+}
+
+/// Adds what it does not say: figures, and a seed, which no other one has.   @return the names of the entries
+std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen> specimens, bool overwrite,
+                                       bool append)
+{
+  std::error_code ignored;
+  const bool extend = append && std::filesystem::exists(path, ignored);
+  if (path.extension() != ".h5")
+    throw InputError(fmt::format("{}: must end in .h5, because scenes tell a library by it.", path.string()));
+  if (!extend)
+    check_new(path, overwrite);
+  double next_seed = 1;
+  const auto count = [&](const std::map<std::string, double> &numbers) {
+    if (const auto seed = numbers.find("seed"); seed != numbers.end())
+      next_seed = std::max(next_seed, seed->second + 1);
+  };
+  for (const LibraryEntry &entry : extend ? list_library(path) : std::vector<LibraryEntry>{})
+    count(entry.numbers);
+  for (const Specimen &specimen : specimens)
+    count(specimen.numbers);
+  LibraryWriter library = extend ? LibraryWriter::append(path) : LibraryWriter::create(path);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < specimens.size(); ++k)
+    {
+      if (!specimens[k].state.cell)
+        throw InputError(fmt::format("specimen {}: is between rigid walls, but a library is for volume elements, which "
+                                     "are periodic. Prepare it with specimen.domain = \"periodic-cell\".",
+                                     k));
+      add_figures(specimens[k]);
+      if (specimens[k].numbers.try_emplace("seed", next_seed).second)
+        next_seed += 1;
+      names.push_back(library.next_name());
+      library.add(names.back(), specimens[k]);
+    }
+  library.commit();
+  return names;
+}
+
+std::map<std::string, std::map<std::string, double>> numbers_of_library(const fs_path &path)
+{
+  std::map<std::string, std::map<std::string, double>> entries;
+  for (const LibraryEntry &entry : list_library(path))
+    entries[entry.name] = entry.numbers;
+  return entries;
 }
 
 PackingFormat wanted_format(const fs_path &path, const std::string &format)
@@ -66,8 +125,12 @@ PackingFormat wanted_format(const fs_path &path, const std::string &format)
 void bind_packings(py::module_ &module)
 {
   module.def(
-      "read_packing", &read_packing, py::arg("path"), py::kw_only(), py::arg("length_unit") = "m",
-      py::arg("density") = 2650.0, py::arg("domain") = "", py::arg("law") = Law(), py::arg("anyway") = false,
+      "read_packing",
+      [](const Path &path, const LengthUnit &unit, Density density, const Domain &domain, AnyLaw law, Anyway anyway) {
+        return read_packing(path, unit, density, domain, *law, anyway);
+      },
+      py::arg("path"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0, py::arg("domain") = "",
+      py::arg("law") = Law(), py::arg("anyway") = false,
       "A packing as a Specimen, whatever wrote it: HDF5 of Isostat, LAMMPS dump or data file (units si, atom_style\n"
       "sphere), text of YADE, CSV, VTP. Refuses what cannot be meant (spheres in mm read as metres, deep overlaps,\n"
       "spheres outside the box) unless `anyway`; what had to be assumed is a warning.\n\n"
@@ -76,9 +139,9 @@ void bind_packings(py::module_ &module)
       "where the file has a box that repeats itself.");
   module.def(
       "write_packing",
-      [](const fs_path &path, const Specimen &specimen, const std::string &format, bool overwrite) {
+      [](const Path &path, Given<const Specimen *, "specimen"> specimen, const Format &format, Overwrite overwrite) {
         check_new(path, overwrite);
-        warn(write_packing(path, specimen, wanted_format(path, format)));
+        warn_of(write_packing(path, *specimen, wanted_format(path, format)));
       },
       py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "", py::arg("overwrite") = false,
       "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
@@ -87,11 +150,11 @@ void bind_packings(py::module_ &module)
       "there is replaced only with `overwrite`.");
   module.def(
       "convert",
-      [](const fs_path &from, const fs_path &to, const std::string &length_unit, double density,
-         const std::string &domain, const std::string &format, bool anyway, bool overwrite) {
+      [](const Given<fs_path, "source"> &from, const Given<fs_path, "target"> &to, const LengthUnit &unit,
+         Density density, const Domain &domain, const Format &format, Anyway anyway, Overwrite overwrite) {
         check_new(to, overwrite);
         const PackingFormat wanted = wanted_format(to, format);
-        warn(write_packing(to, read_packing(from, length_unit, density, domain, Law(), anyway), wanted));
+        warn_of(write_packing(to, read_packing(from, unit, density, domain, Law(), anyway), wanted));
       },
       py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
       py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false, py::arg("overwrite") = false,
@@ -103,41 +166,56 @@ void bind_files(py::module_ &module)
 {
   bind_packings(module);
   py::class_<Specimen>(module, "Specimen", "A prepared packing with the story of how it was made.")
-      .def(py::init([](const Snapshot &state) {
-             return Specimen{state, {}, {}};
+      .def(py::init([](Given<const Snapshot *, "snapshot"> state) {
+             Specimen specimen{*state, {}, {}};
+             add_figures(specimen);
+             return specimen;
            }),
            py::arg("snapshot"))
       .def_property_readonly(
           "snapshot", [](const Specimen &s) { return std::make_shared<Snapshot>(s.state); }, "A copy of the packing.")
       .def_readonly("provenance", &Specimen::provenance, "Title, recipe, versions: text.")
-      .def_readonly("numbers", &Specimen::numbers, "Void ratio, relative density, pressure (Pa), seed ... by name.");
-  module.def("read_snapshot", &read_stored, py::arg("path"), "A snapshot_*.h5 of a run, or the packing of a specimen.");
+      .def_readonly("numbers", &Specimen::numbers,
+                    "Void ratio, relative density, pressure (Pa, compression positive), seed ... by name.");
+  module.def(
+      "read_snapshot", [](const Path &path) { return read_snapshot_file(path); }, py::arg("path"),
+      "A snapshot_*.h5 of a run, or the packing of a specimen.");
   module.def(
       "read_specimen",
-      [](const fs_path &file) {
-        const SpecimenPlace place = specimen_place(file.string());
+      [](const Path &file) {
+        const SpecimenPlace place = specimen_place(file.value.string());
         return place.entry.empty() ? read_specimen(std::filesystem::path(place.path))
                                    : read_library_entry(place.path, place.entry);
       },
       py::arg("path"), "A specimen file, or one of a library: \"library.h5#s0007\".");
-  module.def("write_specimen", to_new_file<Specimen>(&write_specimen), py::arg("path"), py::arg("specimen"),
+  module.def("write_specimen", to_new_file<"specimen", Specimen>(&write_specimen), py::arg("path"), py::arg("specimen"),
              py::kw_only(), py::arg("overwrite") = false, "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
+      "write_library", &write_library, py::arg("path"), py::arg("specimens"), py::kw_only(),
+      py::arg("overwrite") = false, py::arg("append") = false,
+      "Writes periodic specimens into one file, as the program specimen_library does: a column takes its packings\n"
+      "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
+      "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
+      "one are counted on.");
+  module.def("list_library", &numbers_of_library, py::arg("path"),
+             "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
+  module.def(
       "import_tables",
-      [](const fs_path &path, const Law &law, double density) {
-        const Snapshot read = import_tables(path, law, density);
-        warn(check_packing(read, path.string(), [](const std::string &unit) {
-          return fmt::format("give length_unit=\"{}\" to isostat.read_packing()", unit);
+      [](const Path &path, AnyLaw law, Density density) {
+        const Snapshot read = import_tables(path, *law, density);
+        warn_of(check_packing(read, path.value.string(), [](const std::string &unit) {
+          return fmt::format("give {} to isostat.read_packing()",
+                             unit == "m" ? "anyway=True" : "length_unit=\"" + unit + "\"");
         }));
         return read;
       },
       py::arg("path"), py::arg("law") = Law(), py::arg("density") = 2650.0,
       "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide). Refuses\n"
       "what no packing of soil is, as read_packing() does.");
-  module.def("write_vtp", to_new_file<Snapshot>(&write_grains_vtp), py::arg("path"), py::arg("snapshot"), py::kw_only(),
-             py::arg("overwrite") = false,
+  module.def("write_vtp", to_new_file<"snapshot", Snapshot>(&write_grains_vtp), py::arg("path"), py::arg("snapshot"),
+             py::kw_only(), py::arg("overwrite") = false,
              "Grains for ParaView. A file that is there is replaced only with `overwrite`.");
-  module.def("write_force_chains_vtp", to_new_file<Snapshot>(&write_force_chains_vtp), py::arg("path"),
+  module.def("write_force_chains_vtp", to_new_file<"snapshot", Snapshot>(&write_force_chains_vtp), py::arg("path"),
              py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
              "Force chains for ParaView. A file that is there is replaced only with `overwrite`.");
 }

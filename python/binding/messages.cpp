@@ -3,32 +3,11 @@
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
 
-#include <string_view>
-
 namespace isostat::python
 {
 namespace
 {
-/// Options of the command line that are keywords here.
-constexpr std::pair<std::string_view, std::string_view> keywords[] = {{"--overwrite", "overwrite=True"},
-                                                                      {"--resume", "resume=True"},
-                                                                      {"--anyway", "anyway=True"},
-                                                                      {"--length-unit mm", "length_unit=\"mm\""},
-                                                                      {"--length-unit um", "length_unit=\"um\""},
-                                                                      {"--domain", "domain"},
-                                                                      {"--output", "output"},
-                                                                      {"--set", "set"},
-                                                                      {"--threads", "threads"}};
-
-std::string in_python(std::string text)
-{
-  for (const auto &[option, keyword] : keywords)
-    for (std::size_t at = text.find(option); at != std::string::npos; at = text.find(option, at + keyword.size()))
-      text.replace(at, option.size(), keyword);
-  return text;
-}
-
-py::handle input_error, run_failure; // live as long as the interpreter
+py::handle input_error, run_failure, warning; // live as long as the interpreter
 
 void translate(std::exception_ptr thrown)
 {
@@ -53,6 +32,13 @@ void translate(std::exception_ptr thrown)
 }
 } // namespace
 
+void warn_of(const std::vector<std::string> &notes)
+{
+  for (const std::string &note : notes)
+    if (PyErr_WarnEx(warning.ptr(), in_python(note).c_str(), 1) != 0)
+      throw py::error_already_set();
+}
+
 void bind_errors(py::module_ &module)
 {
   const auto add = [&](const char *name, PyObject *base, const char *text) {
@@ -64,6 +50,8 @@ void bind_errors(py::module_ &module)
                     "A mistake in what was given: says where, the value, the allowed range and the remedy.");
   run_failure = add("RunFailure", PyExc_RuntimeError,
                     "A run that cannot go on: says the step, the grain and the last good checkpoint.");
+  warning = add("IsostatWarning", PyExc_UserWarning,
+                "What a run, a preparation or a file that was read warns of; of a run behind its folder or title.");
   py::register_exception_translator(&translate);
 }
 } // namespace isostat::python

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.hpp"
 #include "base/record/installation.hpp"
 #include "base/record/instruction_set.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 namespace isostat::python
 {
+std::string described(py::handle value)
+{
+  if (py::hasattr(value, "shape"))
+    return "an array of shape " + std::string(py::str(value.attr("shape")));
+  const bool plain = value.is_none() || py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value) ||
+                     py::isinstance<py::str>(value);
+  const std::string text = plain ? std::string(py::repr(value)) : "";
+  return plain && text.size() < 60 ? text : "of type " + std::string(py::str(py::type::of(value).attr("__name__")));
+}
+
 std::vector<Vec3> points(const py::array_t<double, py::array::c_style | py::array::forcecast> &array, const char *name)
 {
   if (array.ndim() != 2 || array.shape(1) != 3)
-    throw InputError(std::string(name) + ": must be an array of shape (n, 3).");
+    throw InputError(fmt::format("{}: must be an array of shape (n, 3), but is {}.", name, described(array)));
   std::vector<Vec3> found;
   for (py::ssize_t i = 0; i < array.shape(0); ++i)
     found.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));

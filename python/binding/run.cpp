@@ -5,12 +5,15 @@
 #include "apps/common/test_run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
-#include "base/tell.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/io/specimen_file.hpp"
+#include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace isostat::python
 {
@@ -93,11 +96,19 @@ private:
   }
 };
 
-/// Preparation that Ctrl-C can stop.
+/// Preparation that Ctrl-C can stop, and that warns as a run does.
 class WatchedPreparation : public PreparationOutput
 {
 public:
   using PreparationOutput::PreparationOutput;
+  void event(const std::string &line) override
+  {
+    constexpr std::string_view head = "warning: ";
+    if (line.starts_with(head))
+      warn(line.substr(head.size()));
+    else
+      PreparationOutput::event(line);
+  }
   bool after_step(const Assembly &assembly, const DriveState &state, const Observation &seen) override
   {
     return signals_.go_on() && PreparationOutput::after_step(assembly, state, seen);
@@ -106,6 +117,15 @@ public:
 private:
   SignalWatch signals_;
 };
+
+using Threads = Given<int, "threads">;
+
+int checked(Threads threads)
+{
+  if (threads < 0)
+    throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads.value));
+  return threads;
+}
 
 /// Without the GIL.
 Specimen prepared(const Scene &scene, const std::string &cache, int threads, bool quiet)
@@ -118,6 +138,7 @@ Specimen prepared(const Scene &scene, const std::string &cache, int threads, boo
 struct Result
 {
   bool finished = false;
+  std::string summary; ///< as summary.json, of a run without files that came to its end
   std::shared_ptr<Snapshot> snapshot;
   std::vector<RecordColumn> columns; ///< of a run without files
   std::vector<std::vector<double>> rows;
@@ -155,10 +176,8 @@ constexpr const char *kept_specimen = "specimen.h5"; ///< in the results folder,
 /// The scene names the specimen that is kept beside it instead of what it says of preparation.
 void name_kept_specimen(Scene &scene)
 {
+  scene.specimen = without_preparation(scene.specimen);
   scene.specimen.file = kept_specimen;
-  scene.specimen.relative_density.reset();
-  scene.specimen.void_ratio.reset();
-  scene.specimen.preparation_friction.reset();
 }
 
 /// From a specimen that is given. It is kept with the results, so that their scene can be run again.
@@ -196,11 +215,18 @@ TestRun begin(Request &request)
 void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Result &result)
 {
   watcher.keep_rows = true;
-  result.finished = run_programme(request.scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
-  for (const std::string &line : stage_warnings(run.state, request.scene))
-    tell(fmt::format("warning: {}\n", line));
-  result.columns = history_columns(request.scene);
+  const Stopwatch watch;
+  const Scene &scene = request.scene;
+  result.finished = run_programme(scene.programme(), *run.assembly, run.state, watcher) == RunOutcome::finished;
+  result.columns = history_columns(scene);
   result.rows = std::move(watcher.rows);
+  if (!result.finished)
+    return;
+  for (const std::string &line : stage_warnings(run.state, scene))
+    warn(line);
+  TestSummary summary = summarise({result.columns, result.rows}, scene, run.specimen, run.state, watch.seconds());
+  summary.steps = summary.last_steps = static_cast<double>(run.assembly->step());
+  result.summary = to_json(summary).dump();
 }
 
 void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Result &result)
@@ -226,8 +252,10 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
     }
 }
 
-Result run(Request request, const py::object &on_record, const py::object &on_step, std::uint64_t every)
+Result run(Request request, const py::list &warnings, const py::object &on_record, const py::object &on_step,
+           std::uint64_t every)
 {
+  const WarningsListed listed(warnings);
   Result result;
   Watcher watcher;
   watcher.on_record = on_record;
@@ -266,16 +294,20 @@ void bind_moment(py::module_ &module)
       .def_readonly("time", &Moment::time, "s.")
       .def_readonly("stage", &Moment::stage, "Number of the stage, from 0.")
       .def_property_readonly(
-          "p", [](const Moment &m) { return m.seen.p; }, "Mean effective stress of the walls or of the cell, Pa.")
+          "p", [](const Moment &m) { return m.seen.p; },
+          "Mean effective stress of the walls or of the cell, Pa, compression positive.")
       .def_property_readonly(
-          "q", [](const Moment &m) { return m.seen.q; }, "Deviatoric stress of the same, Pa.")
+          "q", [](const Moment &m) { return m.seen.q; },
+          "Deviatoric stress of the same, Pa, positive where y is compressed most.")
       .def_property_readonly(
           "axial_strain", [](const Moment &m) { return m.seen.axial; },
           "Logarithmic, since shearing began, compression positive.")
       .def_property_readonly(
-          "tau", [](const Moment &m) { return m.seen.tau; }, "Shear stress xy of a cell, Pa.")
+          "tau", [](const Moment &m) { return m.seen.tau; },
+          "Shear stress xy of a cell, Pa: stress()[0, 1] of its snapshot.")
       .def_property_readonly(
-          "gamma", [](const Moment &m) { return m.seen.gamma; }, "Shear strain xy of a cell.")
+          "gamma", [](const Moment &m) { return m.seen.gamma; },
+          "Shear strain xy of a cell, positive where x moves with y.")
       .def_readonly("void_ratio", &Moment::void_ratio, "e.")
       .def_property_readonly("positions", &running<&Packing::position>,
                              "Centres of the running packing, (n, 3), m: a view that goes on changing with the run. "
@@ -292,20 +324,24 @@ void bind_moment(py::module_ &module)
 void bind_run(py::module_ &module)
 {
   bind_moment(module);
-  module.def("prepare", &prepared, py::call_guard<py::gil_scoped_release>(), py::arg("scene"), py::arg("cache"),
-             py::arg("threads"), py::arg("quiet"));
+  module.def("prepare",
+             [](const Scene &scene, const std::string &cache, Threads threads, bool quiet, const py::list &warnings) {
+               const WarningsListed listed(warnings);
+               const py::gil_scoped_release free;
+               return prepared(scene, cache, checked(threads), quiet);
+             });
   py::class_<Result>(module, "Result")
       .def_readonly("finished", &Result::finished)
+      .def_readonly("summary", &Result::summary)
       .def_readonly("snapshot", &Result::snapshot)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
   module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
-                       const Specimen *specimen, bool overwrite, bool resume, int threads, bool quiet,
-                       const py::object &on_record, const py::object &on_step, std::uint64_t every) {
-    if (threads < 0)
-      throw InputError(fmt::format("threads = {}: must be 0 (as many as the packing can feed) or more.", threads));
+                       const Specimen *specimen, bool overwrite, bool resume, Threads threads, bool quiet,
+                       const py::list &warnings, const py::object &on_record, const py::object &on_step,
+                       Given<std::uint64_t, "every"> every) {
     const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
-    return run({scene, output, cache, use, threads, quiet, specimen}, on_record, on_step, every);
+    return run({scene, output, cache, use, checked(threads), quiet, specimen}, warnings, on_record, on_step, every);
   });
 }
 } // namespace isostat::python

@@ -2,7 +2,9 @@
 // Packings as arrays.   tested: tests/python/snapshot_test.py
 #include "base/error.hpp"
 #include "dem/measure/summary.hpp"
+#include "dem/prepare/packing_check.hpp"
 #include "python/binding/binding.hpp"
+#include "python/binding/given.hpp"
 
 #include <cmath>
 #include <memory>
@@ -36,8 +38,6 @@ py::array history(const Self &self)
   return of_contacts<double>(self, 3, [](const Contact &c) { return (c.history.*vector).data(); });
 }
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// Of three lengths or of edges in columns.   @throws InputError
 PeriodicCell periodic_cell(const Doubles &cell)
 {
@@ -54,38 +54,64 @@ PeriodicCell periodic_cell(const Doubles &cell)
   return found;
 }
 
-Snapshot from_spheres(const Doubles &centres, const std::vector<double> &radii, double density,
-                      const std::optional<Doubles> &box, const std::optional<Doubles> &cell, const Law &law)
+/// @throws InputError  not one of the two
+void set_domain(Snapshot &snapshot, const std::optional<Doubles> &box, const std::optional<Doubles> &cell)
+{
+  if (box.has_value() == cell.has_value())
+    throw InputError("give either box = [lower, upper] or cell, in m.");
+  if (cell)
+    {
+      snapshot.cell = periodic_cell(*cell);
+      return;
+    }
+  const std::vector<Vec3> corners = points(*box, "box");
+  if (corners.size() != 2 || !((corners[1] - corners[0]).array() > 0).all())
+    throw InputError("box: must be [lower, upper], two corners with lower < upper, in m.");
+  snapshot.box = {corners[0], corners[1]};
+}
+
+/// As read_packing() does.
+void check_spheres(const Snapshot &snapshot, bool anyway)
+{
+  if (!(snapshot.volume() > snapshot.grains.solid_volume()))
+    throw InputError("box or cell: is smaller than the spheres in it. Are the radii in m?");
+  try
+    {
+      warn_of(check_packing(snapshot, "spheres", [](const std::string &unit) {
+        return unit == "m" ? std::string("give anyway=True")
+                           : fmt::format("multiply centres, radii and box or cell by {}", unit == "mm" ? 1e-3 : 1e-6);
+      }));
+    }
+  catch (const InputError &error)
+    {
+      if (!anyway)
+        throw;
+      warn_of({error.what()});
+    }
+}
+
+Snapshot from_spheres(const Given<Doubles, "centres"> &centres, const Given<std::vector<double>, "radii"> &given_radii,
+                      Given<double, "density"> density, const Given<std::optional<Doubles>, "box"> &box,
+                      const Given<std::optional<Doubles>, "cell"> &cell, const Given<const Law *, "law"> &law,
+                      Given<bool, "anyway"> anyway)
 {
   const std::vector<Vec3> x = points(centres, "centres");
+  const std::vector<double> &radii = given_radii;
   if (x.size() != radii.size() || x.empty())
-    throw InputError("radii: as many as centres, and one at least.");
+    throw InputError(fmt::format("radii: must be as many as centres, and one at least; there are {} radii, {} centres.",
+                                 radii.size(), x.size()));
   for (std::size_t i = 0; i < x.size(); ++i)
     if (!(radii[i] > 0 && std::isfinite(radii[i])) || !x[i].allFinite())
       throw InputError("sphere " + std::to_string(i) +
                        ": a radius must be positive and finite, in m, and a centre finite.");
   if (!(density > 0 && std::isfinite(density)))
     throw InputError("density: must be positive and finite, in kg/m3.");
-  if (box.has_value() == cell.has_value())
-    throw InputError("give either box = [lower, upper] or cell, in m.");
   Snapshot snapshot;
   snapshot.grains = make_packing(x, radii, density);
-  snapshot.law = law;
-  const auto checked = [&] {
-    if (snapshot.volume() > snapshot.grains.solid_volume())
-      return snapshot;
-    throw InputError("box or cell: is smaller than the spheres in it. Are the radii in m?");
-  };
-  if (cell)
-    {
-      snapshot.cell = periodic_cell(*cell);
-      return checked();
-    }
-  const std::vector<Vec3> corners = points(*box, "box");
-  if (corners.size() != 2 || !((corners[1] - corners[0]).array() > 0).all())
-    throw InputError("box: must be [lower, upper], two corners with lower < upper, in m.");
-  snapshot.box = {corners[0], corners[1]};
-  return checked();
+  snapshot.law = *law.value;
+  set_domain(snapshot, box, cell);
+  check_spheres(snapshot, anyway);
+  return snapshot;
 }
 
 void add_grains(py::class_<Snapshot, std::shared_ptr<Snapshot>> &snapshot)
@@ -180,9 +206,10 @@ void bind_snapshot(py::module_ &module)
       .def_static(
           "from_spheres", &from_spheres, py::arg("centres"), py::arg("radii"), py::kw_only(),
           py::arg("density") = 2650.0, py::arg("box") = py::none(), py::arg("cell") = py::none(),
-          py::arg("law") = Law(),
-          "Resting spheres without contacts. Raises InputError for numbers that are no spheres in a larger "
-          "domain.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
+          py::arg("law") = Law(), py::arg("anyway") = false,
+          "Resting spheres without contacts. Refuses numbers that are no spheres in a larger domain, and, unless "
+          "`anyway`,\nwhat read_packing() refuses: lengths in mm, deep overlaps, spheres outside the box, densities "
+          "not in kg/m3.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
           "box: two corners, m; or cell: of a periodic packing, three lengths or the edges in columns, (3, 3), m.\n"
           "Contacts form when a run begins, without shear forces: let a `rebalance` stage come first.")
       .def_readonly("time", &Snapshot::time, "s.")

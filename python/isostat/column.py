@@ -10,6 +10,7 @@ import os
 import numpy as np
 
 from isostat import _core
+from isostat.calls import warned
 from isostat.results import Results
 from isostat.scene import Scene, scene_source
 
@@ -40,6 +41,7 @@ class ColumnScene(_column.ColumnScene):
         return type(self)(self._member(k))
 
     with_ = Scene.with_
+    __reduce__ = Scene.__reduce__
     to_dict = Scene.to_dict
 
     def __repr__(self):
@@ -70,7 +72,8 @@ class Material(abc.ABC):
     def wave_moduli(self, state):
         """rho V_p^2 and rho V_s^2, the largest over all directions, (n, 2), Pa: they bound the time step of waves.
 
-        Asked at every step. This one searches the directions of stiffness(); a formula of one's own is faster.
+        Asked at every step. This one has the formula of an isotropic stiffness() and searches the directions of any
+        other; a formula of one's own is faster.
         """
         return _column.wave_moduli(self.stiffness(state))
 
@@ -93,15 +96,16 @@ def strain(gradient):
                     axis=1)
 
 
-def run(scene, output=None, *, materials=None, overwrite=False, resume=False, threads=1, quiet=True):
+def run(scene, output=None, *, materials=None, overwrite=False, resume=False, threads=1, quiet=None):
     """Runs a column to its end, to the same bits as the program soil_column does, and leaves the same files.
 
     scene       ColumnScene                                output      folder; None: the scene's, results/<its name>
     materials   {name of a layer: Material} for the layers whose material is "user"
     overwrite   replaces results that are there            resume      goes on from the checkpoint of `output`
     threads     that share packings of grains; changes no bit of the result
+    quiet       None: warns, as IsostatWarning; True: only keeps the warnings; False: progress and summary as well
 
-    Returns Results. Ctrl-C writes a checkpoint and raises KeyboardInterrupt. Raises InputError, and RunFailure with the
+    Returns Results. Ctrl-C and SIGTERM write a checkpoint and raise KeyboardInterrupt. Raises InputError, and RunFailure with the
     step, the time and the last checkpoint; what a Material raises passes through.
     """
     folder = os.fspath(output) if output is not None else scene.folder
@@ -110,8 +114,11 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
     for name, law in (materials or {}).items():
         if not isinstance(law, Material):
             raise _core.InputError(f"materials[{name!r}]: must be an isostat.column.Material, but is {law!r}.")
-    _column.run(scene, folder, materials or {}, overwrite, resume, threads, quiet)
-    return ColumnResults(folder)
+    with warned(folder, quiet) as listed:
+        _column.run(scene, folder, materials or {}, overwrite, resume, threads, quiet is not False, listed)
+        results = ColumnResults(folder)
+        results.warnings = listed
+        return results
 
 
 class ColumnResults(Results):

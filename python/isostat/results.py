@@ -93,7 +93,7 @@ class Results:
     history     History                            scene       Scene, with every key resolved
     summary     numbers of summary.json            snapshots   paths of the stored packings; packing(k) reads one
     provenance  text: version, compiler, seed ...  finished    whether the run came to its end
-    snapshot    the packing at the end, where run() gave this; else None
+    snapshot    the packing at the end, and warnings, texts: where run() gave this; else None and none
 
     A run that is under way or was interrupted has a history as far as it came; its summary is None, finished False.
     """
@@ -106,6 +106,7 @@ class Results:
             raise _core.InputError(f"{self.folder}: holds no history.csv. Give the folder of a run of element_test.")
         self.history = read_table(self.folder / "history.csv")
         self.snapshot: _core.Snapshot | None = None
+        self.warnings: list[str] = []
         self.snapshots = sorted((self.folder / "snapshots").glob("snapshot_*.h5"))
 
     @property

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import tomllib
 from typing import Any, Self
 
@@ -44,7 +45,7 @@ class Scene(_core.Scene):
 
 def scene_source(kind, source, overrides, sections):
     """Text, name and overrides of a compiled class of scenes from what its class in Python takes."""
-    given = [f"{key}={override_text(value)}" for key, value in (overrides or {}).items()]
+    given = [f"{key}={override_text(value, key)}" for key, value in (overrides or {}).items()]
     if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
         if sections:
             raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
@@ -53,44 +54,57 @@ def scene_source(kind, source, overrides, sections):
         return kind._read(os.fspath(source), given).text, os.fspath(source), []
     if isinstance(source, str):
         return source, "scene", given
-    return toml_text({**(source or {}), **sections}), "scene", given
+    if source is not None and not isinstance(source, dict):
+        raise _core.InputError(f"scene: must be a path, TOML text or a dictionary, but is {source!r}.")
+    return toml_text({**(source or {}), **sections}), "", given  # without a name: its lines are none of the user's
 
 
-def value_text(value):
-    """A value as TOML: strings are quoted as JSON does, tables are inline."""
+def key_text(key, table=""):
+    """A key as TOML; dots go on as they are, "rolling.limit" is `limit` in the table `rolling`."""
+    if not isinstance(key, str):
+        raise _core.InputError(f"{table + ': ' if table else ''}{key!r}: names of keys are text.")
+    return key if re.fullmatch(r"[A-Za-z0-9_.-]+", key) else json.dumps(key, ensure_ascii=False)
+
+
+def value_text(value, path):
+    """A value as TOML: strings are quoted as JSON does, tables are inline.   path: of its key, for messages"""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {value_text(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key_text(key, path)} = {value_text(item, f'{path}.{key}')}"
+                                for key, item in value.items()) + " }"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(value_text(item) for item in value) + "]"
+        return "[" + ", ".join(value_text(item, f"{path}.{k}") for k, item in enumerate(value)) + "]"
     if hasattr(value, "item"):  # numbers of NumPy
-        return value_text(value.item())
+        return value_text(value.item(), path)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
         return repr(value)  # "nan" and "inf" as in TOML
     if isinstance(value, os.PathLike):
         return json.dumps(os.fspath(value), ensure_ascii=False)
-    raise _core.InputError(f"{value!r}: a scene has strings, numbers, true and false, lists and dictionaries.")
+    raise _core.InputError(f"{path} = {value!r}: must be text, a number, True or False, a list or a dictionary."
+                           + (" Leave the key out for its default." if value is None else ""))
 
 
-def override_text(value):
+def override_text(value, key):
     """As --set takes it: plain text needs no quotes."""
-    return value if isinstance(value, str) else value_text(value)
+    return value if isinstance(value, str) else value_text(value, key)
 
 
 def toml_text(sections):
     """A dictionary of sections as a scene: plain values first, then tables, then arrays of tables."""
-    plain = [f"{key} = {value_text(value)}" for key, value in sections.items() if not is_section(value)]
+    plain = [f"{key_text(key)} = {value_text(value, key)}" for key, value in sections.items() if not is_section(value)]
     for key, value in sections.items():
         if not is_section(value):
             continue
-        for table in value if isinstance(value, (list, tuple)) else [value]:
-            plain.append(f"\n[[{key}]]" if isinstance(value, (list, tuple)) else f"\n[{key}]")
-            plain += [f"{name} = {value_text(item)}" for name, item in table.items()]
+        several = isinstance(value, (list, tuple))
+        for number, table in enumerate(value if several else [value]):
+            plain.append(f"\n[[{key_text(key)}]]" if several else f"\n[{key_text(key)}]")
+            path = f"{key}.{number}" if several else key
+            plain += [f"{key_text(name, path)} = {value_text(item, f'{path}.{name}')}" for name, item in table.items()]
     return "\n".join(plain) + "\n"
 
 

@@ -120,6 +120,44 @@ class SpecimenMistakes(AppTest):
             self.assertEqual("prepared with a friction of 10 deg and tested with 0 deg" in result.stderr,
                              name == "bare", result.stderr)
 
+    def test_less_friction_than_in_preparation(self):
+        """The void ratio that it costs, of a specimen that is made and of one from the cache."""
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
+        for name in "made", "cached":
+            result = self.run_test(scene, "-o", name, "--set", "contact.friction=2 deg")
+            self.assertRegex(result.stderr, "with the friction of 2 deg of the test in place of 10 deg the void ratio "
+                                            r"falls from 0\.\d+ to 0\.\d+", name)
+
+    def test_limits_of_other_grains(self):
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
+        for setting, other in (("contact.rolling.limit=0.5", None),
+                               ("contact.friction=25 deg", "this scene has contact.friction = 25 deg. Find its own"),
+                               ("grading.truncate=[5, 95]", "this scene has grading.truncate = [5, 95]. Find its own")):
+            result = self.run_test(scene, "-o", "out", "--overwrite", "--set", setting)
+            self.assertEqual("D_r is relative to e_min = 0.568" in result.stderr, bool(other), result.stderr)
+            self.assertIn(other or "", result.stderr)
+
+    def test_contradicted_by_the_scene(self):
+        self.make_specimen()
+        text = tiny_scene(specimen='file = "specimen.h5"', stages=CYCLIC.format(steps=10))
+        scene = self.write("scene.toml", text)
+        result = self.run_test(scene, "-o", "out", "--set", "grading.grains=77", "--set", "specimen.pressure=20 kPa")
+        self.assert_done(result)
+        for part in ("specimen.h5: is taken as it is", "grading.grains = 77 (200)", "specimen.pressure = 20 kPa; the"):
+            self.assertIn(part, result.stderr)
+        resolved = (self.folder / "out/scene.toml").read_text(encoding="utf-8")
+        self.assertNotIn("77", resolved)
+        self.assertNotIn("20 kPa", resolved)
+        self.assertRegex((self.folder / "out/provenance.txt").read_text(), r"\nspecimen +200 grains")
+        again = self.run_test(scene, "-o", "out", "--resume", "--set", "grading.grains=78")  # without effect
+        self.assertIn("this run has finished", again.stdout)
+        self.assert_refused(self.run_test(scene, "-o", "soft", "--set", "contact.young=1 GPa"), "specimen.h5: was made",
+                            "contact.young = 1 GPa (0.5 GPa)", "begin with a stage `rebalance`")
+        self.assert_refused(self.run_test(scene, "-o", "soft", "--set", "contact.law=hertz-mindlin"),
+                            'contact.law = "hertz-mindlin" ("linear-rolling")')
+        result = self.run_test(scene, "-o", "smooth", "--set", "contact.friction=9 deg")
+        self.assertIn("in balance with a friction of 18 deg and tested with 9 deg", result.stderr)
+
     def test_beside_the_scene(self):
         self.make_specimen()
         (self.folder / "scenes").mkdir()

@@ -132,7 +132,7 @@ kind = "rebalance"
 
     def test_large_grains_and_any_density_of_a_scene(self):
         self.lattice("stones.txt", unit=0.2, box=1.8)  # radii of 60 mm
-        self.refuse("stones.txt", "largest radius is 0.06 m", "0.05 m", "isostat convert --length-unit m")
+        self.refuse("stones.txt", "largest radius is 0.06 m", "0.05 m", "in m, give --length-unit m: radii up to 0.15")
         self.assert_done(self.convert("stones.txt", "stones.h5", "--length-unit", "m"))
         self.lattice("a.txt")
         self.assert_done(self.convert("a.txt", "heavy.data", "--density", "1e6 kg/m3"))

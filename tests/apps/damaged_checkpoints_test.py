@@ -80,8 +80,8 @@ class DamagedCheckpoints(AppTest):
         parts = self.stopped("element_test", arguments)
 
         def ends_at(file, stage):
-            end = file["drive/early_ends"].create_group("0")
-            end.attrs.update({name: np.uint64(0) for name in ("stage", "done", "step", "times", "at_once")})
+            end = file["drive/ends"].create_group("0")
+            end.attrs.update({name: np.uint64(0) for name in ("stage", "done", "step", "times", "at_once", "by")})
             end.attrs["stage"] = np.uint64(stage)
             figures = end.create_group("figures")
             names = ("driven", "strain", "volumetric", "p", "q", "unbalanced", "stress_error", "place")
@@ -162,7 +162,7 @@ class DamagedCheckpoints(AppTest):
             damage(last, "state/grains/velocity", None, np.nan)
         result = self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "parts", "--resume")
         self.assert_done(result)
-        self.assertRegex(result.stderr, r"warning:\n.*last.h5: grain \d+ \(id \d+\) has a value of nan in its velocity")
+        self.assertRegex(result.stderr, r"warning: damaged checkpoint:\n.*last.h5: grain \d+ \(id \d+\) has a value of nan in its velocity")
         self.assertIn("goes on from the checkpoint before", result.stderr)
         self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
         self.assertEqual(results(parts), results(self.folder / "whole"))

@@ -36,7 +36,7 @@ def described():
 def general(name):
     """Names with numbers as the page has them: dK_gamma_xz, ENTRY/snapshot/..."""
     name = re.sub(r"^(s\d{4}|i[0-9a-f]{16})(?=/|@|$)", "ENTRY", name)
-    name = re.sub(r"(?<=losses/)\d+(?=/|@|$)|(?<=early_ends/)\d+(?=/|@|$)", "N", name)
+    name = re.sub(r"(?<=losses/)\d+(?=/|@|$)|(?<=drive/ends/)\d+(?=/|@|$)", "N", name)
     name = re.sub(r"(?<=history/expansion_)\d+$", "K", name)
     return re.sub(r"(?<=history/)([dp])\d+_", r"\1K_", name)
 

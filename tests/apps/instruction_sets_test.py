@@ -54,7 +54,7 @@ class InstructionSets(AppTest):
             self.assertEqual(code, 130, "it is still at work")
             result = self.run_on(goes_on, folder, "--resume")
             self.assert_done(result)
-            self.assertEqual(f"note: the checkpoint was written with the instruction set {other}, this machine goes on "
+            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine goes on "
                              f"with {widest}: " in result.stderr, noted, result.stderr)
             self.assertEqual(results(self.folder / folder) == whole, not noted)
 

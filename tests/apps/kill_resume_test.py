@@ -143,7 +143,7 @@ class Output(AppTest):
         self.assertIn("residual", full)
         bare = self.history("bare", "output.snapshots=none", "output.paraview=false", "output.checkpoint=24 h")
         self.assertEqual(sorted(p.name for p in (self.folder / "bare").iterdir()),
-                         [".lock", "history.csv", "history.h5", "provenance.txt", "scene.toml", "summary.json",
+                         [".lock", "checkpoint", "history.csv", "history.h5", "provenance.txt", "scene.toml", "summary.json",
                           "summary.txt"])
         self.assertGreater(len(list(pathlib.Path(self.folder / "full/snapshots").iterdir())), 10)
         self.assert_same_trajectory(full, bare)

@@ -219,16 +219,18 @@ TEST(RveHardCases, WhatIsNotANumberIsRefused)
   EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
 }
 
-/// A tension that no sand bears: the servo would pull for ever.
+/// A tension, and a deviator that no sand bears: the servo would pull or squeeze for ever.
 TEST(RveHardCases, AStressOutOfReachIsRefused)
 {
-  RveSettings settings;
-  settings.max_steps = 5000;
-  Rve rve(test::periodic_specimen(grains, 10), settings), twin(test::periodic_specimen(grains, 10), settings);
+  Rve rve(test::periodic_specimen(grains, 10), {}), twin(test::periodic_specimen(grains, 10), {});
   MixedIncrement pull;
   pull.stress(1, 1) = 50e3;
   pull.controlled(1, 1) = true;
-  expect_rejected(rve, pull, {"off its target after 5000 steps"});
+  expect_rejected(rve, pull, {"5e+04 Pa for yy is tension"});
+  MixedIncrement squeeze;
+  squeeze.stress.diagonal() = Vec3(-100e3, -5e6, -100e3);
+  squeeze.controlled.diagonal().setConstant(true);
+  expect_rejected(rve, squeeze, {"off its target after a strain of 0.1", "the grains cannot carry it"});
   EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
 }
 

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs from Python: the same bits as element_test, callbacks, stopping and resuming, results as arrays."""
+import contextlib
+import io
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 import numpy as np
@@ -25,6 +28,13 @@ kind = "undrained-cyclic"
 deviator_amplitude = "40 kPa"
 until = { cycles = 4, reversals_after_liquefaction = 1 }
 """
+DRAINED = '''[[stage]]
+kind = "drained"
+strain = 2e-4
+[[stage]]
+kind = "undrained-simple-shear"
+strain = 1e-3
+'''
 
 
 class RunTest(ToleranceTest):
@@ -37,7 +47,10 @@ class RunTest(ToleranceTest):
         cls.specimen = isostat.prepare(cls.scene, cache=cls.cache)
 
     def run_scene(self, *arguments, **keywords):
-        return isostat.run(self.scene, *arguments, cache=self.cache, **keywords)
+        return self.run_scene_of(self.scene, *arguments, **keywords)
+
+    def run_scene_of(self, scene, *arguments, **keywords):
+        return isostat.run(scene, *arguments, cache=self.cache, **keywords)
 
     def test_another_python_is_told_which_one_the_package_is_for(self):
         """Without site packages NumPy is missing, as under most other Pythons."""
@@ -66,10 +79,48 @@ class RunTest(ToleranceTest):
             self.assert_near(in_memory.history[name], results.history[name], 1e-9 * np.abs(results.history[name]),
                              f"digits of a history file, in {name}")
         np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
+        for name, value in results.summary.items():
+            if isinstance(value, float) and name != "seconds":
+                self.assert_near(in_memory.summary[name], value, 1e-9 * abs(value), f"digits of a history file, in {name}")
+            elif name not in ("seconds", "cyclic_response", "liquefaction"):
+                self.assertEqual(in_memory.summary[name], value, name)
         for drawn, stored in zip(in_memory.draw("fig_stress_path"), results.draw("fig_stress_path")):
             for line, other in zip(drawn.lines, stored.lines):
                 self.assert_near(np.asarray(line.get_ydata(), float), np.asarray(other.get_ydata(), float), 1e-6,
                                  "digits of a history file")
+
+    def test_figures_of_a_run_without_a_folder_name_no_file(self):
+        run = self.run_scene(on_step=lambda moment: moment.step < 500, every=1)
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            run.draw("fig_stress_path")
+        self.assertEqual(said.getvalue(), "")
+
+    def test_strain_of_volume_pore_pressure_and_cycles(self):
+        history = self.run_scene().history
+        self.assert_near(history["eps_v"], sum(history[f"eps_{axis}"] for axis in "xyz"), 1e-15, "rounding of the sum")
+        self.assert_near(history["r_u"], 1 - history["p"] / history["p"][0], 0.01, "rows have all parts of the stress")
+        cycles, turns = history["cycles"], np.flatnonzero(np.diff(history["reversals"])) + 1
+        np.testing.assert_array_equal(cycles[turns], history["reversals"][turns] / 2)
+        self.assertTrue((np.diff(cycles) >= 0).all())
+        self.assertGreater(len(np.unique(cycles)), 10 * len(turns))
+        scene = SCENE[:SCENE.index("[[stage]]")] + '[contact]\nfriction = "18 deg"\n' + DRAINED
+        drained = self.run_scene_of(isostat.Scene(scene)).history
+        self.assertGreater(np.abs(drained["eps_v"]).max(), 1e-6)
+        np.testing.assert_array_equal(drained["r_u"][drained["stage"] == 0], 0)
+        undrained = drained["stage"] == 1
+        self.assert_near(drained["r_u"][undrained][0], 0, 1e-9, "it counts from where the volume begins to be kept")
+        self.assertGreater(drained["r_u"][undrained].max(), 0.001)
+
+    def test_a_finished_run_goes_on_to_a_later_end(self):
+        short = self.scene.with_(**{"stage.0.until.cycles": 1})
+        self.assertEqual(self.run_scene_of(short, self.folder / "longer").summary["reversals"], 2)
+        later = self.run_scene_of(self.scene, self.folder / "longer", resume=True)
+        whole = self.run_scene()
+        self.assertGreater(later.summary["reversals"], 2)
+        self.assertEqual(later.summary["ended"], whole.summary["ended"])
+        np.testing.assert_array_equal(later.snapshot.positions, whole.snapshot.positions)
+        with self.assertRaisesRegex(isostat.InputError, "stage.0.until.cycles = 1, but the checkpoint has 4: an end can"):
+            self.run_scene_of(short, self.folder / "longer", resume=True)
 
     def test_callbacks_see_the_packing(self):
         seen, moved = [], []
@@ -152,6 +203,40 @@ times = 2
         self.assertEqual((folder / "history.csv").read_bytes(), (self.folder / "again/history.csv").read_bytes())
         with self.assertRaisesRegex(isostat.InputError, "specimen that is given: a specimen in a periodic-cell"):
             isostat.run(self.scene.with_(**{"specimen.domain": "rigid-box"}), specimen=end)
+
+    def test_what_a_given_packing_fixes_is_taken_from_it(self):
+        other = self.scene.with_(**{"grading.grains": 500, "grading.seed": 4, "specimen.pressure": "100 kPa",
+                                    "specimen.preparation_friction": "20 deg", "stage.0.until.cycles": 1})
+        folder = self.folder / "other"
+        program = ("import sys; sys.path.insert(0, sys.argv[1])\nimport isostat\n"
+                   "isostat.run(sys.argv[2], sys.argv[3], specimen=isostat.read_specimen(sys.argv[4]), quiet=False)\n")
+        isostat.write_specimen(self.folder / "made.h5", self.specimen)
+        done = subprocess.run([sys.executable, "-c", program, BINARIES.parent / "python", other.text, folder,
+                               self.folder / "made.h5"], capture_output=True, text=True, check=True)
+        for part in ("grading.grains = 500 (300)", "grading.seed = 4 (1)", "preparation_friction = 20 deg (12 deg)",
+                     "specimen.pressure = 100 kPa; the test starts from what it has"):
+            self.assertIn(part, done.stderr)
+        results = isostat.read(folder)
+        self.assertEqual(results.scene.to_dict()["grading"].get("grains"), None)
+        self.assertNotIn("pressure", tomllib.loads((folder / "scene.toml").read_text())["specimen"])
+        self.assertRegex(results.provenance, "seed +1\nspecimen +300 grains, d50 0.[0-9]+ mm, e 0.[0-9]+, p' 200 kPa")
+        self.assert_close(results.history["p"][0], 200e3, 0.01, "the servo stops within 0.3 %")
+        self.assert_close(results.history["unbalanced"][0], self.specimen.numbers["unbalanced_force"], 0.5,
+                          "velocities are those of a step further")
+        again = isostat.run(folder / "scene.toml", self.folder / "other_again", threads=1)
+        np.testing.assert_array_equal(again.history["p"], results.history["p"])
+
+    def test_another_contact_stiffness_than_that_of_the_packing(self):
+        soft = self.scene.with_(**{"contact.young": "2 GPa"})
+        with self.assertRaisesRegex(isostat.InputError, r"the specimen that is given: was made with another contact "
+                                    r"stiffness than contact.young = 2 GPa \(10 GPa\): .* by 80 % .*`rebalance`"):
+            isostat.run(soft, specimen=self.specimen)
+        isostat.write_specimen(self.folder / "stiff.h5", self.specimen)
+        with self.assertRaisesRegex(isostat.InputError, r"stiff.h5: was made .* contact.young = 2 GPa \(10 GPa\)"):
+            isostat.run(soft.with_(**{"specimen.file": str(self.folder / "stiff.h5")}))
+        stages = [{"kind": "rebalance"}, {"kind": "hold"}]
+        run = isostat.run(isostat.Scene({**soft.to_dict(), "stage": stages}), specimen=self.specimen)
+        self.assert_close(run.history["p"][-1], 200e3, 0.01, "the servo stops within 0.3 %")
 
     def test_a_moment_keeps_its_numbers(self):
         kept, taken = [], []

@@ -56,23 +56,45 @@ class RveTest(ToleranceTest):
 
     def test_a_target_that_cannot_be_reached_ends(self):
         rve = isostat.Rve(self.packing, max_steps=3000)
-        before, tensile = rve.stress, np.diag([1e5, 0.0, 0.0])  # grains without cohesion
-        response = rve.mixed(np.zeros((3, 3)), tensile, np.diag([True, False, False]))
+        before, none = rve.stress, np.zeros((3, 3))
+        response = rve.mixed(none, np.diag([-1e9, 0.0, 0.0]), np.diag([True, False, False]))
         self.assertFalse(response)
         self.assertRegex(response.reason, "off its target after 3000 steps")
         np.testing.assert_array_equal(rve.stress, before)
+        sheared = isostat.Rve(self.packing).mixed(none, np.diag([-2e5, -4e6, 0.0]), np.diag([True, True, False]))
+        self.assertRegex(sheared.reason, "off its target after a strain of 0.1, [0-9]+ steps: the grains cannot")
         with self.assertRaisesRegex(isostat.InputError, "max_steps"):
             isostat.Rve(self.packing, max_steps=0)
 
+    def test_what_stress_control_cannot_do_is_rejected_at_once(self):
+        rve, none = isostat.Rve(self.packing), np.zeros((3, 3))
+        before, normal, every = rve.stress, np.diag([True] * 3), np.full((3, 3), True)
+        crooked, steep = before.copy(), before.copy()
+        crooked[0, 1] += 1e4
+        steep[0, 2] = steep[2, 0] = 3e5
+        for gradient, stress, controlled, reason in (
+                (none, np.diag([1e5, 0.0, 0.0]), np.diag([True, False, False]), "1e[+]05 Pa for xx is tension.*neg"),
+                (none, -before, normal, "for xx is tension"),
+                (none, crooked, every, r"not symmetric: .* Pa for xy, .* Pa for yx"),
+                (none, steep, every, "shear stress of 3e[+]05 Pa for xz needs tension"),
+                (np.diag([0.0, -1e-4, 0.0]), before, normal, "a strain of -0.0001 is prescribed along yy, whose"),
+                (none, before, np.triu(every), "stress control must be symmetric")):
+            with self.subTest(reason):
+                response = rve.mixed(gradient, stress, controlled)
+                self.assertRegex(response.reason, reason)
+                self.assertEqual((bool(response), response.steps), (False, 0))
+        turned = np.array([[0, 1e-5, 0], [-1e-5, 0, 0], [0, 0, 0]])  # a rotation strains nothing
+        self.assertTrue(rve.mixed(turned, before, every))
+
     def test_interrupt_takes_the_increment_back(self):
-        rve = isostat.Rve(self.packing)
-        before, tensile = rve.stress, np.diag([1e5, 0.0, 0.0])
+        rve = isostat.Rve(self.packing, min_steps=5_000_000)
+        before = rve.stress
         timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
-            rve.mixed(np.zeros((3, 3)), tensile, np.diag([True, False, False]))
+            rve.advance(np.diag([0.0, -1e-5, 0.0]))
         np.testing.assert_array_equal(rve.stress, before)
-        self.assertTrue(rve.advance(np.diag([0.0, -1e-5, 0.0])))
+        self.assertTrue(rve.mixed(np.zeros((3, 3)), before, np.diag([True] * 3)))
 
     def test_one_thread_at_a_time(self):
         rve, refused = isostat.Rve(self.packing, min_steps=10000), []
@@ -108,7 +130,7 @@ class RveTest(ToleranceTest):
         np.testing.assert_array_equal(rve.stress, before)
 
     def test_a_packing_in_a_box_is_refused(self):
-        box = isostat.Snapshot.from_spheres([[1, 1, 1]], [1], box=[[0, 0, 0], [2, 2, 2]])
+        box = isostat.Snapshot.from_spheres([[1e-3] * 3], [1e-3], box=[[0, 0, 0], [2e-3] * 3])
         with self.assertRaises(isostat.InputError):
             isostat.Rve(box)
 

@@ -41,7 +41,7 @@ class SceneTest(ToleranceTest):
         self.assertFalse(scene == None or scene in [1, "x"])  # noqa: E711  (an operator that must not raise)
         for twin in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
             self.assertEqual((twin, hash(twin), type(twin)), (scene, hash(scene), isostat.Scene))
-        self.assertEqual(value_text(float("-inf")), "-inf")
+        self.assertEqual(value_text(float("-inf"), "a"), "-inf")
 
     def test_single_keys_go_over_it(self):
         scene = isostat.Scene(TEXT, set={"motion.damping": np.float64(0.05), "specimen.pressure": "100 kPa"})
@@ -61,9 +61,21 @@ class SceneTest(ToleranceTest):
         for scene, words in (({"motion": {"dampingg": 0.1}}, "Did you mean"),
                              ({"specimen": {"pressure": "100 m"}}, "pressure"),
                              ({"grading": {"grains": -3}}, "grains"),
-                             ({"grading": {"grains": {1, 2}}}, "strings, numbers")):
+                             ({"grading": {"grains": {1, 2}}}, "^grading.grains = {1, 2}: must be text, a number"),
+                             ({"stage": [STAGE, {"kind": None}]}, "^stage.1.kind = None: .* Leave the key out"),
+                             ({"contact": {"rolling": {"limit": None}}}, "^contact.rolling.limit = None: must be"),
+                             ({"grading": None}, "^grading = None: must be"),
+                             ({"grading": {3: 4}}, "^grading: 3: names of keys are text"),
+                             ({"grading": {"gra ins": 4}}, "^scene: grading.gra ins = 4; is no key of a scene"),
+                             ({"grading": {"grains": -3}, "title": "t"}, "^scene: grading.grains = -3; must be"),
+                             ({"specimen": {"relative_density": 0.5, "void_ratio": 0.6}},
+                              r"^scene: specimen.void_ratio = 0.6; excludes specimen.relative_density \(scene\)")):
             with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
                 isostat.Scene(scene)
+        with self.assertRaisesRegex(isostat.InputError, "^scene:2: grading.grains = -3"):  # lines of the user's text
+            isostat.Scene("[grading]\ngrains = -3\n")
+        with self.assertRaisesRegex(isostat.InputError, "^motion.damping = None: must be"):
+            isostat.Scene(TEXT, set={"motion.damping": None})
         with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: is not there"):
             isostat.Scene("nowhere.toml")
         self.assertTrue(issubclass(isostat.InputError, ValueError))

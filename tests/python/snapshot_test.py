@@ -78,9 +78,9 @@ class SnapshotTest(ToleranceTest):
 
     def test_packings_of_other_programs(self):
         small = isostat.Snapshot.from_spheres(CENTRES, [R] * 3, cell=R * np.array([[5, 0.5, 0], [0, 5, 0], [0, 0, 5]]))
-        metres = isostat.Snapshot.from_spheres(1e3 * CENTRES, [1e3 * R] * 3, box=1e3 * BOX)
         with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            metres = isostat.Snapshot.from_spheres(1e3 * CENTRES, [1e3 * R] * 3, box=1e3 * BOX, anyway=True)
             source = f"{folder}/a.h5"
             isostat.write_packing(source, isostat.Specimen(small))
             for ending in ("dump", "data", "txt", "csv", "vtp", "h5"):
@@ -99,6 +99,22 @@ class SnapshotTest(ToleranceTest):
             warnings.simplefilter("error")
             with self.assertRaisesRegex(UserWarning, "periodic cell"):
                 isostat.write_packing(f"{folder}/d.txt", isostat.Specimen(small))
+
+    def test_spheres_that_cannot_be_meant_are_refused(self):
+        make = isostat.Snapshot.from_spheres
+        for centres, radii, more, words in (
+                (1e3 * CENTRES, [1.0] * 3, {"box": 1e3 * BOX},
+                 "spheres: the largest radius is 1 m; expected at most 0.05 m.* in mm[?] If so, multiply centres, "
+                 "radii and box or cell by 0.001. If they are in m, give anyway=True"),
+                (1e-6 * CENTRES, [1e-9] * 3, {"cell": [5e-9] * 3}, "the largest radius is 1e-09 m; expected at least"),
+                (CENTRES, [R] * 3, {"box": BOX, "density": 2.65}, "the grain density is 2.65 kg/m3; expected 30 to"),
+                (0.5 * CENTRES, [R] * 3, {"box": 2 * BOX}, "grains 0 and 1 overlap by"),
+                (CENTRES, [R] * 3, {"box": BOX - R / 2}, "stands beyond a wall of the box by 50 %")):
+            with self.subTest(words):
+                with self.assertRaisesRegex(isostat.InputError, words):
+                    make(centres, radii, **more)
+                with self.assertWarnsRegex(UserWarning, words):
+                    self.assertEqual(len(make(centres, radii, anyway=True, **more)), 3)
 
     def test_wrong_spheres_are_refused(self):
         make = isostat.Snapshot.from_spheres

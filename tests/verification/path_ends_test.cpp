@@ -2,7 +2,7 @@
 // Paths of packings that turn, liquefy, do not get to their end, or are there when they begin.
 #include "base/error.hpp"
 #include "dem/drive/stages/cyclic_response.hpp"
-#include "dem/drive/stages/early_end.hpp"
+#include "dem/drive/stages/stage_end.hpp"
 #include "dem/io/checkpoint.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/path_runs.hpp"
@@ -139,9 +139,9 @@ TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
   path.end.q = 0.05e3; // 0.1 % of p' is 0.2 kPa
   const std::vector<Stage> stages = {path};
   const Result result = run(stages, box());
-  ASSERT_EQ(result.state.early_ends.size(), 1u);
-  EXPECT_TRUE(result.state.early_ends[0].at_once);
-  const std::string text = to_text(result.state.early_ends[0], stages);
+  ASSERT_EQ(result.state.ends.size(), 1u);
+  EXPECT_TRUE(result.state.ends[0].at_once);
+  const std::string text = to_text(result.state.ends[0], stages);
   EXPECT_NE(
       text.find("ended in its first step, because one of its conditions was met when it began: until.strain = 1 % (0 % "
                 "reached), until.q = 0.05 kPa"),
@@ -149,7 +149,10 @@ TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
       << text;
   EXPECT_EQ(std::count(result.watcher.events.begin(), result.watcher.events.end(), text), 1);
   path.end.q = 5e3;
-  EXPECT_TRUE(run({path}, box()).state.early_ends.empty());
+  const Result later = run({path}, box());
+  ASSERT_EQ(later.state.ends.size(), 1u);
+  EXPECT_FALSE(is_early(later.state.ends[0], {path}));
+  EXPECT_EQ(later.state.ends[0].by, EndCondition::q);
 }
 
 TEST(PathEnd, ThatItsLimitOfStepsComesBeforeIsToldAndKept)
@@ -159,8 +162,9 @@ TEST(PathEnd, ThatItsLimitOfStepsComesBeforeIsToldAndKept)
   Path after = keeping(PathCondition::stress, PathCondition::stress, 1e-5);
   const std::vector<Stage> stages = {path, after};
   const Result whole = run(stages, box());
-  ASSERT_EQ(whole.state.early_ends.size(), 1u);
-  const std::string text = to_text(whole.state.early_ends[0], stages);
+  ASSERT_EQ(whole.state.ends.size(), 2u);
+  EXPECT_FALSE(is_early(whole.state.ends[1], stages));
+  const std::string text = to_text(whole.state.ends[0], stages);
   EXPECT_NE(text.find("stage 0 (path): ended by max_steps = 300"), std::string::npos) << text;
   EXPECT_NE(text.find("until.strain = 1 % (0."), std::string::npos) << text;
 }

@@ -23,11 +23,20 @@ struct Observation
 /// What came of an observation.
 struct Verdict
 {
-  bool finished = false;
-  bool limited = false;   ///< finished by its limit of steps, before any condition of its own
-  bool notable = false;   ///< record a row and, if requested, a snapshot
-  std::string event = {}; ///< one line for the log; empty: nothing happened
+  std::optional<EndCondition> end = {}; ///< what ends the stage with this step; none: it goes on
+  bool notable = false;                 ///< record a row and, if requested, a snapshot
+  std::string event = {};               ///< one line for the log; empty: nothing happened
 };
+
+/// A condition that ends a stage, with what was reached: "until.strain = 5 % (1.2 % reached)".
+struct Condition
+{
+  EndCondition which;
+  std::string text;
+};
+using Conditions = std::vector<Condition>;
+/// Their texts, with commas between them.
+std::string to_text(const Conditions &conditions);
 
 /// The pressure that a specimen is prepared at, and how fast the servo may go there.
 struct ServoSpec
@@ -73,6 +82,8 @@ public:
   virtual bool takes_steps() const { return true; } ///< false: done with begin()
   /// It shears: strains, p0' and liquefaction count from the first such stage, and snapshots are taken.
   virtual bool shears() const { return false; }
+  /// Its volume is that with which it began: no water flows.
+  virtual bool keeps_volume() const { return false; }
   /// It drives strains or stresses at the pace of the rate control, whether strains count or not.
   virtual bool drives() const { return shears(); }
   /// Grains of a box may share the homogeneous motion of its walls (motion.carry_grains). Not where all walls follow a
@@ -105,8 +116,8 @@ public:
   virtual double stress_scale(const StageContext &) const { return 0; }
   virtual double planned_strain() const { return 0; }
 
-  /// Conditions of its own that end it, with what was reached: "strain = 5 % (1.2 % reached), ..."; empty: it has none.
-  virtual std::string conditions(const StageFigures &) const { return {}; }
+  /// Conditions of its own that end it, with what was reached; empty: it has none.
+  virtual Conditions conditions(const StageFigures &) const { return {}; }
   /// What they look at.   cost a pass over contacts and grains
   virtual StageFigures figures(const StageContext &c, const Observation &seen) const;
 
@@ -124,8 +135,8 @@ public:
   Verdict judge(const StageContext &c, const Observation &seen) const final
   {
     Verdict verdict = reached(c, seen);
-    if (!verdict.finished && max_steps > 0 && c.state.place.steps + 1 >= max_steps)
-      verdict.finished = verdict.limited = true;
+    if (!verdict.end && max_steps > 0 && c.state.place.steps + 1 >= max_steps)
+      verdict.end = EndCondition::max_steps;
     return verdict;
   }
 

@@ -32,18 +32,20 @@ Verdict BalancedStage::reached(const StageContext &c, const Observation &) const
     throw RunFailure(
         fmt::format("step {}: stage '{}' is not in balance after {} steps (unbalanced {:.3g}, requested {:.3g})",
                     c.assembly.step(), kind(), steps, c.assembly.unbalanced_force_ratio(), balance));
-  return {.finished = checks >= 2};
+  return {.end = checks >= 2 ? std::optional(EndCondition::balance) : std::nullopt};
 }
 
-std::string BalancedStage::conditions(const StageFigures &reached) const
+Conditions BalancedStage::conditions(const StageFigures &reached) const
 {
-  return fmt::format("balance = {:g} ({:.3g} reached)", balance, reached.unbalanced);
+  return {{EndCondition::balance, fmt::format("balance = {:g} ({:.3g} reached)", balance, reached.unbalanced)}};
 }
 
-std::string ServoStage::conditions(const StageFigures &reached) const
+Conditions ServoStage::conditions(const StageFigures &reached) const
 {
-  return fmt::format("{}, stresses within {:g} % of their target ({:.3g} % reached)",
-                     BalancedStage::conditions(reached), 100 * stress_tolerance(), 100 * reached.stress_error);
+  Conditions both = BalancedStage::conditions(reached);
+  both.push_back({EndCondition::balance, fmt::format("stresses within {:g} % of their target ({:.3g} % reached)",
+                                                     100 * stress_tolerance(), 100 * reached.stress_error)});
+  return both;
 }
 
 StageFigures ServoStage::figures(const StageContext &c, const Observation &seen) const

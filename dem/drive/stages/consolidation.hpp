@@ -17,8 +17,9 @@ public:
   bool operator==(const Friction &) const = default;
   const char *kind() const override { return "friction"; }
   bool takes_steps() const override { return false; }
+  bool keeps_volume() const override { return true; }
   void begin(const StageContext &c) const override;
-  Verdict judge(const StageContext &, const Observation &) const override { return {.finished = true}; }
+  Verdict judge(const StageContext &, const Observation &) const override { return {}; }
 };
 
 /// A stage that ends when two checks in a row, 200 steps apart, find the forces in balance and the stresses on target.
@@ -28,7 +29,7 @@ public:
   double balance = 1e-4; ///< unbalanced-force ratio that ends it [-]
 
   bool operator==(const BalancedStage &) const = default;
-  std::string conditions(const StageFigures &reached) const override;
+  Conditions conditions(const StageFigures &reached) const override;
 
 protected:
   Verdict reached(const StageContext &c, const Observation &) const final;
@@ -40,6 +41,7 @@ class Hold : public BalancedStage
 {
 public:
   const char *kind() const override { return "hold"; }
+  bool keeps_volume() const override { return true; }
 };
 
 /// A balanced stage that brings the specimen to a pressure by the stress servo (dem/drive/servo.hpp). In a cell shear
@@ -58,7 +60,7 @@ public:
   virtual std::array<bool, 3> axes() const { return {true, true, true}; }
   /// The pressure that it leaves isotropically, Pa.   @param standard  of the servo; none: another stress, or unknown
   std::optional<double> isotropic_pressure(double standard) const;
-  std::string conditions(const StageFigures &reached) const final;
+  Conditions conditions(const StageFigures &reached) const final;
   StageFigures figures(const StageContext &c, const Observation &seen) const final;
 
 protected:

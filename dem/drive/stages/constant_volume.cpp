@@ -62,13 +62,15 @@ std::optional<LoadRange> CyclicConstantVolume::required_loads(double sigma_v) co
   return LoadRange{low, high, fmt::format("{} = {:.4g} and {:.4g} kPa", limits_text(), low / 1e3, high / 1e3)};
 }
 
-std::string CyclicConstantVolume::conditions(const StageFigures &reached) const
+Conditions CyclicConstantVolume::conditions(const StageFigures &reached) const
 {
   const std::string after = reached.since_liquefied ? std::to_string(*reached.since_liquefied) : "not liquefied";
-  return fmt::format("until.cycles = {} ({:g} reached), until.reversals_after_liquefaction = {} ({}), until.strain = "
-                     "{:g} % ({:.4g} %)",
-                     max_cycles, static_cast<double>(reached.reversals) / 2, reversals_after_liquefaction, after,
-                     100 * max_strain, 100 * reached.strain);
+  return {
+      {EndCondition::cycles,
+       fmt::format("until.cycles = {} ({:g} reached)", max_cycles, static_cast<double>(reached.reversals) / 2)},
+      {EndCondition::reversals_after_liquefaction,
+       fmt::format("until.reversals_after_liquefaction = {} ({})", reversals_after_liquefaction, after)},
+      {EndCondition::strain, fmt::format("until.strain = {:g} % ({:.4g} %)", 100 * max_strain, 100 * reached.strain)}};
 }
 
 Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &seen) const
@@ -80,9 +82,13 @@ Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &
                   verdict);
   if (direction * load(seen) >= direction * turning_load(c.state))
     turn(c, seen, verdict);
-  const bool enough_after =
-      record.liquefaction && record.reversals >= record.liquefaction->reversals + reversals_after_liquefaction;
-  verdict.finished = enough_after || record.reversals >= 2 * max_cycles || std::abs(strain(seen)) >= max_strain;
+  verdict.end.reset();
+  if (record.liquefaction && record.reversals >= record.liquefaction->reversals + reversals_after_liquefaction)
+    verdict.end = EndCondition::reversals_after_liquefaction;
+  else if (record.reversals >= 2 * max_cycles)
+    verdict.end = EndCondition::cycles;
+  else if (std::abs(strain(seen)) >= max_strain)
+    verdict.end = EndCondition::strain;
   return verdict;
 }
 

@@ -28,6 +28,7 @@ class ConstantVolume : public ShearStage, public LiquefactionLimit
 {
 public:
   bool operator==(const ConstantVolume &) const = default;
+  bool keeps_volume() const final { return true; }
   RigidBox next_box(const StageContext &c, const Observation &seen) const final;
   Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;
 
@@ -65,7 +66,7 @@ public:
   bool operator==(const CyclicConstantVolume &) const = default;
   double inertial_number() const final { return 7e-4; }
   std::optional<double> fraction_done(const DriveState &state) const final;
-  std::string conditions(const StageFigures &reached) const final;
+  Conditions conditions(const StageFigures &reached) const final;
   /// With a bias alone: without one a specimen outside turns at once, as it always did.
   std::optional<LoadRange> required_loads(double sigma_v) const final;
   bool notes_response() const final { return true; }

@@ -332,8 +332,8 @@ Verdict Path::reached(const StageContext &c, const Observation &seen) const
   if (turns() && (direction * load(seen) >= direction * turning_load(c.state) ||
                   direction * c.state.loading.strain >= direction * turning_strain(c.state)))
     turn_round(c, seen, verdict);
-  verdict.finished = ends(c, seen);
-  if (!verdict.finished)
+  verdict.end = ends(c, seen);
+  if (!verdict.end)
     fail_if_hopeless(c, seen);
   return verdict;
 }

@@ -112,7 +112,7 @@ public:
   double load(const Observation &seen) const override;
   double strain(const Observation &seen) const override;
   std::optional<double> fraction_done(const DriveState &state) const override;
-  std::string conditions(const StageFigures &reached) const override;
+  Conditions conditions(const StageFigures &reached) const override;
   StageFigures figures(const StageContext &c, const Observation &seen) const override;
   std::optional<LoadRange> required_loads(double sigma_v) const override;
   /// Undrained cycles between two loads.
@@ -140,7 +140,7 @@ public:
            (components[0].keep == PathCondition::stress || components[0].keep == PathCondition::p);
   }
   /// No stress decides about the volume.
-  bool keeps_volume() const;
+  bool keeps_volume() const override;
 
 protected:
   Verdict reached(const StageContext &c, const Observation &seen) const override;
@@ -149,7 +149,7 @@ protected:
 
 private:
   bool is_driven(std::size_t k) const { return static_cast<std::size_t>(drive) == k + 1; }
-  bool ends(const StageContext &c, const Observation &seen) const;
+  std::optional<EndCondition> ends(const StageContext &c, const Observation &seen) const;
   bool at_rest(const StageContext &c) const;
   /// Largest |stress - target| over p' when the stage began.
   double target_error(const StageContext &c) const;

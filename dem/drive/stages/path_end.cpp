@@ -2,12 +2,12 @@
 // Where a path ends, how far it has come, and what it says when it does not get there.
 #include "base/error.hpp"
 #include "dem/drive/stages/path.hpp"
+#include "dem/drive/stages/stage_end.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace isostat
 {
@@ -66,22 +66,27 @@ bool Path::at_rest(const StageContext &c) const
   return checks >= 2;
 }
 
-bool Path::ends(const StageContext &c, const Observation &seen) const
+std::optional<EndCondition> Path::ends(const StageContext &c, const Observation &seen) const
 {
   const PathProgress &progress = c.state.progress;
   const StressInvariants start = invariants(Vec3(-progress.stress));
   const double near = start_tolerance * start.p;
-  if ((end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain) || passed(end.q, start.q, seen.q, near) ||
-      passed(end.p, start.p, seen.p, near) ||
-      passed(end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
-    return true;
+  if (end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain)
+    return EndCondition::strain;
+  if (passed(end.q, start.q, seen.q, near))
+    return EndCondition::q;
+  if (passed(end.p, start.p, seen.p, near))
+    return EndCondition::p;
+  if (passed(end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
+    return EndCondition::stress_ratio;
   if (end.volumetric_strain > 0 && volumetric_strain(c) >= end.volumetric_strain)
-    return true;
+    return EndCondition::volumetric_strain;
   if (end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * end.cycles)
-    return true;
+    return EndCondition::cycles;
   const PathTable &knots = table();
   const bool walked = knots.at.empty() || progress.place >= knots.at.back();
-  return drive == DrivenComponent::none && walked && at_rest(c);
+  const bool over = drive == DrivenComponent::none && walked && at_rest(c);
+  return over ? std::optional(EndCondition::course) : std::nullopt;
 }
 
 void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) const
@@ -93,7 +98,7 @@ void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) cons
   throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain and has not come to its end: {}. "
                                "Give until.strain or max_steps, or values that the specimen can reach.",
                                seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain),
-                               conditions(figures(c, seen))));
+                               to_text(conditions(figures(c, seen)))));
 }
 
 StageFigures Path::figures(const StageContext &c, const Observation &seen) const
@@ -106,26 +111,30 @@ StageFigures Path::figures(const StageContext &c, const Observation &seen) const
   return now;
 }
 
-std::string Path::conditions(const StageFigures &reached) const
+Conditions Path::conditions(const StageFigures &reached) const
 {
-  std::vector<std::string> all;
-  const auto add = [&](bool given, const char *key, double value, double now, const char *unit, double scale) {
+  using Which = EndCondition;
+  Conditions all;
+  const auto add = [&](bool given, Which which, double value, double now, const char *unit, double scale) {
     if (given)
-      all.push_back(fmt::format("until.{} = {:g}{} ({:.4g}{} reached)", key, value / scale, unit, now / scale, unit));
+      all.push_back({which, fmt::format("until.{} = {:g}{} ({:.4g}{} reached)", name_of(which), value / scale, unit,
+                                        now / scale, unit)});
   };
-  add(end.strain > 0, "strain", end.strain, reached.driven, " %", 0.01);
-  add(end.volumetric_strain > 0, "volumetric_strain", end.volumetric_strain, reached.volumetric, " %", 0.01);
-  add(end.q.has_value(), "q", end.q.value_or(0), reached.q, " kPa", 1e3);
-  add(end.p.has_value(), "p", end.p.value_or(0), reached.p, " kPa", 1e3);
-  add(end.stress_ratio.has_value(), "stress_ratio", end.stress_ratio.value_or(0), ratio_of(reached.q, reached.p), "",
-      1);
-  add(end.cycles > 0, "cycles", static_cast<double>(end.cycles), static_cast<double>(reached.own_reversals) / 2, "", 1);
+  add(end.strain > 0, Which::strain, end.strain, reached.driven, " %", 0.01);
+  add(end.volumetric_strain > 0, Which::volumetric_strain, end.volumetric_strain, reached.volumetric, " %", 0.01);
+  add(end.q.has_value(), Which::q, end.q.value_or(0), reached.q, " kPa", 1e3);
+  add(end.p.has_value(), Which::p, end.p.value_or(0), reached.p, " kPa", 1e3);
+  add(end.stress_ratio.has_value(), Which::stress_ratio, end.stress_ratio.value_or(0), ratio_of(reached.q, reached.p),
+      "", 1);
+  add(end.cycles > 0, Which::cycles, static_cast<double>(end.cycles), static_cast<double>(reached.own_reversals) / 2,
+      "", 1);
   if (drive == DrivenComponent::none)
-    all.push_back(fmt::format("the end of its course ({:.3g} % of it gone), stresses within {:g} % of p' of their "
-                              "targets ({:.3g} % reached), balance = {:g} ({:.3g} reached)",
-                              100 * reached.place, 100 * rest_tolerance, 100 * reached.stress_error, balance,
-                              reached.unbalanced));
-  return fmt::format("{}", fmt::join(all, ", "));
+    all.push_back(
+        {Which::course, fmt::format("the end of its course ({:.3g} % of it gone), stresses within {:g} % of p' of "
+                                    "their targets ({:.3g} % reached), balance = {:g} ({:.3g} reached)",
+                                    100 * reached.place, 100 * rest_tolerance, 100 * reached.stress_error, balance,
+                                    reached.unbalanced)});
+  return all;
 }
 
 std::optional<double> Path::fraction_done(const DriveState &state) const

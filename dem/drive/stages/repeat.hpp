@@ -15,6 +15,7 @@ public:
   bool operator==(const Repeat &) const = default;
   const char *kind() const override { return "repeat"; }
   bool takes_steps() const override { return false; }
-  Verdict judge(const StageContext &, const Observation &) const override { return {.finished = true}; }
+  bool keeps_volume() const override { return true; }
+  Verdict judge(const StageContext &, const Observation &) const override { return {}; }
 };
 } // namespace isostat

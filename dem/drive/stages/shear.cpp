@@ -69,6 +69,8 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
     }
   set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
+  if (const bool vertical = &mode() == &simple_shear_mode; shears() && keeps_volume() && !path.undrained)
+    path.undrained = UndrainedStart{vertical ? path.lateral_target[1] : now.p, vertical};
   load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
   if (const std::string why = refusal(c.state.loading.window_load, path.lateral_target[1], now.p); !why.empty())
     throw InputError(fmt::format("stage {} ({}): {}", c.state.place.stage, kind(), why));
@@ -85,9 +87,10 @@ std::string ShearStage::refusal(double load, double sigma_v, double pressure) co
                      mode().load_name, load / 1e3, range->text);
 }
 
-std::string ShearStage::conditions(const StageFigures &reached) const
+Conditions ShearStage::conditions(const StageFigures &reached) const
 {
-  return fmt::format("strain = {:g} % ({:.4g} % reached)", 100 * strain_end, 100 * reached.driven);
+  return {{EndCondition::strain,
+           fmt::format("strain = {:g} % ({:.4g} % reached)", 100 * strain_end, 100 * reached.driven)}};
 }
 
 void ShearStage::load_from_rest(const StageContext &c, double present) const
@@ -109,6 +112,17 @@ double ShearStage::ramp_time(const StageContext &c)
   return ramp_waves * wave_time(c.assembly, c.state.path.reference_pressure());
 }
 
+void ShearStage::note_half_cycle(DriveState &state, double load) const
+{
+  Loading &loading = state.loading;
+  const auto share = [](double begun, double now, double turn) {
+    return std::isfinite(turn) && turn != begun ? (now - begun) / (turn - begun) : 0;
+  };
+  const double done = std::max(share(loading.begun_load, load, turning_load(state)),
+                               share(loading.begun_strain, loading.strain, turning_strain(state)));
+  loading.half_cycle = std::clamp(done, loading.half_cycle, 1.0);
+}
+
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {
   DriveState &state = c.state;
@@ -122,6 +136,7 @@ double ShearStage::driven_step(const StageContext &c, const Observation &seen) c
   loading.signed_rate =
       braked_before(loading.signed_rate, turning_strain(state) - loading.strain, rate, ramp_waves * wave);
   loading.strain += loading.signed_rate * dt;
+  note_half_cycle(state, present);
   return loading.signed_rate * dt;
 }
 
@@ -132,7 +147,8 @@ std::optional<double> ShearStage::fraction_done(const DriveState &state) const
 
 Verdict ShearStage::reached(const StageContext &c, const Observation &) const
 {
-  return {.finished = std::abs(c.state.loading.strain) >= strain_end};
+  const bool there = std::abs(c.state.loading.strain) >= strain_end;
+  return {.end = there ? std::optional(EndCondition::strain) : std::nullopt};
 }
 
 RigidBox ServoedShear::next_box(const StageContext &c, const Observation &seen) const

@@ -51,7 +51,7 @@ public:
   double strain(const Observation &seen) const override { return seen.*mode().strain; }
   double planned_strain() const override { return strain_end; }
   std::optional<double> fraction_done(const DriveState &state) const override;
-  std::string conditions(const StageFigures &reached) const override;
+  Conditions conditions(const StageFigures &reached) const override;
   /// @param sigma_v  vertical stress when it begins, Pa
   virtual std::optional<LoadRange> required_loads(double /*sigma_v*/) const { return std::nullopt; }
   /// Why it cannot begin at a load, Pa, as the end of a sentence; empty: it can. A load outside by no more than a
@@ -76,6 +76,8 @@ protected:
   {
     return sign(state.loading.direction) * std::numeric_limits<double>::infinity();
   }
+  /// Notes how far the present half cycle has come, in load or in strain.
+  void note_half_cycle(DriveState &state, double load) const;
   /// Notes the quasi-static indicator at the present rate, every 50 steps.
   static void note_inertia(const StageContext &c, const Observation &seen);
   /// How long loads ramp, s.

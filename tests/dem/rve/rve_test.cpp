@@ -279,7 +279,26 @@ TEST(Rve, ImpossibleControlIsRejected)
   const RveState before = rve.save();
   MixedIncrement one_sided;
   one_sided.controlled(0, 1) = true;
-  EXPECT_EQ(rve.advance(one_sided).outcome, RveOutcome::rejected);
+  MixedIncrement twice;
+  twice.controlled(1, 1) = true;
+  twice.stress = rve.stress();
+  twice.gradient(1, 1) = -1e-4;
+  MixedIncrement crooked;
+  crooked.controlled.setConstant(true);
+  crooked.stress = rve.stress();
+  crooked.stress(0, 1) += 10e3;
+  MixedIncrement steep = crooked;
+  steep.stress(0, 1) = steep.stress(1, 0) = 1e6;
+  for (const auto &[increment, why] : {std::pair{one_sided, "must be symmetric"},
+                                       {twice, "a strain of -0.0001 is prescribed along yy"},
+                                       {crooked, "target stress is not symmetric"},
+                                       {steep, "for xy needs tension"}})
+    {
+      const RveResponse response = rve.advance(increment);
+      EXPECT_EQ(response.outcome, RveOutcome::rejected);
+      EXPECT_NE(response.reason.find(why), std::string::npos) << response.reason;
+      EXPECT_EQ(response.steps, 0u);
+    }
   expect_same_bits(rve.save(), before);
 }
 

@@ -308,6 +308,10 @@ TEST(Scene, RoundTripToTheBit)
         scene.specimen.pressure = scene.contact->young / (law == 1 ? 3700 : 37); // at most a twentieth of the modulus
         if (scene.grading.d50)
           scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
+        if (!scene.specimen.file.empty()) // whose grains are its own
+          scene.grading = {};
+        if (!takes_pressure(scene))
+          scene.specimen.pressure = SpecimenSpec{}.pressure;
         if (scene.specimen.e_min)
           scene.specimen.e_max = *scene.specimen.e_min * 1.37;
         for (auto &[diameter, percent] : scene.grading.table)

@@ -41,7 +41,7 @@ TEST(ConstantVolume, TurnsAtTheAmplitudeAndNotesTheOvershoot)
   EXPECT_FALSE(judge(cyclic(), {180e3, 59.9e3, 1e-5, 10}, state).notable);
   const Verdict verdict = judge(cyclic(), {180e3, 60.1e3, 2e-5, 11}, state);
   EXPECT_TRUE(verdict.notable);
-  EXPECT_FALSE(verdict.finished);
+  EXPECT_FALSE(verdict.end);
   EXPECT_NE(verdict.event.find("reversal 1 at step 11"), std::string::npos) << verdict.event;
   EXPECT_EQ(state.loading.direction, LoadDirection::extension);
   EXPECT_EQ(state.loading.signed_rate, 0);
@@ -71,17 +71,17 @@ TEST(ConstantVolume, EndsAfterTheReversalsAskedFor)
 {
   DriveState state = loaded();
   judge(cyclic(), {1e3, 1e3, 3e-4, 6}, state);
-  EXPECT_FALSE(judge(cyclic(), {60e3, 60e3, 1e-2, 7}, state).finished);
-  EXPECT_TRUE(judge(cyclic(), {60e3, -60e3, -1e-2, 8}, state).finished);
+  EXPECT_FALSE(judge(cyclic(), {60e3, 60e3, 1e-2, 7}, state).end);
+  EXPECT_TRUE(judge(cyclic(), {60e3, -60e3, -1e-2, 8}, state).end);
 }
 
 TEST(ConstantVolume, EndsAtTheLargestStrainAndAfterTheLargestNumberOfCycles)
 {
   DriveState state = loaded();
-  EXPECT_TRUE(judge(cyclic(), {1e3, 0, -0.16, 6}, state).finished);
+  EXPECT_TRUE(judge(cyclic(), {1e3, 0, -0.16, 6}, state).end);
   state = loaded();
   state.undrained.reversals = 99;
-  EXPECT_TRUE(judge(cyclic(), {180e3, 60e3, 1e-5, 6}, state).finished);
+  EXPECT_TRUE(judge(cyclic(), {180e3, 60e3, 1e-5, 6}, state).end);
 }
 
 TEST(ConstantVolume, MonotonicEndsAtItsStrain)
@@ -90,9 +90,9 @@ TEST(ConstantVolume, MonotonicEndsAtItsStrain)
   stage.strain_end = 0.05;
   DriveState state = loaded();
   state.loading.strain = -0.0499;
-  EXPECT_FALSE(judge(stage, {180e3, 90e3, -0.0499, 6}, state).finished);
+  EXPECT_FALSE(judge(stage, {180e3, 90e3, -0.0499, 6}, state).end);
   state.loading.strain = -0.05;
-  EXPECT_TRUE(judge(stage, {180e3, 90e3, -0.05, 7}, state).finished);
+  EXPECT_TRUE(judge(stage, {180e3, 90e3, -0.05, 7}, state).end);
 }
 } // namespace
 } // namespace isostat

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem/prepare/given_packing.hpp"
+
+#include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <gmock/gmock.h>
+
+namespace isostat
+{
+namespace
+{
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Scene scene(const std::string &grading, const std::string &contact, const std::string &more,
+            const std::string &stage = "kind = \"hold\"")
+{
+  return parse_scene("[grading]\n" + grading + "\n[contact]\n" + contact +
+                         "\n[specimen]\ndomain = \"periodic-cell\"\n" + more + "\n[[stage]]\n" + stage + "\n",
+                     "s");
+}
+
+constexpr const char *usual = "friction = \"18 deg\"\nyoung = \"1 GPa\"", *file = "file = \"p.h5\"";
+
+/// Two grains in a cell that press on each other, made as usual.
+Specimen pressed()
+{
+  Specimen made;
+  Snapshot &s = made.state;
+  s.law = scene("", usual, file).contact;
+  s.grains = make_packing({Vec3(1e-3, 1e-3, 1e-3), Vec3(2.99e-3, 1e-3, 1e-3)}, {1e-3, 1e-3}, 2650);
+  s.cell = PeriodicCell::with_edges(Vec3(5e-3, 4e-3, 4e-3));
+  const double overlap = 1e-5, force = s.law->normal_force(1e-3, 1e-3, overlap);
+  s.contacts = {{0, 1, overlap, force, {.normal = Vec3::UnitX()}}};
+  made.numbers = {{"seed", 7}, {"preparation_friction_deg", 8}};
+  return made;
+}
+
+std::vector<std::string> notes(const Scene &s) { return check_given_packing(s, pressed(), "p.h5"); }
+
+/// At the pressure that the contact carries.
+std::string at_pressure(const std::string &more = file)
+{
+  const double p = 1e-3 * pressed().state.contacts[0].normal_force * 1.99e-3 / 3 / 80e-9;
+  return more + "\npressure = \"" + std::to_string(p) + " kPa\"";
+}
+} // namespace
+
+TEST(GivenPacking, WhatAgreesIsNoNews) { EXPECT_THAT(notes(scene("", usual, at_pressure())), ElementsAre()); }
+
+TEST(GivenPacking, ItsOwnValuesCountAndAreNamed)
+{
+  const std::vector<std::string> found =
+      notes(scene("grains = 800\nd50 = \"1 mm\"\nseed = 3\ndensity = \"2700 kg/m3\"", usual, at_pressure()));
+  ASSERT_EQ(found.size(), 1u);
+  for (const char *part : {"p.h5: is taken as it is", "grading.grains = 800 (2)", "grading.d50 = 1 mm (2 mm)",
+                           "grading.seed = 3 (7)", "grading.density = 2700 kg/m3 (2650 kg/m3)"})
+    EXPECT_THAT(found[0], HasSubstr(part));
+  EXPECT_THAT(notes(scene("", usual, at_pressure("preparation_friction = \"12 deg\""))),
+              ElementsAre(HasSubstr("specimen.preparation_friction = 12 deg (8 deg)")));
+  EXPECT_THAT(notes(scene("", usual, at_pressure("void_ratio = 0.7"))),
+              ElementsAre(HasSubstr("specimen.void_ratio = 0.7 (8.5")));
+  EXPECT_THAT(notes(scene("", usual, at_pressure("relative_density = 0.5"))),
+              ElementsAre(HasSubstr("specimen.relative_density = 0.5 (-28")));
+  EXPECT_THAT(notes(scene("", usual, file)),
+              ElementsAre(HasSubstr("specimen.pressure = 200 kPa; the test starts from what it has")));
+}
+
+TEST(GivenPacking, AnotherStiffnessNeedsConsolidation)
+{
+  const std::string stiff = "friction = \"18 deg\"\nyoung = \"5 GPa\"";
+  EXPECT_THAT(message_of<InputError>([&] { notes(scene("", stiff, at_pressure())); }),
+              HasSubstr("p.h5: was made with another contact stiffness than contact.young = 5 GPa (1 GPa): its normal "
+                        "forces would change by 400 % at once"));
+  for (const char *stage : {"kind = \"rebalance\"", "kind = \"compress\"\npressure = \"50 kPa\"",
+                            "kind = \"friction\"\nfriction = \"9 deg\"\n[[stage]]\nkind = \"rebalance\""})
+    EXPECT_THAT(notes(scene("", stiff, file, stage)), ElementsAre(HasSubstr("by 400 % at once; the first stage")));
+  EXPECT_THAT(message_of<InputError>([&] { notes(scene("", "law = \"hertz-mindlin\"\nfriction = \"18 deg\"", file)); }),
+              HasSubstr("contact.law = \"hertz-mindlin\" (\"linear-rolling\")"));
+  const std::string ratio = std::string(usual) + "\nstiffness_ratio = 0.5"; // forces stay as they are
+  EXPECT_THAT(notes(scene("", ratio, at_pressure())), ElementsAre());
+}
+
+TEST(GivenPacking, LessFrictionIsWarnedOf)
+{
+  EXPECT_THAT(notes(scene("", "young = \"1 GPa\"\nfriction = \"5 deg\"", at_pressure())),
+              ElementsAre(HasSubstr("in balance with a friction of 18 deg and tested with 5 deg")));
+  EXPECT_THAT(notes(scene("", "young = \"1 GPa\"\nfriction = \"25 deg\"", at_pressure())), ElementsAre());
+}
+
+TEST(GivenPacking, DefaultLimitsBelongToTheGrainsOfThePaper)
+{
+  const auto foreign = [](const std::string &grading, const std::string &contact) {
+    return foreign_to_default_limits(scene(grading, contact, "preparation_friction = \"8 deg\""));
+  };
+  const std::string rolling = "\nrolling = { stiffness = 0.3, limit = 0.5 }";
+  EXPECT_EQ(foreign("", usual + rolling), "");
+  EXPECT_EQ(foreign("", usual), "no contact.rolling");
+  EXPECT_EQ(
+      foreign("truncate = [10, 90]", "friction = \"25 deg\"\nrolling = { limit = 0.2 }"),
+      "contact.friction = 25 deg, contact.rolling = { stiffness = 0.3, limit = 0.2 }, grading.truncate = [10, 90]");
+  EXPECT_EQ(foreign("", "law = \"hertz-mindlin\"\nfriction = \"18 deg\"" + rolling), "") << "the same resistance";
+}
+
+TEST(GivenPacking, SceneIsWrittenWithoutWhatThePackingHas)
+{
+  const std::string head =
+      "[grading]\ngrains = 800\ndensity = \"2700 kg/m3\"\n[specimen]\npressure = \"50 kPa\"\nfile = ";
+  const auto written = [&](const std::string &name, const std::string &kind) {
+    return to_toml(parse_scene(head + name + "\n[[stage]]\nkind = \"" + kind + "\"\n", "s"));
+  };
+  const auto holds = [](const std::string &text, const char *key) { return text.find(key) != std::string::npos; };
+  const std::string stored = written("\"a.h5#s0001\"", "hold"), foreign = written("\"a.csv\"", "rebalance");
+  for (const char *key : {"grains", "seed", "density =", "pressure"})
+    EXPECT_FALSE(holds(stored, key)) << key << "\n" << stored;
+  for (const char *key : {"grains", "seed"})
+    EXPECT_FALSE(holds(foreign, key)) << key << "\n" << foreign;
+  for (const char *key : {"density = \"2700 kg/m3\"", "pressure = \"50 kPa\""}) // where a file has none; of the stage
+    EXPECT_TRUE(holds(foreign, key)) << key << "\n" << foreign;
+  EXPECT_EQ(to_toml(parse_scene(stored, "s")), stored);
+  EXPECT_FALSE(holds(written("\"a.h5\"", "compress\"\npressure = \"20 kPa"), "pressure = \"50 kPa\""));
+}
+
+TEST(GivenPacking, NothingRemainsOfItsPreparation)
+{
+  const Scene k0 = scene("", usual, "relative_density = 0.5\nconsolidation = \"k0\"");
+  const SpecimenSpec given = without_preparation(k0.specimen);
+  EXPECT_EQ(given.consolidation, "isotropic") << "else no scene with its file could be read";
+  EXPECT_FALSE(given.relative_density || given.has_limits());
+  const SpecimenSpec own = without_preparation(scene("", usual, "void_ratio = 0.7\ne_min = 0.5\ne_max = 0.8").specimen);
+  EXPECT_FALSE(own.void_ratio);
+  EXPECT_TRUE(own.has_limits());
+}
+} // namespace isostat

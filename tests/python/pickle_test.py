@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Packings, runs, results and errors come back from other processes as they were."""
+import concurrent.futures
+import copy
+import multiprocessing
+import pathlib
+import pickle
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+import numpy as np
+
+from package import BINARIES, ToleranceTest, isostat
+
+SCENE = """title = "small"
+[grading]
+grains = 200
+cloud_edge = "2.7 mm"
+[contact]
+friction = "18 deg"
+rolling = {}
+[specimen]
+domain = "periodic-cell"
+preparation_friction = "12 deg"
+[[stage]]
+kind = "undrained-monotonic"
+strain = 1e-3
+max_steps = 300
+"""
+
+
+def run(seed, output, cache):
+    scene = isostat.Scene(SCENE, set={"grading.seed": seed})
+    return isostat.run(scene, output, cache=cache, threads=1, quiet=True)
+
+
+def refused(_):
+    isostat.Scene(title="no specimen")
+
+
+class PickleTest(ToleranceTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.done = run(1, None, cls.folder / "specimens")
+
+    def assert_same_packing(self, one, other):
+        for name in ("positions", "velocities", "spins", "radii", "ids", "contact_pairs", "normal_forces", "shear_forces",
+                     "bending_moments", "cell", "strain"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+        self.assertEqual((one.time, one.step, one.law, one.density), (other.time, other.step, other.law, other.density))
+
+    def test_packings(self):
+        packing = self.done.snapshot
+        for again in (pickle.loads(pickle.dumps(packing)), copy.deepcopy(packing)):
+            self.assert_same_packing(again, packing)
+        specimen = isostat.prepare(SCENE, cache=self.folder / "specimens")
+        again = pickle.loads(pickle.dumps(specimen))
+        self.assertEqual((again.numbers, again.provenance), (specimen.numbers, specimen.provenance))
+        self.assert_same_packing(again.snapshot, specimen.snapshot)
+
+    def test_of_other_processes(self):
+        with (unittest.mock.patch.object(sys, "argv", [sys.argv[0], str(BINARIES)]),  # what they import looks at it
+              concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as processes):
+            in_memory = processes.submit(run, 1, None, self.folder / "specimens")
+            in_folder = processes.submit(run, 1, self.folder / "results", self.folder / "specimens")
+            wrong = processes.submit(refused, None)
+            with self.assertRaisesRegex(isostat.InputError, "must have exactly one"):
+                wrong.result()
+            for other in (in_memory.result(), in_folder.result()):
+                self.assert_same_packing(other.snapshot, self.done.snapshot)
+                self.assertEqual(other.summary["ended"], self.done.summary["ended"])
+                self.assertEqual(other.warnings, self.done.warnings)
+                self.assertEqual(list(other.history), list(self.done.history))
+                self.assertEqual(other.history.units, self.done.history.units)
+        self.assertEqual(isostat.read(self.folder / "results").scene.title, "small")
+
+
+if __name__ == "__main__":
+    unittest.main()
