@@ -315,13 +315,10 @@ RveResponse Rve::advance(const MixedIncrement &increment)
   return guarded(increment.gradient.norm(), [&] {
     if (!(increment.stress.allFinite() && increment.tolerance > 0))
       throw RunFailure("the target stress is not a number, or its tolerance is not positive");
-<<<<<<< HEAD
-    if (settings_.stepping)
-      throw RunFailure("mixed control goes at a rate: it needs an element without static stepping");
-=======
     if (const std::string why = refusal(increment, increment.tolerance * stress_scale()); !why.empty())
       throw RunFailure(why);
->>>>>>> e8122608a278888bde3a42ebd03a48e357a5fa23
+    if (settings_.stepping)
+      throw RunFailure("mixed control goes at a rate: it needs an element without static stepping");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
           "mixed control works along the axes of the specimen: it needs an element whose frame is identity");
