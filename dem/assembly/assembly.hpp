@@ -72,8 +72,8 @@ public:
   /// @pre settings.time_step > 0, a periodic cell
   void deform(const Mat3 &displacement_gradient);
 
-  /// For relaxations (dem/static), between compute_forces() and deform(): grains lose their motion; they move with other
-  /// masses; F.v of all of them, W, positive while they gain speed.
+  /// For relaxations (dem/static), between compute_forces() and deform(): grains lose their motion; they move with
+  /// other masses; F.v of all of them, W, positive while they gain speed.
   void stop_grains();
   std::vector<InverseInertia> inverse_inertia() const;
   void set_inverse_inertia(const std::vector<InverseInertia> &inertia); ///< @pre one for each grain

@@ -8,8 +8,8 @@ namespace isostat
 ///
 ///     r_i = max( |sum of forces|, |sum of torques| / R_i ) / max( largest contact force on it, 1e-3 f )
 ///
-/// f the mean contact force of the packing: a mean over grains hides weakly loaded trains of grains, which decide when a
-/// packing gives way, and below a thousandth of f a grain carries nothing worth balancing.
+/// f the mean contact force of the packing: a mean over grains hides weakly loaded trains of grains, which decide when
+/// a packing gives way, and below a thousandth of f a grain carries nothing worth balancing.
 struct Balance
 {
   std::size_t loaded = 0;  ///< grains with a contact

@@ -32,15 +32,15 @@ struct Relaxed
 
 /// Strains a periodic packing by one increment and takes it to balance without inertia:
 ///
-///     x <- x + L dt x (all grains with the cell);   repeat { forces;  v <- v + dt F/M;  x <- x + v dt }  until balanced
+///     x <- x + L dt x (all grains with the cell);  repeat { forces;  v <- v + dt F/M;  x <- x + v dt } until balanced
 ///
 /// Dynamic relaxation with kinetic damping (Cundall 1976; Barnes 1999, Int. J. Space Struct. 14, 89,
 /// doi:10.1260/0266351991494722): grains move under fictitious masses in proportion to the stiffness they feel,
 /// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr) over their contacts, so that all of them are as quick; where
-/// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Grains that touch nothing stay with the cell. The
-/// history of contacts goes along with every iteration: with history frozen at the start of an increment relaxation ends
-/// in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks is part of this
-/// definition, which is fully dissipative.
+/// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Grains that touch nothing stay with the cell.
+/// The history of contacts goes along with every iteration: with history frozen at the start of an increment
+/// relaxation ends in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks
+/// is part of this definition, which is fully dissipative.
 ///
 /// Afterwards grains are at rest, with their own masses. Depends on nothing but the state it begins with: same bits for
 /// any number of threads.
