@@ -62,11 +62,12 @@ INNER = {
         "motion": GRAINS,
         "measure": GRAINS,
         "assembly": GRAINS | {"contact", "neighbours", "motion", "measure"},
+        "static": STEP,
         "drive": STEP,
         "scene": BY_NAME | {"drive"},
         "io": BY_NAME | GRAINS | {"measure", "drive"},
         "prepare": STEP | BY_NAME | {"scene", "io", "drive"},
-        "rve": STEP | BY_NAME | {"scene", "io", "drive"},
+        "rve": STEP | BY_NAME | {"scene", "io", "drive", "static"},
     },
     "fem": {
         "material": set(),

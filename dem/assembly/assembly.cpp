@@ -209,6 +209,24 @@ void Assembly::deform(const Mat3 &displacement_gradient)
   forces_.list().set_cell(domain_.cell->edges);
 }
 
+void Assembly::stop_grains()
+{
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      packing_.set_linear_velocity(i, Vec3::Zero());
+      packing_.set_angular_velocity(i, Vec3::Zero());
+    }
+}
+
+void Assembly::set_inverse_inertia(const std::vector<InverseInertia> &inertia)
+{
+  for (std::size_t i = 0; i < inertia.size(); ++i)
+    {
+      packing_.velocity[4 * i + 3] = inertia[i].mass;
+      packing_.spin[4 * i + 3] = inertia[i].moment;
+    }
+}
+
 void Assembly::turn_upright()
 {
   PeriodicCell &cell = *domain_.cell;

@@ -3,7 +3,7 @@
 #include "dem/assembly/contact_forces.hpp"
 #include "dem/assembly/energy_meter.hpp"
 #include "dem/assembly/wall_forces.hpp"
-#include "dem/measure/live_contacts.hpp"
+#include "dem/measure/balance.hpp"
 #include "dem/motion/leapfrog.hpp"
 #include "dem/state/snapshot.hpp"
 
@@ -31,6 +31,12 @@ struct AssemblyState
 
   ISOSTAT_FIELDS(grains, pairs, history, virial, cell, time, time_step, step)
   std::size_t bytes() const;
+};
+
+/// What a grain resists motion with, inverted: 1/kg and 1/(kg m2).
+struct InverseInertia
+{
+  double mass, moment;
 };
 
 /// The granular assembly in its rigid box or periodic cell, and one time step of it in two halves:
@@ -66,6 +72,13 @@ public:
   /// @pre settings.time_step > 0, a periodic cell
   void deform(const Mat3 &displacement_gradient);
 
+  /// For relaxations (dem/static), between compute_forces() and deform(): grains lose their motion; they move with
+  /// other masses; F.v of all of them, W, positive while they gain speed.
+  void stop_grains();
+  std::vector<InverseInertia> inverse_inertia() const;
+  void set_inverse_inertia(const std::vector<InverseInertia> &inertia); ///< @pre one for each grain
+  double power() const;
+
   /// Changes the law from the next force evaluation on; history of the parts that stay is kept.
   void set_law(const Law &law);
 
@@ -96,6 +109,8 @@ public:
   Vec3 contact_stress() const;
   /// See unbalanced_force().  @pre compute_forces(), not yet moved
   double unbalanced_force_ratio() const;
+  /// See dem/measure/balance.hpp.  @pre compute_forces(), not yet moved
+  Balance balance(double left_out) const;
   /// The closed contacts for further measures.  @pre compute_forces(), not yet moved
   LiveContacts live_contacts() const;
 

@@ -27,6 +27,29 @@ double Assembly::unbalanced_force_ratio() const
   return unbalanced_force(live_contacts(), forces().action().data(), settings.gravity);
 }
 
+Balance Assembly::balance(double left_out) const
+{
+  return isostat::balance(live_contacts(), forces().action().data(), left_out);
+}
+
+double Assembly::power() const
+{
+  const double *action = forces().action().data();
+  double sum = 0;
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    sum += Vec3(action + 8 * i).dot(packing_.linear_velocity(i)) +
+           Vec3(action + 8 * i + 4).dot(packing_.angular_velocity(i));
+  return sum;
+}
+
+std::vector<InverseInertia> Assembly::inverse_inertia() const
+{
+  std::vector<InverseInertia> all(packing_.n_grains());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = {packing_.velocity[4 * i + 3], packing_.spin[4 * i + 3]};
+  return all;
+}
+
 Snapshot Assembly::without_contacts() const
 {
   Snapshot s;

@@ -107,6 +107,11 @@ void RveSettings::check() const
                                  max_increment, largest_increment));
   if (max_steps == 0)
     throw InputError("max_steps of a representative volume element must be positive");
+  if (stepping && !(stepping->increment > 0 && stepping->increment <= 1e-3))
+    throw InputError(
+        fmt::format("increment = {} of a representative volume element; allowed is (0, 1e-3]", stepping->increment));
+  if (stepping)
+    stepping->balance.check();
   if (min_steps == 0 || min_steps > max_steps)
     throw InputError(fmt::format("min_steps = {} of a representative volume element; allowed is 1 to max_steps = {}",
                                  min_steps, max_steps));
@@ -165,9 +170,27 @@ void Rve::step(const Mat3 &own_gradient)
   assembly_.compute_forces();
 }
 
+void Rve::run_balanced(const Mat3 &own_gradient, const BalanceSpec &spec)
+{
+  update_time_step(settings_.motion, true, 0, assembly_, drive_.pace);
+  RelaxationLimits limits{settings_.max_steps, {}};
+  if (!rolling_back_)
+    limits.go_on = settings_.go_on;
+  const Relaxed relaxed = isostat::relax(assembly_, own_gradient, spec, limits);
+  balance_ = relaxed.balance;
+  cost_.steps += relaxed.steps;
+}
+
 void Rve::run_strain(const Mat3 &own_gradient)
 {
   const double size = strain_measure(own_gradient);
+  if (settings_.stepping)
+    {
+      const double parts = std::ceil(size / settings_.stepping->increment);
+      for (double k = 0; k < parts; ++k)
+        run_balanced(own_gradient / parts, settings_.stepping->balance);
+      return;
+    }
   double left = 1, minimum = static_cast<double>(settings_.min_steps);
   for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
@@ -238,6 +261,7 @@ RveResponse Rve::guarded(double size, const Run &run)
   RveResponse response;
   const double before = assembly_.stress().trace() / 3;
   const std::uint64_t steps = cost_.steps;
+  balance_ = {};
   const TimedScope timed(cost_.seconds);
   try
     {
@@ -265,6 +289,7 @@ RveResponse Rve::guarded(double size, const Run &run)
   response.stress = stress();
   response.mean_stress_change = assembly_.stress().trace() / 3 - before;
   response.indicator = drive_.pace.indicator;
+  response.balance = balance_;
   return response;
 }
 
@@ -292,10 +317,21 @@ RveResponse Rve::advance(const MixedIncrement &increment)
       throw RunFailure("the target stress is not a number, or its tolerance is not positive");
     if (const std::string why = refusal(increment, increment.tolerance * stress_scale()); !why.empty())
       throw RunFailure(why);
+    if (settings_.stepping)
+      throw RunFailure("mixed control goes at a rate: it needs an element without static stepping");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
           "mixed control works along the axes of the specimen: it needs an element whose frame is identity");
     run_mixed(increment);
+    keep_safe();
+  });
+}
+
+RveResponse Rve::relax(const BalanceSpec &spec)
+{
+  spec.check();
+  return guarded(0, [&] {
+    run_balanced(Mat3::Zero(), spec);
     keep_safe();
   });
 }

@@ -4,6 +4,7 @@
 #include "dem/drive/drive_state.hpp"
 #include "dem/drive/motion_spec.hpp"
 #include "dem/measure/stiffness.hpp"
+#include "dem/static/relaxation.hpp"
 
 #include <functional>
 #include <span>
@@ -11,6 +12,13 @@
 
 namespace isostat
 {
+/// Increments of strain that are each taken to balance (dem/static/relaxation.hpp), in place of time steps at a rate.
+struct StaticStepping
+{
+  double increment = 1e-5; ///< largest strain of one of them, as the rate control counts it [-]
+  BalanceSpec balance = {};
+};
+
 /// How a representative volume element is run.
 struct RveSettings
 {
@@ -21,6 +29,8 @@ struct RveSettings
   /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
   /// each in a step or two, without time for its grains to find their places.
   std::uint64_t min_steps = 1;
+  std::optional<StaticStepping> stepping =
+      {};                               ///< if given, of `motion` only the time step counts, and not for mixed control
   double max_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
   std::uint64_t max_steps = 10'000'000; ///< of one advance()
   std::function<bool()> go_on = {};     ///< asked every 50 steps, if given; false: the increment is rejected
@@ -55,6 +65,7 @@ struct RveResponse
   double mean_stress_change = 0;
   std::uint64_t steps = 0; ///< time steps it took
   double indicator = 0;    ///< quasi-static error indicator of the last control, see rate_control.hpp
+  Balance balance = {};    ///< that of the grains after it; of static stepping and relax()
 };
 
 /// What elements have cost since they were made, or unpacked.
@@ -111,6 +122,9 @@ public:
   RveResponse advance(const Mat3 &displacement_gradient);
   /// The same without the volumetric part of ln(I + dH): an element whose pores are closed.
   RveResponse undrained(const Mat3 &displacement_gradient);
+  /// Takes the grains to balance at the present strain: what stress(), stiffness() and small probes of it then mean
+  /// does not hang on how fast the element was strained before.
+  RveResponse relax(const BalanceSpec &spec = {});
   /// Prescribed strain and target stress: drained, K0, constant p' and other tests. Rejected at once: a target that
   /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1.
   RveResponse advance(const MixedIncrement &increment);
@@ -146,6 +160,7 @@ private:
   RveResponse guarded(double size, const Run &run);
   RveResponse strain(const Mat3 &displacement_gradient, bool constant_volume);
   void run_strain(const Mat3 &own_gradient);
+  void run_balanced(const Mat3 &own_gradient, const BalanceSpec &spec);
   void run_mixed(const MixedIncrement &own);
   void step(const Mat3 &own_gradient);
   void review();
@@ -161,6 +176,7 @@ private:
   /// State before a failed increment: a copy made every 500 steps, and the strains since, which are run again.
   RveState safe_;
   std::vector<Mat3> since_safe_;
+  Balance balance_;           ///< of the last increment
   bool rolling_back_ = false; ///< nobody is asked whether to go on
 };
 } // namespace isostat

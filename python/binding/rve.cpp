@@ -19,11 +19,17 @@ using Frame = Given<std::optional<Mat3>, "frame">;
 using MinSteps = Given<std::uint64_t, "min_steps">;
 using MaxIncrement = Given<double, "max_increment">;
 using MaxSteps = Given<std::uint64_t, "max_steps">;
+using Increment = Given<std::optional<double>, "increment">;
+using Tolerance = Given<double, "balance">;
+using LeftOut = Given<double, "left_out">;
 using Gradient = Given<Mat3, "gradient">;
+
+constexpr BalanceSpec default_balance;
 
 /// Keys of [motion] that are given, over the defaults of an element.
 RveSettings settings_of(const InertialNumber &inertial_number, const Damping &damping, const StrainRate &strain_rate,
-                        const Frame &frame, MinSteps min_steps, MaxIncrement max_increment, MaxSteps max_steps)
+                        const Frame &frame, MinSteps min_steps, MaxIncrement max_increment, MaxSteps max_steps,
+                        const Increment &increment, Tolerance balance, LeftOut left_out)
 {
   RveSettings settings;
   settings.motion = controlled_motion();
@@ -38,6 +44,8 @@ RveSettings settings_of(const InertialNumber &inertial_number, const Damping &da
   settings.min_steps = min_steps;
   settings.max_increment = max_increment;
   settings.max_steps = max_steps;
+  if (increment.value)
+    settings.stepping = StaticStepping{*increment.value, {balance, left_out}};
   settings.go_on = [] {
     const py::gil_scoped_acquire gil;
     return PyErr_CheckSignals() == 0;
@@ -104,6 +112,11 @@ RveResponse undrained(Rve &rve, const Gradient &gradient)
   return taken([&] { return rve.undrained(gradient); });
 }
 
+RveResponse relax(Rve &rve, Tolerance balance, LeftOut left_out)
+{
+  return taken([&] { return rve.relax({balance, left_out}); });
+}
+
 RveResponse mixed(Rve &rve, const Gradient &gradient, const Given<Mat3, "stress"> &stress,
                   const Given<Eigen::Matrix<bool, 3, 3>, "controlled"> &controlled,
                   Given<double, "tolerance"> tolerance)
@@ -132,7 +145,12 @@ void bind_response(py::module_ &module)
       .def_readonly("reason", &RveResponse::reason, "Why it was rejected.")
       .def_readonly("stress", &RveResponse::stress, "Cauchy effective stress, (3, 3), Pa, tension positive.")
       .def_readonly("mean_stress_change", &RveResponse::mean_stress_change, "Of tr(stress)/3, Pa, tension positive.")
-      .def_readonly("steps", &RveResponse::steps, "Time steps it took.")
+      .def_readonly("steps", &RveResponse::steps, "Time steps, force evaluations, it took.")
+      .def_property_readonly(
+          "balance", [](const RveResponse &r) { return r.balance.within; },
+          "Imbalance that all loaded grains but those left out keep within [-]; of static stepping and relax().")
+      .def_property_readonly(
+          "worst_balance", [](const RveResponse &r) { return r.balance.worst; }, "That of the worst grain [-].")
       .def_readonly("indicator", &RveResponse::indicator, "Quasi-static error indicator.")
       .def("__bool__", [](const RveResponse &r) { return r.outcome == RveOutcome::accepted; })
       .def("__repr__", [](const RveResponse &r) {
@@ -155,14 +173,16 @@ void bind_rve(py::module_ &module)
                       "is the Cauchy effective stress, tension positive, Pa.")
       .def(py::init([](const Given<const Snapshot *, "specimen"> &specimen, const InertialNumber &inertial_number,
                        const Damping &damping, const StrainRate &strain_rate, const Frame &frame, MinSteps min_steps,
-                       MaxIncrement max_increment, MaxSteps max_steps) {
+                       MaxIncrement max_increment, MaxSteps max_steps, const Increment &increment, Tolerance balance,
+                       LeftOut left_out) {
              return std::make_unique<Element>(
-                 Rve(*specimen.value,
-                     settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps)));
+                 Rve(*specimen.value, settings_of(inertial_number, damping, strain_rate, frame, min_steps,
+                                                  max_increment, max_steps, increment, balance, left_out)));
            }),
            py::arg("specimen"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
            py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
-           py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000,
+           py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000, py::arg("increment") = py::none(),
+           py::arg("balance") = default_balance.tolerance, py::arg("left_out") = default_balance.left_out,
            "specimen: a periodic packing at rest.\n"
            "inertial_number, damping (local) [-], strain_rate (1/s): as the keys of [motion]; None: what columns use.\n"
            "frame: rotation (3, 3), x_lab = frame x_specimen.\n"
@@ -170,11 +190,19 @@ void bind_rve(py::module_ &module)
            "quasi-static.\n"
            "max_increment: norm of the gradient above which an increment is rejected [-], at most 0.1.\n"
            "max_steps: an increment that takes more time steps is rejected.\n"
+           "increment: strain [-]; increments are divided into parts of at most this, each taken to balance without "
+           "inertia;\n"
+           "rate and damping do not count then, and mixed() is rejected. None: time steps at a rate.\n"
+           "balance: largest imbalance of a grain, force or torque/radius over the largest contact force on it [-].\n"
+           "left_out: share of the loaded grains, the worst, for which balance need not hold [-].\n"
            "Ctrl-C takes an increment back. Raises InputError for settings out of range, naming it.")
       .def("advance", alone(&advance), py::arg("gradient"),
            "Strains it by a displacement gradient (3, 3), extension positive.")
       .def("undrained", alone(&undrained), py::arg("gradient"),
            "The same without its volumetric part; extension positive.")
+      .def("relax", alone(&relax), py::arg("balance") = default_balance.tolerance,
+           py::arg("left_out") = default_balance.left_out,
+           "Takes the grains to balance at the present strain; both arguments as those of the element.")
       .def("mixed", alone(&mixed), py::arg("gradient"), py::arg("stress"), py::arg("controlled"),
            py::arg("tolerance") = 1e-3,
            "Prescribed strain in some components, target stress where `controlled` is true.\n\n"
@@ -200,14 +228,16 @@ void bind_rve(py::module_ &module)
           "unpack",
           [](const std::string &bytes, const InertialNumber &inertial_number, const Damping &damping,
              const StrainRate &strain_rate, const Frame &frame, MinSteps min_steps, MaxIncrement max_increment,
-             MaxSteps max_steps) {
-            return std::make_unique<Element>(Rve::unpack(
-                std::as_bytes(std::span(bytes.data(), bytes.size())),
-                settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment, max_steps)));
+             MaxSteps max_steps, const Increment &increment, Tolerance balance, LeftOut left_out) {
+            return std::make_unique<Element>(
+                Rve::unpack(std::as_bytes(std::span(bytes.data(), bytes.size())),
+                            settings_of(inertial_number, damping, strain_rate, frame, min_steps, max_increment,
+                                        max_steps, increment, balance, left_out)));
           },
           py::arg("bytes"), py::kw_only(), py::arg("inertial_number") = py::none(), py::arg("damping") = py::none(),
           py::arg("strain_rate") = py::none(), py::arg("frame") = py::none(), py::arg("min_steps") = 1,
-          py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000,
+          py::arg("max_increment") = 0.01, py::arg("max_steps") = 10'000'000, py::arg("increment") = py::none(),
+          py::arg("balance") = default_balance.tolerance, py::arg("left_out") = default_balance.left_out,
           "The element that pack() gave, with the same settings.");
 }
 } // namespace isostat::python

@@ -32,6 +32,21 @@ class RveTest(ToleranceTest):
         self.assert_near(change / (stiffness[5, 5] * 2e-6), 1, 0.2, "contacts that slide; the stiffness has none")
         np.testing.assert_array_equal(response.stress, rve.stress)
 
+    def test_increments_are_taken_to_balance(self):
+        shear = np.zeros((3, 3))
+        shear[0, 1] = 2e-5
+        still, moved = isostat.Rve(self.packing, increment=1e-5), isostat.Rve(self.packing)
+        response = still.undrained(shear)
+        self.assertTrue(response, response.reason)
+        self.assertTrue(0 < response.balance <= 1e-3)
+        moved.undrained(shear)
+        response = moved.relax(balance=1e-4, left_out=0)
+        self.assertEqual(response.balance, response.worst_balance)
+        self.assertTrue(0 < response.worst_balance <= 1e-4)
+        self.assertFalse(still.mixed(np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3), bool)))
+        with self.assertRaisesRegex(isostat.InputError, "tolerance = 0"):
+            moved.relax(balance=0)
+
     def test_a_saved_state_comes_back_to_the_bit(self):
         rve = isostat.Rve(self.packing)
         strain = np.diag([5e-5, -1e-4, 5e-5])
