@@ -190,8 +190,8 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
     }
 }
 
-/// Sand that drains in minutes and clay below it, in two and four elements: the clay drains through its interface, where
-/// the mesh is refined too.
+/// Sand that drains in minutes and clay below it, in two and four elements: the clay drains through its interface,
+/// where the mesh is refined too.
 TEST(LayeredConsolidation, SandDrainsClayFromTheFirstTimeOn)
 {
   constexpr Stratum blanket{1, 1e8, 1e-4}, clay{5, 3e6, 1e-9};
