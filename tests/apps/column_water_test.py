@@ -67,14 +67,13 @@ class Drainage(ColumnTest):
         self.assert_done(result)
         cell = 0.8 / 2**20
         self.assertIn(f"the cells of layer.0 (clay) where water drains, {cell:.3g} m high", result.stderr)
-        said = result.stderr
-        self.assertIn(f"within 2 % only from 1.5 h2/c = {1.5 * cell**2 / self.C:.3g} s after the load on", said)
-        self.assertRegex(said, r"Set layer.0.cell_size to \S+ m or less, or analysis.first_time to \S+ s or more")
+        self.assertIn(f"within 2 % only from 1.5 h2/c = {1.5 * cell**2 / self.C:.3g} s after", result.stderr)
+        self.assertRegex(result.stderr, r"Set layer.0.cell_size to \S+ m or less, or analysis.first_time to \S+ s or")
 
     def test_a_load_at_once_in_a_dynamic_run(self):
         shaken = CLAY.split("[analysis]")[0] + '[analysis]\nduration = "0.1 s"\n'
         bound = f"1.5 h2/c = {1.5 * 0.8**2 / self.C:.3g} s after the load on"
-        for changes, warns in (((), True), (settings(load__ramp="1e7 s"), False),
+        for changes, warns in (((), True), (settings(load__ramp="1e8 s"), False),
                                (settings(load__direction="x"), False),
                                (settings(layer__0__permeability="0 m/s"), False)):
             result = self.run_column(self.write("shaken.toml", shaken), "-o", "out", "--overwrite", *changes)

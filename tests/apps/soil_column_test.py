@@ -117,7 +117,7 @@ class Scenes(ColumnTest):
         self.assertIsNone(summary["max_ru"], "the load, not the earth, carries the pressure")
         self.assertNotIn("largest r_u", (folder / "summary.txt").read_text(encoding="utf-8"))
         with h5py.File(folder / "profiles.h5") as file:
-            self.assertEqual(file["u"].shape, (201, 80))
+            self.assertEqual(file["u"].shape, (201, 116), "40 elements, 18 more where water drains")
             self.assertEqual(file["time"][()].tobytes(), rows["time"].tobytes())
 
 

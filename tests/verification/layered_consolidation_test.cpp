@@ -42,15 +42,15 @@ constexpr Stratum cap{2, 2e7, 1e-7}, sand{8, 1e8, 1e-5};
 class Exact
 {
 public:
-  Exact(const Stratum &top, const Stratum &bottom) : cap(top), sand(bottom)
+  Exact(const Stratum &top, const Stratum &bottom) : upper_(top), lower_(bottom)
   {
     const auto mismatch = [this](double m) {
       const auto [a, b] = rates(m);
-      return sand.mobility() * b * std::sin(b * sand.thickness) * std::sin(a * cap.thickness) -
-             cap.mobility() * a * std::cos(a * cap.thickness) * std::cos(b * sand.thickness);
+      return lower_.mobility() * b * std::sin(b * lower_.thickness) * std::sin(a * upper_.thickness) -
+             upper_.mobility() * a * std::cos(a * upper_.thickness) * std::cos(b * lower_.thickness);
     };
-    const double step = 1e-3 * std::min(std::sqrt(cap.mobility() / cap.storage()) / cap.thickness,
-                                        std::sqrt(sand.mobility() / sand.storage()) / sand.thickness);
+    const double step = 1e-3 * std::min(std::sqrt(upper_.mobility() / upper_.storage()) / upper_.thickness,
+                                        std::sqrt(lower_.mobility() / lower_.storage()) / lower_.thickness);
     for (double m = step; modes_.size() < 60; m += step)
       if (mismatch(m) * mismatch(m + step) < 0)
         {
@@ -62,38 +62,40 @@ public:
   }
   double pressure(double z, double t) const
   {
-    return sum(t, [z](double a, double b) {
-      return z < sand.thickness ? std::cos(b * z) * std::sin(a * cap.thickness)
-                                : std::sin(a * (sand.thickness + cap.thickness - z)) * std::cos(b * sand.thickness);
+    return sum(t, [this, z](double a, double b) {
+      return z < lower_.thickness
+                 ? std::cos(b * z) * std::sin(a * upper_.thickness)
+                 : std::sin(a * (lower_.thickness + upper_.thickness - z)) * std::cos(b * lower_.thickness);
     });
   }
   double settlement_of_sand(double t) const
   {
-    const double carried =
-        sum(t, [](double a, double b) { return std::sin(b * sand.thickness) / b * std::sin(a * cap.thickness); });
-    return (surcharge * sand.thickness - carried) / sand.modulus;
+    const double carried = sum(
+        t, [this](double a, double b) { return std::sin(b * lower_.thickness) / b * std::sin(a * upper_.thickness); });
+    return (surcharge * lower_.thickness - carried) / lower_.modulus;
   }
   double settlement_of_cap(double t) const
   {
-    const double carried =
-        sum(t, [](double a, double b) { return (1 - std::cos(a * cap.thickness)) / a * std::cos(b * sand.thickness); });
-    return (surcharge * cap.thickness - carried) / cap.modulus;
+    const double carried = sum(t, [this](double a, double b) {
+      return (1 - std::cos(a * upper_.thickness)) / a * std::cos(b * lower_.thickness);
+    });
+    return (surcharge * upper_.thickness - carried) / upper_.modulus;
   }
 
 private:
   std::array<double, 2> rates(double m) const
   {
-    return {m * std::sqrt(cap.storage() / cap.mobility()), m * std::sqrt(sand.storage() / sand.mobility())};
+    return {m * std::sqrt(upper_.storage() / upper_.mobility()), m * std::sqrt(lower_.storage() / lower_.mobility())};
   }
   double factor(double m) const
   {
     const auto [a, b] = rates(m);
-    const double in_sand = std::sin(a * cap.thickness), in_cap = std::cos(b * sand.thickness);
-    const double start = sand.storage() * sand.start() * in_sand * std::sin(b * sand.thickness) / b +
-                         cap.storage() * cap.start() * in_cap * (1 - std::cos(a * cap.thickness)) / a;
+    const double in_sand = std::sin(a * upper_.thickness), in_cap = std::cos(b * lower_.thickness);
+    const double start = lower_.storage() * lower_.start() * in_sand * std::sin(b * lower_.thickness) / b +
+                         upper_.storage() * upper_.start() * in_cap * (1 - std::cos(a * upper_.thickness)) / a;
     const double norm =
-        sand.storage() * in_sand * in_sand * (sand.thickness / 2 + std::sin(2 * b * sand.thickness) / (4 * b)) +
-        cap.storage() * in_cap * in_cap * (cap.thickness / 2 - std::sin(2 * a * cap.thickness) / (4 * a));
+        lower_.storage() * in_sand * in_sand * (lower_.thickness / 2 + std::sin(2 * b * lower_.thickness) / (4 * b)) +
+        upper_.storage() * in_cap * in_cap * (upper_.thickness / 2 - std::sin(2 * a * upper_.thickness) / (4 * a));
     return start / norm;
   }
   template <class Shape>
@@ -107,7 +109,7 @@ private:
       }
     return total;
   }
-  const Stratum cap, sand;
+  const Stratum upper_, lower_;
   std::vector<std::array<double, 2>> modes_;
 };
 
