@@ -268,13 +268,13 @@ class OutputFolder(AppTest):
 
     def test_existing_results(self):
         self.assert_done(self.run_test(self.scene, "-o", "out"))
+        self.assert_refused(self.run_test(self.scene, "-o", "out"), "out", "exists", "--overwrite", "--resume")
+        shutil.rmtree(self.folder / "out/checkpoint")
         before = contents(self.folder / "out")
         refused = self.run_test(self.scene, "-o", "out")
         self.assert_refused(refused, "out", "exists", "--overwrite")
         self.assertNotIn("--resume", refused.stderr)  # there is no checkpoint
         self.assertEqual(contents(self.folder / "out"), before)
-        (self.folder / "out/checkpoint").mkdir()
-        self.assert_refused(self.run_test(self.scene, "-o", "out"), "out", "exists", "--overwrite", "--resume")
         self.assert_done(self.run_test(self.scene, "-o", "out", "--overwrite"))
         self.assertEqual(contents(self.folder / "out")["history.csv"], before["history.csv"])
 
@@ -330,8 +330,9 @@ class OutputFolder(AppTest):
     def test_resume_of_nothing(self):
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "out", "nothing to resume")
         self.assertFalse((self.folder / "out").exists())
-        self.assert_done(self.run_test(self.scene, "-o", "out"))  # too short for a checkpoint
-        (self.folder / "out/summary.json").unlink()  # as if it had been stopped before its end
+        self.assert_done(self.run_test(self.scene, "-o", "out"))
+        (self.folder / "out/summary.json").unlink()  # as if it had been killed before its first checkpoint
+        shutil.rmtree(self.folder / "out/checkpoint")
         before = contents(self.folder / "out")
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume"), "nothing to resume",
                             "ended before its first checkpoint", "--overwrite")
