@@ -83,16 +83,11 @@ struct Terzaghi
   double degree() const { return (settlement() - at_once()) / (at_last() - at_once()); }
   double exact_settlement(double tv) const { return at_once() + exact_degree(tv) * (at_last() - at_once()); }
   double pressure(double z) const { return statics.pressure().local_element(space.find_pressure({0, 0, z})) / p0(); }
-  /// Of a corner of CellTables, over p0.
-  double pressure_of(std::size_t corner) const
-  {
-    return statics.pressure().local_element(space.cell_pressures[corner]) / p0();
-  }
   double largest_pressure_error(double tv) const
   {
     double error = 0;
-    for (std::size_t k = 0; k < space.corner.size(); ++k)
-      error = std::max(error, std::abs(pressure_of(k) - exact_pressure(space.corner[k][2], tv)));
+    for (const Place &corner : space.corner)
+      error = std::max(error, std::abs(pressure(corner[2]) - exact_pressure(corner[2], tv)));
     return error;
   }
   void run(double tv, unsigned steps)
@@ -247,10 +242,10 @@ TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
           column.statics.step(tv * column.seconds_per_tv - column.statics.time());
           p = std::max(p, column.largest_pressure_error(tv));
           u = std::max(u, std::abs(column.settlement() / column.exact_settlement(tv) - 1));
-          for (std::size_t i = 0; i < column.space.corner.size(); ++i)
+          for (const Place &corner : column.space.corner)
             {
-              highest = std::max(highest, column.pressure_of(i));
-              lowest = std::min(lowest, column.pressure_of(i));
+              highest = std::max(highest, column.pressure(corner[2]));
+              lowest = std::min(lowest, column.pressure(corner[2]));
             }
         }
       std::printf("%zu drained, T_v from %.0e, %4u steps, %2u cells refined to %3zu: error of p/p0 %.4f, of the "

@@ -157,10 +157,8 @@ TEST(Mandel, FirstTimesAndFewStepsAreAsAccurate)
         {
           const double t = first * std::pow(2 / first, static_cast<double>(k) / (steps - 1));
           slab.statics.step(t * seconds - slab.statics.time());
-          for (std::size_t i = 0; i < slab.space.corner.size(); ++i)
-            p = std::max(p, std::abs(slab.statics.pressure().local_element(slab.space.cell_pressures[i]) -
-                                     slab.exact(slab.space.corner[i][0], t)) /
-                                slab.at_once());
+          for (const Place &corner : slab.space.corner)
+            p = std::max(p, std::abs(slab.pressure(corner[0]) - slab.exact(corner[0], t)) / slab.at_once());
           u = std::max(u, std::abs(slab.settlement() / slab.exact_settlement(t) - 1));
         }
       std::printf("ct/a2 from %.0e, %2u steps, 20 x 1 cells refined to %zu: error of p/p(0+) %.4f, of the settlement "
