@@ -29,11 +29,11 @@ struct ForeignPacking
 /// y, z, r or radius or diameter; id, vx.., wx.., density, mass; CSV, PFC). Separated by blanks, tabs or commas; m,
 /// m/s, rad/s. Lines that begin with # are comments, but for these:
 ///
-///     # box xlo xhi ylo yhi zlo zhi             walls; without it the bounding box of the spheres
-///     # cell ax ay az bx by bz cx cy cz         edges of a periodic cell, right-handed, leaning or not
-///     ##PERIODIC:: x y z                        its edges along the axes (YADE's SpherePack)
-///     #format x_y_z_r_matId                     names of the columns (yade.export.textExt); `attrs` is any number
-///     # x y z r type                            the same, if the rows have as many columns
+/// - "\# box xlo xhi ylo yhi zlo zhi": walls; without it the bounding box of the spheres
+/// - "\# cell ax ay az bx by bz cx cy cz": edges of a periodic cell, right-handed, leaning or not
+/// - "\#\#PERIODIC:: x y z": its edges along the axes (YADE's SpherePack)
+/// - "\#format x_y_z_r_matId": names of the columns (yade.export.textExt); "attrs" is any number
+/// - "\# x y z r type": the same, if the rows have as many columns
 ///
 /// @throws InputError that begins with file:line
 /// tested: tests/dem/io/text_tables_test.cpp, tests/dem/io/packing_files_test.cpp

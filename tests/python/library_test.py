@@ -52,7 +52,7 @@ class LibraryTest(ToleranceTest):
         again = isostat.read_specimen(f"{library}#s0002")
         np.testing.assert_array_equal(again.snapshot.positions, packing.positions)
         self.assertEqual(again.numbers, self.specimens[1].numbers)
-        box = isostat.Specimen(isostat.Snapshot.from_spheres([[1, 1, 1]], [0.5], box=[[0, 0, 0], [2, 2, 2]]))
+        box = isostat.Specimen(isostat.Snapshot.from_spheres([[1e-3] * 3], [1e-3], box=[[0, 0, 0], [2e-3] * 3]))
         self.assertNotIn("K0", box.numbers)
         with self.assertRaisesRegex(isostat.InputError, "specimen 0: is between rigid walls.*periodic-cell"):
             isostat.write_library(self.folder / "box.h5", [box])
