@@ -2,10 +2,10 @@
 #include "apps/common/run_history.hpp"
 
 #include "apps/common/run_output.hpp"
+#include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <fmt/format.h>
 
 namespace isostat
@@ -37,7 +37,8 @@ HistoryRows RunHistory::of(const std::vector<std::string> &names) const
   for (const std::string &name : names)
     {
       places.push_back(static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin()));
-      assert(places.back() < names_.size());
+      if (places.back() == names_.size())
+        throw InputError(fmt::format("a history without the column {}", name));
     }
   std::vector<double> values;
   for (const std::vector<double> &row : rows_)

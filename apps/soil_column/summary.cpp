@@ -203,8 +203,8 @@ std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
                               relative_residual(s.last));
   if (s.plate)
     return text + to_text(*s.plate, scene.plate);
-  return text + fmt::format("  final settlement         {:.4f} mm, drained\n  degree of consolidation  {:.4f}\n",
-                            1e3 * s.final_settlement, s.degree);
+  text += fmt::format("  final settlement         {:.4f} mm, drained\n", 1e3 * s.final_settlement);
+  return std::isfinite(s.degree) ? text + fmt::format("  degree of consolidation  {:.4f}\n", s.degree) : text;
 }
 
 namespace

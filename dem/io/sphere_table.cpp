@@ -166,7 +166,7 @@ SphereColumns::SphereColumns(const std::vector<std::string_view> &names, std::ui
   };
   id_ = find({"id", "ballid", "ball_id", "particleid", "particle_id"}, "");
   radius_ = find({"r", "radius", "rad", "radii", "ballradius", "ball_radius"}, "m");
-  if (radius_ < 0 && (radius_ = find({"diameter", "diam", "d"}, "m")) >= 0)
+  if (radius_ < 0 && (radius_ = find({"diameter", "diam", "dia", "d"}, "m")) >= 0)
     radius_factor_ = 0.5;
   density_ = find({"density", "rho"}, "kg/m3");
   mass_ = find({"mass"}, "kg");

@@ -102,6 +102,7 @@ struct RowReader
   SphereTable table;
   std::optional<SphereColumns> columns, of_comment;
   std::string missing;     ///< from a header that names other things
+  std::size_t named = 0;   ///< words of a header
   std::size_t unnamed = 0; ///< columns, where nothing names them
 
   void check_units(std::size_t line) const
@@ -146,6 +147,7 @@ struct RowReader
   {
     const SphereColumns found(header_names(text));
     missing = found.missing();
+    named = found.n_columns();
     columns = missing.empty() ? found : SphereColumns({"x", "y", "z", "r"});
     check_units(line);
   }
@@ -158,7 +160,7 @@ struct RowReader
         columns = of_comment;
         check_units(line);
       }
-    if (!missing.empty() && n != 4)
+    if (!missing.empty() && (n != 4 || n == named)) // one that names other columns than these four
       reject(path, line,
              fmt::format("the header above does not have {}; expected columns x, y, z and r or diameter (m). Is it a "
                          "packing?",
@@ -177,7 +179,7 @@ struct RowReader
 
 RowReader read_rows(const fs::path &path, const std::string &text, double scale)
 {
-  RowReader reader{path, scale, {}, {}, {}, {}, {}, 0};
+  RowReader reader{path, scale, {}, {}, {}, {}, {}, 0, 0};
   bool header_seen = false;
   const std::vector<std::string_view> lines = split_lines(text);
   for (std::size_t l = 0; l < lines.size(); ++l)

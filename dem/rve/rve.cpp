@@ -186,9 +186,15 @@ void Rve::run_strain(const Mat3 &own_gradient)
   const double size = strain_measure(own_gradient);
   if (settings_.stepping)
     {
-      const double parts = std::ceil(size / settings_.stepping->increment);
+      const double parts = std::max(1.0, std::ceil(size / settings_.stepping->increment));
+      const std::uint64_t before = cost_.steps;
       for (double k = 0; k < parts; ++k)
-        run_balanced(own_gradient / parts, settings_.stepping->balance);
+        {
+          run_balanced(own_gradient / parts, settings_.stepping->balance);
+          if (cost_.steps - before > settings_.max_steps)
+            throw RunFailure(fmt::format("an increment of strain {:.3g} takes more than {} force evaluations", size,
+                                         settings_.max_steps));
+        }
       return;
     }
   double left = 1, minimum = static_cast<double>(settings_.min_steps);
@@ -279,6 +285,11 @@ RveResponse Rve::guarded(double size, const Run &run)
       roll_back();
       response.reason = failure.what();
     }
+  catch (...)
+    {
+      roll_back();
+      throw;
+    }
   if (!response.reason.empty())
     {
       response.outcome = RveOutcome::rejected;
@@ -318,7 +329,7 @@ RveResponse Rve::advance(const MixedIncrement &increment)
     if (const std::string why = refusal(increment, increment.tolerance * stress_scale()); !why.empty())
       throw RunFailure(why);
     if (settings_.stepping)
-      throw RunFailure("mixed control goes at a rate: it needs an element without static stepping");
+      throw RunFailure("mixed control goes at a rate. Make the element without an increment (RveSettings::stepping).");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
           "mixed control works along the axes of the specimen: it needs an element whose frame is identity");

@@ -22,9 +22,9 @@ public:
   explicit WithoutInertia(Assembly &assembly)
       : assembly_(assembly), settings_(assembly.settings), own_(assembly.inverse_inertia())
   {
+    follow_stiffness();
     assembly.settings.contact_damping = assembly.settings.damping = 0;
     assembly.settings.free_grain_damping = 1;
-    follow_stiffness();
   }
   ~WithoutInertia()
   {

@@ -70,7 +70,7 @@ void Statics::step(double duration)
   const double end = time_ + duration;
   double left = duration;
   if (settings_.pore_water)
-    for (double part = next_part(left); part < left; part = next_part(left))
+    for (double part = next_part(left); part < left && time_ + part > time_; part = next_part(left))
       {
         advance(part, true);
         left = end - time_;

@@ -41,7 +41,7 @@ std::vector<Stratum> strata(const SoilProfile &soil, std::span<const double> mod
 std::vector<DrainagePlane> drainage_planes(const MeshSpec &mesh, const std::vector<Face> &drained,
                                            std::span<const double> moduli, double time)
 {
-  constexpr double part = 0.25, contrast = 10;
+  constexpr double part = 0.25, same = 0.01;
   const std::vector<Stratum> layers = strata(mesh.soil, moduli);
   std::vector<DrainagePlane> planes;
   const auto add = [&](unsigned axis, double at, unsigned layer) {
@@ -64,8 +64,9 @@ std::vector<DrainagePlane> drainage_planes(const MeshSpec &mesh, const std::vect
       if (last || !layers[k + 1].drains())
         continue;
       const Stratum &below = layers[k + 1];
-      const double ratio = layers[k].mobility * layers[k].storage / (below.mobility * below.storage);
-      if (std::max(ratio, 1 / ratio) > contrast)
+      const auto differ = [](double a, double b) { return std::abs(a - b) > same * std::min(a, b); };
+      if (differ(layers[k].mobility, below.mobility) || differ(layers[k].storage, below.storage) ||
+          differ(moduli[k], moduli[k + 1]))
         add(2, layers[k].bottom, layers[k].coefficient() < below.coefficient() ? k : k + 1);
     }
   for (Face face : drained)

@@ -19,16 +19,22 @@ def warned(name, quiet):
     name: of the run. quiet: True: they are only listed.
     """
     listed = []
-    try:
-        yield listed
-    finally:
+    def warn():
         for text in listed if quiet is not True else ():
             warnings.warn(f"{name}: {text}", _core.IsostatWarning, stacklevel=depth_of_caller())
+
+    try:
+        yield listed
+    except BaseException:
+        with contextlib.suppress(Warning):  # a filter may make errors of warnings: the first one counts
+            warn()
+        raise
+    warn()
 
 
 def depth_of_caller():
     """As stacklevel: of the first caller outside of this package, so that the warning names his line."""
-    own = (str(pathlib.Path(__file__).parent), contextlib.__file__)
+    own = (str(pathlib.Path(__file__).parent / "_")[:-1], contextlib.__file__)
     frame, depth = sys._getframe(1), 1
     while frame.f_back and frame.f_code.co_filename.startswith(own):
         frame, depth = frame.f_back, depth + 1

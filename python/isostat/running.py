@@ -120,4 +120,4 @@ class Run:
             return draw(folder, name)
 
     def __repr__(self):
-        return f"<isostat.Run {self.scene.title!r}, {len(self.history)} rows>"
+        return f"<isostat.Run {self.scene.title!r}, {len(next(iter(self.history.values()), ()))} rows>"

@@ -91,8 +91,8 @@ TEST(Relaxation, PathsDependLittleOnIncrementAndTolerance)
     return -rve.stress().trace() / 3;
   };
   const double p0 = 200e3, chosen = mean_stress(1e-5, 1e-3);
-  EXPECT_BELOW_BECAUSE(std::abs(mean_stress(1e-5, 1e-4) - chosen), 1e-3 * p0, "1e-5 was seen: the tolerance is tight");
-  EXPECT_BELOW_BECAUSE(std::abs(mean_stress(5e-6, 1e-3) - chosen), 1e-2 * p0, "0.2 % was seen");
+  EXPECT_BELOW_BECAUSE(std::abs(mean_stress(1e-5, 1e-4) - chosen), 1e-4 * p0, "1e-5 was seen: the tolerance is tight");
+  EXPECT_BELOW_BECAUSE(std::abs(mean_stress(5e-6, 1e-3) - chosen), 5e-3 * p0, "0.2 % was seen");
 }
 
 TEST(Relaxation, HasTheSameBitsForAnyNumberOfThreadsAndAfterRestoring)
@@ -134,13 +134,14 @@ TEST(Relaxation, WithoutContactsItIsDoneAtOnce)
 
 TEST(Relaxation, ThatDoesNotEndIsTakenBack)
 {
-  RveSettings settings = in_balance(1e-5, 1e-12);
-  settings.max_steps = 50;
+  RveSettings settings = in_balance(1e-5, 1e-2);
+  settings.max_steps = 2000;
   Rve rve(specimen(), settings);
+  run(rve, 0, 2); // that are run again
   const RveState before = rve.save();
-  const RveResponse found = rve.undrained(increment(0));
+  const RveResponse found = rve.undrained(simple_shear(5e-3));
   EXPECT_EQ(found.outcome, RveOutcome::rejected);
-  EXPECT_NE(found.reason.find("not in balance after 50 force evaluations"), std::string::npos) << found.reason;
+  EXPECT_NE(found.reason.find("force evaluations"), std::string::npos) << found.reason;
   expect_same_bits(rve.save(), before);
 }
 
