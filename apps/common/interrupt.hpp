@@ -19,8 +19,10 @@ inline constexpr const auto &stopping_signals = detail::stopping;
 /// What is ignored, as nohup does, stays so.
 inline void handle_unless_ignored(int signal, void (*handler)(int))
 {
-  if (std::signal(signal, handler) == SIG_IGN)
-    std::signal(signal, SIG_IGN);
+  struct sigaction before = {};
+  sigaction(signal, nullptr, &before);
+  if (before.sa_handler != SIG_IGN)
+    std::signal(signal, handler);
 }
 
 /// From here on SIGINT, SIGTERM, SIGUSR1, SIGHUP (a closed terminal) and SIGXCPU (the limit of a queue) only raise a

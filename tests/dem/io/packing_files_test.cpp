@@ -140,6 +140,10 @@ TEST_F(PackingFiles, NamesOfColumns)
   EXPECT_EQ(read_foreign_packing(put("p.csv", "x,y,z,r,Density (kg/m3)\n1,2,3,1,2700\n"), {}).state.grains.density,
             2700);
   EXPECT_THAT(refusal("p.csv", "x,y,z,r,density (g/cm3)\n1,2,3,1,2.7\n"), HasSubstr("is in g/cm3; expected kg/m3"));
+  for (const char *header : {"id,x,y,z", "x,y,z,size"}) // as many as x y z r, but others
+    EXPECT_THAT(refusal("p.csv", fmt::format("{}\n1,2,3,0.5\n", header)),
+                HasSubstr("p.csv:2: the header above does not"));
+  EXPECT_EQ(read_foreign_packing(put("p.csv", "X,Y,Z,Dia\n1,2,4,1\n"), {}).state.grains.radius(0), 0.5);
 }
 
 TEST_F(PackingFiles, LengthsAreScaledWithTheBox)
