@@ -20,9 +20,9 @@ struct DrainagePlane : FinePlane
 ///
 ///     c = kb / (1/M + 1/Q)        coefficient of consolidation, M the constrained modulus: docs/theory_column.md (40)
 ///
-/// The planes are the drained faces, a water table, and interfaces of layers that differ in kb, M or Q: sand drains clay
-/// once it has drained itself, and where M/Q differs the pressure jumps from the start. Cells there have the size
-/// sqrt(c t)/4, c of the slower layer.
+/// The planes are the drained faces, a water table, and interfaces of layers that differ in kb, M or Q: sand drains
+/// clay once it has drained itself, and where M/Q differs the pressure jumps from the start. Cells there have the
+/// size sqrt(c t)/4, c of the slower layer.
 /// @param moduli  M of each layer, Pa   @param time  of the first result, s
 /// tested: tests/verification/consolidation_test.cpp, layered_consolidation_test.cpp, mandel_test.cpp
 std::vector<DrainagePlane> drainage_planes(const MeshSpec &mesh, const std::vector<Face> &drained,
