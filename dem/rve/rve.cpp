@@ -187,8 +187,10 @@ void Rve::run_strain(const Mat3 &own_gradient)
   if (settings_.stepping)
     {
       const double parts = std::max(1.0, std::ceil(size / settings_.stepping->increment));
-      const std::uint64_t before = cost_.steps;
-      for (double k = 0; k < parts; ++k)
+      if (!(parts < static_cast<double>(settings_.max_steps)))
+        throw RunFailure(fmt::format("an increment of strain {:.3g} has {:.3g} parts", size, parts));
+      const std::uint64_t before = cost_.steps, n = static_cast<std::uint64_t>(parts);
+      for (std::uint64_t k = 0; k < n; ++k)
         {
           run_balanced(own_gradient / parts, settings_.stepping->balance);
           if (cost_.steps - before > settings_.max_steps)
