@@ -229,7 +229,7 @@ void write_provenance(const fs::path &folder, const std::string &scene_text, con
 void write_provenance(const fs::path &folder, const Scene &scene, const std::string &command_line,
                       const std::map<std::string, double> &specimen)
 {
-  const auto has = [&](const char *name) { return specimen.find(name) != specimen.end(); };
+  const auto has = [&](const char *name) { return specimen.contains(name); };
   const std::string seed = has("seed")                   ? fmt::format("{:g}", specimen.at("seed"))
                            : scene.specimen.file.empty() ? std::to_string(scene.grading.seed)
                                                          : "unknown";

@@ -45,6 +45,7 @@ double share_above(const Motion &motion, double frequency)
     }
   return all > 0 ? 1 - low / all : 0;
 }
+
 /// Time of the last sample that is not 0, s.
 double end_of_shaking(const Motion &motion)
 {

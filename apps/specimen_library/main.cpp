@@ -26,7 +26,6 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 #include <set>
 
 namespace
@@ -91,7 +90,7 @@ std::string density_text(const SpecimenSpec &spec)
     return fmt::format("D_r {}", number_text(*spec.relative_density));
   if (spec.void_ratio)
     return fmt::format("e {}", number_text(*spec.void_ratio));
-  return fmt::format("prepared at {:.2f} deg", std::atan(*spec.preparation_friction) * 180 / std::numbers::pi);
+  return fmt::format("prepared at {:.2f} deg", degrees(*spec.preparation_friction));
 }
 
 Scene checked_scene(const Options &options)

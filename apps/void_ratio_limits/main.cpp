@@ -23,12 +23,12 @@
 #include "dem/measure/summary.hpp"
 #include "dem/prepare/compact.hpp"
 #include "dem/prepare/pluviate.hpp"
+#include "dem/prepare/relative_density.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace
 {
@@ -56,10 +56,7 @@ struct Dense
   double seconds = 0;
 };
 
-double friction_degrees(const Scene &scene)
-{
-  return scene.contact->friction > 0 ? std::atan(scene.contact->friction) * 180 / std::numbers::pi : 0;
-}
+double friction_degrees(const Scene &scene) { return degrees(scene.contact->friction); }
 
 double away_from_walls(const Snapshot &state)
 {

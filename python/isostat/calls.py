@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What long calls share: their warnings, and signals that end them.   tested: tests/python/warnings_test.py"""
 import contextlib
+import os
 import pathlib
 import signal
 import sys
@@ -34,7 +35,7 @@ def warned(name, quiet):
 
 def depth_of_caller():
     """As stacklevel: of the first caller outside of this package, so that the warning names his line."""
-    own = (str(pathlib.Path(__file__).parent / "_")[:-1], contextlib.__file__)
+    own = (str(pathlib.Path(__file__).parent) + os.sep, contextlib.__file__)
     frame, depth = sys._getframe(1), 1
     while frame.f_back and frame.f_code.co_filename.startswith(own):
         frame, depth = frame.f_back, depth + 1

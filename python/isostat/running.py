@@ -111,8 +111,6 @@ class Run:
             folder = pathlib.Path(name_of_folder)
             (folder / "summary.json").write_text(json.dumps(self.summary or {"title": self.scene.title}), encoding="utf-8")
             (folder / "scene.toml").write_text(self.scene.text, encoding="utf-8")
-            if self.summary:
-                (folder / "summary.json").write_text(json.dumps(self.summary), encoding="utf-8")
             with open(folder / "history.csv", "w", newline="", encoding="utf-8") as file:
                 writer = csv.writer(file)
                 writer.writerow(f"{column} ({self.history.units[column]})" for column in self.history)

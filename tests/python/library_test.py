@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """From a scene to a column of packings without leaving Python: libraries of specimens, and a single specimen as one."""
-import pathlib
 import pickle
-import tempfile
 import unittest
 
 import numpy as np
 
-from package import CONTACT, ToleranceTest, isostat
+from package import CONTACT, FolderTest, isostat
 from isostat import column
 
 SPECIMEN = {"grading": {"grains": 150, "cloud_edge": "2.466 mm"}, "contact": {"young": "0.5 GPa", **CONTACT},
@@ -20,14 +18,12 @@ COLUMN = {"mesh": {"degree": 1}, "water": {"drainage": "undrained"}, "load": {"s
           "analysis": {"duration": "0.01 s"}}
 
 
-class LibraryTest(ToleranceTest):
+class LibraryTest(FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.scene = isostat.Scene(SPECIMEN)
-        cls.specimens = [isostat.prepare(cls.scene.with_(**{"grading.seed": seed}), cache=cls.folder / "specimens",
+        cls.specimens = [isostat.prepare(cls.scene.with_(**{"grading.seed": seed}), cache=cls.cache,
                                          quiet=True) for seed in (1, 2)]
 
     def run_column(self, library, name, **grains):

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the Python package share: the package from the build tree whose programs are given."""
 import pathlib
+import shutil
 import sys
+import tempfile
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / "apps")]
 from support import BIN as BINARIES, TIME_LIMIT, ToleranceTest  # noqa: E402  (the path comes first)
@@ -9,6 +11,29 @@ from support import BIN as BINARIES, TIME_LIMIT, ToleranceTest  # noqa: E402  (t
 sys.path[:0] = [str(BINARIES.parent / "python")]
 import isostat  # noqa: E402
 
-__all__ = ["BINARIES", "TIME_LIMIT", "ToleranceTest", "isostat"]
+__all__ = ["BINARIES", "TIME_LIMIT", "FolderTest", "ToleranceTest", "isostat"]
 
 CONTACT = {"friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5}, "twisting": {"stiffness": 0.3}}
+SMALL_SCENE = """title = "small"
+[grading]
+grains = 200
+cloud_edge = "2.7 mm"
+[contact]
+friction = "18 deg"
+rolling = {}
+[specimen]
+domain = "periodic-cell"
+preparation_friction = "12 deg"
+[[stage]]
+kind = "undrained-monotonic"
+strain = 1e-3
+"""
+
+
+class FolderTest(ToleranceTest):
+    """All tests of a class share a folder, and in it a cache of specimens."""
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.cache = cls.folder / "specimens"

@@ -4,32 +4,16 @@
 import concurrent.futures
 import copy
 import multiprocessing
-import pathlib
 import pickle
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
 import numpy as np
 
-from package import BINARIES, ToleranceTest, isostat
+from package import BINARIES, SMALL_SCENE, FolderTest, isostat
 
-SCENE = """title = "small"
-[grading]
-grains = 200
-cloud_edge = "2.7 mm"
-[contact]
-friction = "18 deg"
-rolling = {}
-[specimen]
-domain = "periodic-cell"
-preparation_friction = "12 deg"
-[[stage]]
-kind = "undrained-monotonic"
-strain = 1e-3
-max_steps = 300
-"""
+SCENE = SMALL_SCENE + "max_steps = 300\n"
 
 
 def run(seed, output, cache):
@@ -41,13 +25,11 @@ def refused(_):
     isostat.Scene(title="no specimen")
 
 
-class PickleTest(ToleranceTest):
+class PickleTest(FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.done = run(1, None, cls.folder / "specimens")
+        super().setUpClass()
+        cls.done = run(1, None, cls.cache)
 
     def assert_same_packing(self, one, other):
         for name in ("positions", "velocities", "spins", "radii", "ids", "contact_pairs", "normal_forces",
@@ -59,7 +41,7 @@ class PickleTest(ToleranceTest):
         packing = self.done.snapshot
         for again in (pickle.loads(pickle.dumps(packing)), copy.deepcopy(packing)):
             self.assert_same_packing(again, packing)
-        specimen = isostat.prepare(SCENE, cache=self.folder / "specimens")
+        specimen = isostat.prepare(SCENE, cache=self.cache)
         again = pickle.loads(pickle.dumps(specimen))
         self.assertEqual((again.numbers, again.provenance), (specimen.numbers, specimen.provenance))
         self.assert_same_packing(again.snapshot, specimen.snapshot)
@@ -67,8 +49,8 @@ class PickleTest(ToleranceTest):
     def test_of_other_processes(self):
         with (unittest.mock.patch.object(sys, "argv", [sys.argv[0], str(BINARIES)]),  # what they import looks at it
               concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as processes):
-            in_memory = processes.submit(run, 1, None, self.folder / "specimens")
-            in_folder = processes.submit(run, 1, self.folder / "results", self.folder / "specimens")
+            in_memory = processes.submit(run, 1, None, self.cache)
+            in_folder = processes.submit(run, 1, self.folder / "results", self.cache)
             wrong = processes.submit(refused, None)
             with self.assertRaisesRegex(isostat.InputError, "must have exactly one"):
                 wrong.result()

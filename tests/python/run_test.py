@@ -4,17 +4,14 @@
 import contextlib
 import io
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
 import numpy as np
 
-from package import BINARIES, TIME_LIMIT, ToleranceTest, isostat
+from package import BINARIES, TIME_LIMIT, FolderTest, isostat
 
 SCENE = """title = "small"
 [grading]
@@ -37,12 +34,10 @@ strain = 1e-3
 '''
 
 
-class RunTest(ToleranceTest):
+class RunTest(FolderTest):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp())
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
-        cls.cache = cls.folder / "specimens"
+        super().setUpClass()
         cls.scene = isostat.Scene(SCENE)
         cls.specimen = isostat.prepare(cls.scene, cache=cls.cache)
 

@@ -2,43 +2,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Warnings of runs are those of Python, with the name of the run; signals that end a process leave a checkpoint."""
 import os
-import pathlib
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 import warnings
 
 import numpy as np
 
-from package import BINARIES, TIME_LIMIT, ToleranceTest, isostat
+from package import BINARIES, SMALL_SCENE, TIME_LIMIT, FolderTest, isostat
 
-SCENE = """title = "small"
-[grading]
-grains = 200
-cloud_edge = "2.7 mm"
-[contact]
-friction = "18 deg"
-rolling = {}
-[specimen]
-domain = "periodic-cell"
-preparation_friction = "12 deg"
-[[stage]]
-kind = "undrained-monotonic"
-strain = 1e-3
-max_steps = 600
-"""
+SCENE = SMALL_SCENE + "max_steps = 600\n"
 TEXT = "stage 0 (undrained-monotonic): ended by max_steps = 600 before any of its conditions was met: strain = 0.1 %"
 
 
-class WarningsTest(ToleranceTest):
+class WarningsTest(FolderTest):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp())
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
-        cls.cache = cls.folder / "specimens"
+        super().setUpClass()
         cls.scene = isostat.Scene(SCENE)
         isostat.prepare(cls.scene, cache=cls.cache)
 
