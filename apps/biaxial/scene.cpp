@@ -70,7 +70,7 @@ constexpr Key block_keys[] = {
 
 constexpr Key test_keys[] = {
   {.path = "soil.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
-   .text = "Each point has one of so many seeds, from `realisation` on, by lot; 1: all points have the same.",
+   .text = "Each point has one of this many seeds, from `realisation` on, by lot; 1: all points have the same.",
    .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
 
   {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",

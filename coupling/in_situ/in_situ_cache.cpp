@@ -136,7 +136,7 @@ void InSituCache::write(const std::vector<InSituState> &states) const
     {
       const std::string aside = path_.string() + ".damaged";
       std::filesystem::rename(path_, aside);
-      warn(fmt::format("states in situ were made anew, because their cache was damaged; it is kept as {}", aside));
+      warn(fmt::format("states in situ were made again, because their cache was damaged; it is kept as {}", aside));
     }
   std::set<std::string> taken;
   if (std::filesystem::exists(path_)) // as it is now, another program may have added something

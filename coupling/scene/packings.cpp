@@ -50,7 +50,7 @@ constexpr Key drawn_specimens[] = {
    .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
    .field = [](SpecimenRequest &r) -> Field { return &r.library; }},
   {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "Each Gauss point has one of so many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
+   .text = "Each Gauss point has one of this many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
            "many that differ); 1: all points have the same, brought to the stress of their depth. "
            "1, or at least `grains.realisations`.",
    .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},

@@ -123,7 +123,7 @@ public:
   /// The same without the volumetric part of ln(I + dH): an element whose pores are closed.
   RveResponse undrained(const Mat3 &displacement_gradient);
   /// Takes the grains to balance at the present strain: what stress(), stiffness() and small probes of it then mean
-  /// does not hang on how fast the element was strained before.
+  /// does not depend on how fast the element was strained before.
   RveResponse relax(const BalanceSpec &spec = {});
   /// Prescribed strain and target stress: drained, K0, constant p' and other tests. Rejected at once: a target that
   /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1.
