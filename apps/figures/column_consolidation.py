@@ -79,7 +79,8 @@ def settlement(column):
     figure, axes = plt.subplots(figsize=(5.8, 3.6), layout="constrained")
     axes.plot(time, 1e3 * values, color=BLUE, linewidth=2.4, alpha=0.75, label="computed")
     if exact:
-        axes.plot(time, 1e3 * exact.settlement(time), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
+        fine = np.geomspace(time[0], time[-1], 400)
+        axes.plot(fine, 1e3 * exact.settlement(fine), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
                   label="Terzaghi")
         last = exact.height * exact.load / exact.modulus
         report("settlement", np.abs(values - exact.settlement(time)) / last, time, exact, "of the last one")

@@ -121,7 +121,7 @@ def elastic(folder, rock=None, end=20.0, motion=ricker):
 # --- consolidation ---------------------------------------------------------------------------------------------------
 
 
-def consolidation(folder):
+def consolidation(folder, rows=200):
     """The scene terzaghi: 200 cells of finite differences, exact in time."""
     n, height, load, modulus, storage = 200, 10.0, 100e3, 100e6, 0.33 / 2.2e9
     p0, c = load / (1 + storage * modulus), 1e-6 / 9810 / (1 / modulus + storage)
@@ -129,7 +129,7 @@ def consolidation(folder):
     matrix = np.diag(np.full(n, 2.0)) - np.eye(n, k=1) - np.eye(n, k=-1)
     matrix[0, 0], matrix[-1, -1] = 3.0, 1.0  # drained at the surface, half a cell away; no flow at the base
     values, vectors = np.linalg.eigh(matrix * c / h**2)
-    t = np.geomspace(1, 20000, 200)
+    t = np.geomspace(1, 20000, rows)
     u = p0 * np.exp(-np.outer(t, values)) * (vectors.T @ np.ones(n)) @ vectors.T
     depth = h * (np.arange(n) + 0.5)
     history = {"time": t, "settlement": h / modulus * (load - u).sum(axis=1), "d0_u": u[:, n // 2], "d1_u": u[:, -1]}

@@ -20,6 +20,7 @@ sys.path[:0] = [str(APPS), str(ROOT / "scripts")]
 import column_fixture as fixture  # noqa: E402  (the path comes first)
 from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,  # noqa: E402
                                      transfer_function)
+from figures.column_consolidation import settlement  # noqa: E402
 from figures.column_results import Column, quantity  # noqa: E402
 from figures.column_grains import first  # noqa: E402
 from figures.column_soil import outline  # noqa: E402
@@ -153,6 +154,13 @@ class Figures(ToleranceTest):
         for what in ("pore pressure", "settlement"):
             said = re.search(what + r": largest difference from Terzaghi's series (\S+)", text)
             self.assert_below(float(said[1]), 1e-3, "the fixture is the series with fewer terms")
+
+    def test_the_series_is_smooth_where_rows_are_few(self):
+        column = Column(fixture.consolidation(self.folder / "run", rows=4))
+        (axes,) = settlement(column).axes
+        computed, series = (line.get_xydata() for line in axes.lines)
+        self.assertEqual(len(computed), 4)
+        self.assert_below(np.abs(np.diff(series[:, 1])).max(), 0.02 * np.ptp(series[:, 1]), "no corners are seen")
 
     def test_liquefaction(self):
         self.expect(fixture.liquefaction(self.folder / "run"), "motions", "spectra", "transfer", "profiles",
