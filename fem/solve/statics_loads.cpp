@@ -83,9 +83,8 @@ void Statics::find_held()
       for (unsigned i : given_.back())
         is_held_u_[i] = 1;
     }
-  for (unsigned i : space_.drained_pressures)
-    if (i < is_held_p_.size())
-      is_held_p_[i] = 1;
+  for (unsigned i : held_pressures(space_, is_held_p_.size()))
+    is_held_p_[i] = 1;
   for (unsigned i = 0; i < is_held_u_.size(); ++i)
     if (is_held_u_[i])
       held_u_.push_back(i);

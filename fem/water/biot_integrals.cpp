@@ -42,6 +42,30 @@ std::vector<PorousLayer> porous_layers(const SoilProfile &soil)
   return layers;
 }
 
+std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
+{
+  Vector wet = space.pressure_vector(), flowing = wet; // above 0: in a wet cell, in one that is permeable
+  const std::size_t n_i = space.pressure_nodes_per_cell();
+  for (std::size_t k = 0; k < space.cell_pressures.size(); ++k)
+    if (space.cell_is_wet[k / n_i])
+      {
+        wet.local_element(space.cell_pressures[k]) = 1;
+        if (space.mesh().soil.layers[space.cell_layer[k / n_i]].permeability > 0)
+          flowing.local_element(space.cell_pressures[k]) = 1;
+      }
+  wet.add_ghosts_to_owners();
+  flowing.add_ghosts_to_owners();
+  std::vector<bool> is_drained(n_owned, false);
+  for (unsigned p : space.drained_pressures)
+    if (p < n_owned)
+      is_drained[p] = true;
+  std::vector<unsigned> held;
+  for (unsigned p = 0; p < n_owned; ++p)
+    if (wet.local_element(p) == 0 || (is_drained[p] && flowing.local_element(p) > 0))
+      held.push_back(p);
+  return held;
+}
+
 std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space)
 {
   const SoilProfile &soil = space.mesh().soil;

@@ -13,6 +13,10 @@ struct PorousLayer
 };
 std::vector<PorousLayer> porous_layers(const SoilProfile &soil);
 
+/// Owned pressures that are 0: drained, or not in any cell below the water table. Soil without permeability does not
+/// feel that its surface is drained.   tested: tests/verification/consolidation_test.cpp
+std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned);
+
 /// Water and air at each point.
 std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space);
 /// 1/Q at each point: n/K_f for rigid grains and the stiffness of the fluid in situ, 1/Pa.

@@ -123,6 +123,16 @@ TEST(Consolidation, LoadAtOnceIsCarriedByTheWater)
   EXPECT_EQ(column.statics.time(), 0);
 }
 
+TEST(Consolidation, SoilWithoutPermeabilityKeepsItsWaterAtADrainedFace)
+{
+  Terzaghi column(column_of(5, 0));
+  column.statics.step_undrained();
+  column.statics.step(1e6);
+  for (const Place &corner : column.space.corner)
+    EXPECT_NEAR_BECAUSE(column.pressure(corner[2]), 1, solved) << corner[2];
+  EXPECT_NEAR_BECAUSE(column.settlement() / column.at_once(), 1, solved);
+}
+
 TEST(Consolidation, PressureAndSettlementFollowTerzaghi)
 {
   EXPECT_NEAR_BECAUSE(Terzaghi(column_of(2)).exact_pressure(0, 0.1), 0.949305, 1e-6, "the digits given");
