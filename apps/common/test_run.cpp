@@ -63,6 +63,22 @@ TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSetti
 
 namespace
 {
+/// What describes the end of a run that now comes later. Figures and report stay where the end is the same.
+void remove_end(const fs::path &folder, bool same_scene)
+{
+  std::vector<fs::path> files = {folder / "summary.json", folder / "summary.txt"};
+  std::error_code none;
+  if (!same_scene || !fs::exists(files[0]))
+    {
+      files.push_back(folder / "report.html");
+      for (const fs::directory_entry &figure : fs::directory_iterator(folder / "figures", none))
+        if (figure.path().filename().string().starts_with("fig_"))
+          files.push_back(figure.path());
+    }
+  for (const fs::path &file : files)
+    fs::remove(file);
+}
+
 /// @throws InputError  it speaks of stages that the scene does not have
 void check_stages(const DriveState &state, std::size_t n_stages, const fs::path &folder)
 {
@@ -104,8 +120,7 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   RunOutput output(folder, scene, run.specimen, quiet, run.resumed.get());
   if (run.resumed) // only now: the files may be refused
     {
-      for (const char *of_the_end : {"summary.json", "summary.txt"}) // which is put off
-        fs::remove(folder / of_the_end);
+      remove_end(folder, run.resumed->scene == to_toml(scene));
       write_provenance(folder, scene, command_line, run.specimen);
     }
   Watched observer(output, watcher);

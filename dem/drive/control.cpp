@@ -104,8 +104,8 @@ std::vector<std::string> close_control(const ControlSpec &spec, DriveState &stat
 {
   ControlState &control = state.control;
   std::vector<std::string> lines = lost_now(spec, control.strain, state);
-  for (const ControlledQuantity quantity : all_quantities)
-    if (control.of(quantity).told)
+  for (const ControlledQuantity quantity : all_quantities) // not by what was told: the end may have been put off since
+    if (control.of(quantity).strain > spec.strain_share * control.strain)
       control.losses.push_back(loss_of(state, quantity));
   return lines;
 }

@@ -43,9 +43,16 @@ class Extend(AppTest):
         self.assert_done(self.run_to("whole", 4))
         self.assert_done(self.run_to("parts", 2))
         self.assertEqual(self.summary("parts")["reversals"], 4)
+        stale = [self.folder / "parts" / name for name in ("figures/fig_fabric.png", "report.html")]
+        own = self.folder / "parts/figures/mine.png"
+        own.parent.mkdir()
+        for path in (*stale, own):
+            path.touch()
         result = self.run_to("parts", 4, "--resume")
         self.assert_done(result)
         self.assertIn("until.cycles = 4 (4 reached)", result.stdout)
+        self.assertEqual([path.exists() for path in (*stale, own)], [False, False, True])
+        own.unlink()
         self.assert_same_run("whole", "parts")
         one, other = self.summary("whole"), self.summary("parts")
         self.assertLess(other.pop("steps_since_resumed"), one.pop("steps_since_resumed"))

@@ -64,6 +64,16 @@ TEST_F(Control, LostForMoreThanTheShareIsToldOnceWithItsFigures)
     EXPECT_NE(line.find(part), std::string::npos) << line;
 }
 
+TEST_F(Control, ALossIsNoneWhereTheStageGoesOnForLonger)
+{
+  for (int k = 0; k < 6; ++k)
+    EXPECT_EQ(check(120).size(), k == 5) << "6 % of a strain of 1 %";
+  for (int k = 0; k < 194; ++k)
+    EXPECT_TRUE(check(p0, 0, 0.02).empty());
+  EXPECT_TRUE(close_control(spec, state).empty());
+  EXPECT_TRUE(state.control.losses.empty()) << "3 % of a strain of 2 %, as in one run to there";
+}
+
 TEST_F(Control, AStageOfUnknownStrainIsJudgedAtItsEnd)
 {
   for (int k = 0; k < 20; ++k)
