@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <iterator>
 
@@ -58,6 +59,17 @@ const char *article(std::string_view noun)
   return std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a" : "an";
 }
 
+/// "a, b": the keys of a table of this kind.
+std::string keys_of_kind(const SceneSchema &schema, const Section &section, std::size_t kind)
+{
+  std::vector<std::string_view> names;
+  for (const Key &key : schema.keys)
+    if (key.section() == section.name && (key.kinds == 0 || key.belongs_to(kind)) &&
+        key.name().find('.') == std::string_view::npos) // not what stands in a table within it
+      names.push_back(key.name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Keys of a table belong to its kind.
 void check_kind(const SceneDocument &document, const Section &section, std::size_t kind, const std::string &prefix)
 {
@@ -71,10 +83,11 @@ void check_kind(const SceneDocument &document, const Section &section, std::size
       const bool belongs = kinds == 0 || ((kinds >> kind) & 1u);
       if (!belongs && document.find(path))
         document.refuse(path, fmt::format("does not belong to {} {} of {} \"{}\", only to {}. Remove it or change "
-                                          "the {}.",
+                                          "the {}. Keys of \"{}\": {}.",
                                           article(section.name), section.name, section.kind_key,
                                           schema.kind_key(section)->choices[kind], schema.kinds_text(section, kinds),
-                                          section.kind_key));
+                                          section.kind_key, schema.kind_key(section)->choices[kind],
+                                          keys_of_kind(schema, section, kind)));
     }
 }
 

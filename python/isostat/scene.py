@@ -28,7 +28,10 @@ class Scene(_core.Scene):
         super().__init__(*scene_source(_core.Scene, source, set, sections))
 
     def with_(self, **keys: Any) -> Self:
-        """The scene with other values: scene.with_(**{"motion.damping": 0.05})."""
+        """The scene with other values: scene.with_(**{"motion.damping": 0.05}).
+
+        Another contact law has keys of its own: Scene({**scene.to_dict(), "contact": {"law": "hertz-mindlin"}}).
+        """
         return type(self)(self.text, set=keys)
 
     def __reduce__(self):
@@ -45,6 +48,8 @@ class Scene(_core.Scene):
 
 def scene_source(kind, source, overrides, sections):
     """Text, name and overrides of a compiled class of scenes from what its class in Python takes."""
+    if not isinstance(overrides, dict | None):
+        raise _core.InputError(f"set: must be a dictionary of keys and values, but is {overrides!r}.")
     given = [f"{key}={override_text(value, key)}" for key, value in (overrides or {}).items()]
     if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
         if sections:

@@ -76,6 +76,12 @@ class SceneTest(ToleranceTest):
             isostat.Scene("[grading]\ngrains = -3\n")
         with self.assertRaisesRegex(isostat.InputError, "^motion.damping = None: must be"):
             isostat.Scene(TEXT, set={"motion.damping": None})
+        with self.assertRaisesRegex(isostat.InputError, 'contact.stiffness_ratio = .* of law "hertz-mindlin", only to '
+                                    'linear-rolling.*Keys of "hertz-mindlin": law, young, poisson, exponent, asperity, '
+                                    'friction'):
+            isostat.Scene(TEXT).with_(**{"contact.law": "hertz-mindlin"})
+        other = isostat.Scene({**isostat.Scene(TEXT).to_dict(), "contact": {"law": "hertz-mindlin"}})
+        self.assertEqual(other.law.name, "hertz-mindlin")
         with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: is not there"):
             isostat.Scene("nowhere.toml")
         self.assertTrue(issubclass(isostat.InputError, ValueError))
