@@ -7,6 +7,7 @@
 #include "base/files/hash.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/progress.hpp"
+#include "base/tell.hpp"
 #include "dem/prepare/specimen.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <fmt/format.h>
 #include <list>
 #include <mutex>
+#include <set>
 #include <thread>
 
 namespace isostat
@@ -61,9 +63,13 @@ public:
   }
 
   /// @param seconds  that preparing took; 0 if the specimen came from the cache
-  void done(const Task &task, double seconds)
+  /// @param warnings  of it; what several specimens are warned of is reported once
+  void done(const Task &task, double seconds, const std::vector<std::string> &warnings)
   {
     const std::lock_guard lock(mutex_);
+    for (const std::string &warning : warnings)
+      if (reported_.insert(warning).second)
+        tell(fmt::format("warning: {}: {}\n", task.name, warning));
     std::error_code gone;
     fs::remove(lock_file(task), gone);
     ++n_done_;
@@ -113,6 +119,7 @@ private:
   fs::path cache_;
   PreparationShare share_;
   std::list<Task *> left_;
+  std::set<std::string> reported_;
   std::size_t n_done_ = 0, n_prepared_ = 0;
   double seconds_ = 0;
 };
@@ -144,6 +151,7 @@ void work(Queue &queue, const fs::path &cache)
       const Stopwatch watch;
       Task *task = taken->first;
       TaskObserver observer(queue, *task);
+      const WarningsTaken warned;
       try
         {
           task->specimen = obtain_specimen(task->scene, cache, observer);
@@ -157,7 +165,7 @@ void work(Queue &queue, const fs::path &cache)
           task->failure = error.what();
           task->bad_input = dynamic_cast<const InputError *>(&error) != nullptr;
         }
-      queue.done(*task, observer.worked ? watch.seconds() : 0);
+      queue.done(*task, observer.worked ? watch.seconds() : 0, warned.lines);
     }
 }
 } // namespace

@@ -4,12 +4,14 @@
 #include "base/error.hpp"
 #include "dem/contact/law_parameters.hpp"
 #include "dem/measure/stress.hpp"
+#include "dem/prepare/grading.hpp"
 #include "dem/prepare/relative_density.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <map>
 
 namespace isostat
@@ -92,6 +94,40 @@ void check_stiffness(const Scene &scene, const Snapshot &state, const std::strin
   warnings.push_back(said + "; the first stage brings it back to its stress, at another void ratio");
 }
 
+/// Keys of a grading that would have made other sizes, in their words; defaults are not held against the packing.
+std::vector<std::string> other_sizes(const GradingSpec &said, const Packing &grains)
+{
+  constexpr double unnoticed = 0.01; // of diameters
+  const GradingSpec usual;
+  std::vector<std::string> keys;
+  std::vector<double> radii = grains.radii(), made = sample_diameters(grading_curve(said), radii.size());
+  std::ranges::sort(radii, std::greater());
+  const double solid = grains.solid_volume(), scale = upscaling_factor(made, solid);
+  double apart = 0, sum = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    {
+      apart += std::abs(scale * made[i] - 2 * radii[i]);
+      sum += 2 * radii[i];
+    }
+  if (apart > unnoticed * sum)
+    {
+      if (!said.table.empty())
+        keys.push_back(fmt::format("grading.table = {} sizes", said.table.size()));
+      else if (said.curve != usual.curve)
+        keys.push_back(fmt::format("grading.curve = \"{}\"", said.curve));
+      if (said.finest_percent != usual.finest_percent || said.coarsest_percent != usual.coarsest_percent)
+        keys.push_back(fmt::format("grading.truncate = [{:g}, {:g}]", said.finest_percent, said.coarsest_percent));
+    }
+  if (!said.d50 && std::abs(said.solid_fraction * std::pow(said.cloud_edge, 3) / solid - 1) > 3 * unnoticed)
+    {
+      if (said.cloud_edge != usual.cloud_edge)
+        keys.push_back(fmt::format("grading.cloud_edge = {:g} mm", 1e3 * said.cloud_edge));
+      if (said.solid_fraction != usual.solid_fraction)
+        keys.push_back(fmt::format("grading.solid_fraction = {:g}", said.solid_fraction));
+    }
+  return keys;
+}
+
 /// Values that are those of the packing, whatever the scene says; defaults are not held against it.
 void note_values(const Scene &scene, const Specimen &given, const std::string &name, std::vector<std::string> &warnings)
 {
@@ -105,6 +141,9 @@ void note_values(const Scene &scene, const Specimen &given, const std::string &n
     note("grading.grains", std::to_string(said.grains), std::to_string(grains.n_grains()));
   if (said.d50 && std::abs(grains.d50() / *said.d50 - 1) > 0.01)
     note("grading.d50", fmt::format("{:.4g} mm", 1e3 * *said.d50), fmt::format("{:.4g} mm", 1e3 * grains.d50()));
+  for (const std::string &key : other_sizes(said, grains))
+    words.push_back(
+        fmt::format("{} (grains of {:.4g} to {:.4g} mm)", key, 2e3 * grains.min_radius(), 2e3 * grains.max_radius()));
   if (const auto seed = given.numbers.find("seed");
       seed != given.numbers.end() && said.seed != usual.seed && seed->second != static_cast<double>(said.seed))
     note("grading.seed", std::to_string(said.seed), fmt::format("{:g}", seed->second));
@@ -124,6 +163,12 @@ void note_values(const Scene &scene, const Specimen &given, const std::string &n
       std::abs(made->second - degrees(*spec.preparation_friction)) > 0.01)
     note("specimen.preparation_friction", fmt::format("{:.4g} deg", degrees(*spec.preparation_friction)),
          fmt::format("{:.4g} deg", made->second));
+  if (const auto has = given.provenance.find("consolidation"); spec.consolidation != SpecimenSpec{}.consolidation &&
+                                                               has != given.provenance.end() &&
+                                                               has->second != spec.consolidation)
+    note("specimen.consolidation", spec.consolidation, has->second);
+  if (!spec.file.empty() && spec.file != name)
+    note("specimen.file", spec.file, name);
   if (!words.empty())
     warnings.push_back(fmt::format("{}: is taken as it is; in brackets what it has, where the scene's values have no "
                                    "effect: {}",
@@ -137,7 +182,7 @@ void note_pressure(const Scene &scene, const Snapshot &state, const std::string 
       scene.specimen.consolidation != "isotropic")
     return;
   const double p = invariants(contact_stress(state)).p;
-  if (const double said = scene.specimen.pressure; std::abs(p - said) > 0.05 * said)
+  if (const double said = scene.specimen.pressure; said != SpecimenSpec{}.pressure && std::abs(p - said) > 0.05 * said)
     warnings.push_back(fmt::format("{}: its mean effective stress is {:.4g} kPa, specimen.pressure = {:g} kPa; the "
                                    "test starts from what it has. Bring it there by a stage `compress`",
                                    name, p / 1e3, said / 1e3));

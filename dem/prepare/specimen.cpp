@@ -127,8 +127,7 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
                              uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
   if (!spec.has_limits())
-    observer.event(
-        "warning: D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
+    warn("D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   PreparedDensity prepared;
   Specimen specimen;
   if (spec.preparation_friction)
@@ -153,10 +152,10 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
 }
 
 /// What check_given_packing() says of it.
-void note_differences(const Scene &scene, const Specimen &given, const std::string &name, RunObserver &observer)
+void note_differences(const Scene &scene, const Specimen &given, const std::string &name)
 {
   for (const std::string &warning : check_given_packing(scene, given, name))
-    observer.event("warning: " + warning);
+    warn(warning);
 }
 
 Specimen import(const Scene &scene, RunObserver &observer)
@@ -166,7 +165,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
   if (path.extension() == ".h5")
     {
       Specimen specimen = read_stored_packing(path, place.entry);
-      note_differences(scene, specimen, scene.specimen.file, observer);
+      note_differences(scene, specimen, scene.specimen.file);
       specimen.state.law = scene.contact;
       describe(scene, specimen);
       return specimen;
@@ -179,10 +178,10 @@ Specimen import(const Scene &scene, RunObserver &observer)
   for (const std::string &warning : check_packing(read.state, path.string(), remedy))
     read.notes.push_back(warning);
   for (const std::string &note : read.notes)
-    observer.event(fmt::format("warning: {}: {}", path.string(), note));
+    warn(fmt::format("{}: {}", path.string(), note));
   Specimen specimen;
   specimen.state = sorted_along_curve(read.state);
-  note_differences(scene, specimen, scene.specimen.file, observer);
+  note_differences(scene, specimen, scene.specimen.file);
   specimen.provenance["title"] = scene.title;
   specimen.provenance["recipe"] = "imported from " + path.string();
   describe(scene, specimen);
@@ -191,7 +190,7 @@ Specimen import(const Scene &scene, RunObserver &observer)
 }
 
 /// A friction left out is none: says so where the packing is made with more than the test will ever have.
-void note_friction(const Scene &scene, RunObserver &observer)
+void note_friction(const Scene &scene)
 {
   double friction = scene.contact->friction;
   for (const Stage &stage : scene.stages)
@@ -199,30 +198,30 @@ void note_friction(const Scene &scene, RunObserver &observer)
       friction = std::max(friction, set->friction);
   const double made_with = scene.specimen.preparation_friction.value_or(0);
   if (made_with > friction)
-    observer.event(fmt::format("warning: the packing is prepared with a friction of {:.4g} deg and tested with {:.4g} "
-                               "deg; give contact.friction the angle of the test, or prepare with less",
-                               degrees(made_with), degrees(friction)));
+    warn(fmt::format("the packing is prepared with a friction of {:.4g} deg and tested with {:.4g} "
+                     "deg; give contact.friction the angle of the test, or prepare with less",
+                     degrees(made_with), degrees(friction)));
 }
 
 /// What its friction costs a packing that is made with more.
-void note_void_ratio(const Scene &scene, const Specimen &specimen, RunObserver &observer)
+void note_void_ratio(const Scene &scene, const Specimen &specimen)
 {
   const double made_with = scene.specimen.preparation_friction.value_or(0);
   const auto compressed = specimen.numbers.find("void_ratio_compressed"); // not in files of older versions
   if (made_with > scene.contact->friction && compressed != specimen.numbers.end())
-    observer.event(fmt::format(
-        "warning: with the friction of {:.4g} deg of the test in place of {:.4g} deg the void ratio "
-        "falls from {:.4f} to {:.4f}; preparation_friction does not set it",
-        degrees(scene.contact->friction), degrees(made_with), compressed->second, specimen.numbers.at("void_ratio")));
+    warn(fmt::format("with the friction of {:.4g} deg of the test in place of {:.4g} deg the void ratio "
+                     "falls from {:.4f} to {:.4f}; preparation_friction does not set it",
+                     degrees(scene.contact->friction), degrees(made_with), compressed->second,
+                     specimen.numbers.at("void_ratio")));
 }
 
 /// The default limits of the void ratio belong to the grains of the paper.
-void note_limits(const Scene &scene, RunObserver &observer)
+void note_limits(const Scene &scene)
 {
   if (const std::string other = has_default_limits(scene.specimen) ? foreign_to_default_limits(scene) : "";
       !other.empty())
-    observer.event(
-        fmt::format("warning: D_r is relative to e_min = {:g} and e_max = {:g} of Karlsruhe fine sand with grains of "
+    warn(
+        fmt::format("D_r is relative to e_min = {:g} and e_max = {:g} of Karlsruhe fine sand with grains of "
                     "friction 18 deg "
                     "and rolling = {{ stiffness = 0.3, limit = 0.5 }}, but this scene has {}. Find its own limits with "
                     "void_ratio_limits and give specimen.e_min and specimen.e_max",
@@ -278,9 +277,9 @@ std::string specimen_recipe(const Scene &scene)
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
 }
 
-Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer)
+Specimen given_specimen(const Scene &scene, Specimen given)
 {
-  note_differences(scene, given, "the specimen that is given", observer);
+  note_differences(scene, given, "the specimen that is given");
   count_from_here(given.state);
   given.state.law = scene.contact;
   Scene described = scene;
@@ -293,8 +292,8 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
 {
   if (!scene.specimen.file.empty())
     return import(scene, observer);
-  note_friction(scene, observer);
-  note_limits(scene, observer);
+  note_friction(scene);
+  note_limits(scene);
   const std::string recipe = specimen_recipe(scene);
   const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
   if (std::optional<Specimen> cached = from_cache(path, recipe, observer))
@@ -302,12 +301,12 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;
       describe(scene, *cached); // an older version may have told less
-      note_void_ratio(scene, *cached, observer);
+      note_void_ratio(scene, *cached);
       return *cached;
     }
   Specimen specimen = prepare(scene, observer, threads);
   keep(specimen, path, observer);
-  note_void_ratio(scene, specimen, observer);
+  note_void_ratio(scene, specimen);
   return specimen;
 }
 } // namespace isostat

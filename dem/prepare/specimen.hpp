@@ -24,7 +24,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
 /// A packing that a program gives, as the specimen of a scene: time and strain count from here, its figures are those
 /// of the packing, the contact law is the scene's.   @throws InputError  as check_given_packing()
 /// tested: tests/python/run_test.py
-Specimen given_specimen(const Scene &scene, Specimen given, RunObserver &observer);
+Specimen given_specimen(const Scene &scene, Specimen given);
 
 /// All that a prepared specimen depends on, as text: the key of the cache and part of its provenance.
 std::string specimen_recipe(const Scene &scene);

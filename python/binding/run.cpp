@@ -96,19 +96,11 @@ private:
   }
 };
 
-/// Preparation that Ctrl-C can stop, and that warns as a run does.
+/// Preparation that Ctrl-C can stop.
 class WatchedPreparation : public PreparationOutput
 {
 public:
   using PreparationOutput::PreparationOutput;
-  void event(const std::string &line) override
-  {
-    constexpr std::string_view head = "warning: ";
-    if (line.starts_with(head))
-      warn(line.substr(head.size()));
-    else
-      PreparationOutput::event(line);
-  }
   bool after_step(const Assembly &assembly, const DriveState &state, const Observation &seen) override
   {
     return signals_.go_on() && PreparationOutput::after_step(assembly, state, seen);
@@ -174,8 +166,7 @@ void name_kept_specimen(Scene &scene)
 /// From a specimen that is given. It is kept with the results, so that their scene can be run again.
 TestRun begin_from(const Specimen &given, Request &request, const StepSettings &how)
 {
-  WatchedPreparation preparation(request.quiet);
-  const Specimen specimen = given_specimen(request.scene, given, preparation);
+  const Specimen specimen = given_specimen(request.scene, given);
   std::optional<FileLock> folder;
   if (!request.output.empty())
     {
@@ -327,13 +318,13 @@ void bind_run(py::module_ &module)
       .def_readonly("snapshot", &Result::snapshot)
       .def_property_readonly("history", &history_of)
       .def_property_readonly("units", &units_of);
-  module.def("run",
-             [](const Scene &scene, const std::string &output, const std::string &cache, const Specimen *specimen,
-                bool overwrite, bool resume, Threads threads, bool quiet, const py::list &warnings,
-                const py::object &on_record, const py::object &on_step, Given<std::uint64_t, "every"> every) {
-               const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
-               return run({scene, output, cache, use, static_cast<int>(threads), quiet, specimen}, warnings, on_record,
-                          on_step, every);
-             });
+  module.def("run", [](const Scene &scene, const std::string &output, const std::string &cache,
+                       const Specimen *specimen, Given<bool, "overwrite"> overwrite, Given<bool, "resume"> resume,
+                       Threads threads, bool quiet, const py::list &warnings, const py::object &on_record,
+                       const py::object &on_step, Given<std::uint64_t, "every"> every) {
+    const FolderUse use = resume ? FolderUse::resume : folder_use(overwrite);
+    return run({scene, output, cache, use, static_cast<int>(threads), quiet, specimen}, warnings, on_record, on_step,
+               every);
+  });
 }
 } // namespace isostat::python

@@ -63,8 +63,33 @@ TEST(GivenPacking, ItsOwnValuesCountAndAreNamed)
               ElementsAre(HasSubstr("specimen.void_ratio = 0.7 (8.5")));
   EXPECT_THAT(notes(scene("", usual, at_pressure("relative_density = 0.5"))),
               ElementsAre(HasSubstr("specimen.relative_density = 0.5 (-28")));
-  EXPECT_THAT(notes(scene("", usual, file)),
-              ElementsAre(HasSubstr("specimen.pressure = 200 kPa; the test starts from what it has")));
+  EXPECT_THAT(notes(scene("", usual, "file = \"p.h5\"\npressure = \"150 kPa\"")),
+              ElementsAre(HasSubstr("specimen.pressure = 150 kPa; the test starts from what it has")));
+  EXPECT_THAT(notes(scene("", usual, file)), ElementsAre()) << "a default";
+}
+
+TEST(GivenPacking, SizesAreThoseThatTheGradingWouldMake)
+{
+  const auto notes_of = [](const std::string &grading) { return notes(scene(grading, usual, at_pressure())); };
+  const std::string two_percent = "table = [[\"1.98 mm\", 0], [\"2.02 mm\", 100]]\n";
+  EXPECT_THAT(notes_of(two_percent + "cloud_edge = \"2.9397 mm\""), ElementsAre()) << "the solid volume of the grains";
+  EXPECT_THAT(notes_of(two_percent + "cloud_edge = \"3.1 mm\""),
+              ElementsAre(HasSubstr("grading.cloud_edge = 3.1 mm (grains of 2 to 2 mm)")));
+  EXPECT_THAT(notes_of("table = [[\"1 mm\", 0], [\"2.02 mm\", 100]]\nd50 = \"2 mm\""),
+              ElementsAre(HasSubstr("grading.table = 2 sizes (grains of 2 to 2 mm)")));
+  EXPECT_THAT(notes_of("truncate = [0, 90]"), ElementsAre(HasSubstr("grading.truncate = [0, 90] (")));
+}
+
+TEST(GivenPacking, AnotherWayToASpecimenIsNamed)
+{
+  Specimen given = pressed();
+  given.provenance["consolidation"] = "isotropic";
+  EXPECT_THAT(
+      check_given_packing(scene("", usual, at_pressure("preparation_friction = \"8 deg\"\nconsolidation = \"k0\"")),
+                          given, "p.h5"),
+      testing::Contains(HasSubstr("specimen.consolidation = k0 (isotropic)")));
+  EXPECT_THAT(check_given_packing(scene("", usual, at_pressure()), given, "the specimen that is given"),
+              ElementsAre(HasSubstr("specimen.file = p.h5 (the specimen that is given)")));
 }
 
 TEST(GivenPacking, AnotherStiffnessNeedsConsolidation)
