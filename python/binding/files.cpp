@@ -76,6 +76,9 @@ Specimen read_packing(const fs_path &path, const std::string &length_unit, doubl
 std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen> specimens, bool overwrite,
                                        bool append)
 {
+  if (overwrite && append)
+    throw InputError("overwrite and append exclude each other: one replaces the library that the other adds to. Give "
+                     "one of them.");
   std::error_code ignored;
   const bool extend = append && std::filesystem::exists(path, ignored);
   if (path.extension() != ".h5")
@@ -109,12 +112,23 @@ std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen
   return names;
 }
 
-std::map<std::string, std::map<std::string, double>> numbers_of_library(const fs_path &path)
+std::map<std::string, std::map<std::string, double>> numbers_of_library(const Path &path)
 {
   std::map<std::string, std::map<std::string, double>> entries;
-  for (const LibraryEntry &entry : list_library(path))
+  for (const LibraryEntry &entry : list_library(path.value))
     entries[entry.name] = entry.numbers;
   return entries;
+}
+
+/// Columns of history.h5, with all their digits.
+std::map<std::string, std::vector<double>> read_series(const Path &path)
+{
+  const hdf5::File file = hdf5::File::open(path.value);
+  const hdf5::Group series = file.root().group("history");
+  std::map<std::string, std::vector<double>> columns;
+  for (const std::string &name : series.names())
+    columns[name] = series.read<double>(name);
+  return columns;
 }
 
 PackingFormat wanted_format(const fs_path &path, const std::string &format)
@@ -184,21 +198,24 @@ void bind_files(py::module_ &module)
       "read_specimen",
       [](const Path &file) {
         const SpecimenPlace place = specimen_place(file.value.string());
-        return place.entry.empty() ? read_specimen(std::filesystem::path(place.path))
-                                   : read_library_entry(place.path, place.entry);
+        return place.entry.empty() && !is_specimen_library(place.path) ? read_specimen(fs_path(place.path))
+                                                                       : read_library_entry(place.path, place.entry);
       },
       py::arg("path"), "A specimen file, or one of a library: \"library.h5#s0007\".");
   module.def("write_specimen", to_new_file<"specimen", Specimen>(&write_specimen), py::arg("path"), py::arg("specimen"),
              py::kw_only(), py::arg("overwrite") = false, "An HDF5 file that `specimen.file` of a scene may name.");
   module.def(
-      "write_library", &write_library, py::arg("path"), py::arg("specimens"), py::kw_only(),
-      py::arg("overwrite") = false, py::arg("append") = false,
+      "write_library",
+      [](const Path &path, Given<std::vector<Specimen>, "specimens"> specimens, Overwrite overwrite,
+         Given<bool, "append"> append) { return write_library(path, specimens.value, overwrite, append); },
+      py::arg("path"), py::arg("specimens"), py::kw_only(), py::arg("overwrite") = false, py::arg("append") = false,
       "Writes periodic specimens into one file, as the program specimen_library does: a column takes its packings\n"
       "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
       "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
+  module.def("read_series", &read_series, py::arg("path"), "Columns of a history.h5, with all their digits.");
   module.def(
       "import_tables",
       [](const Path &path, AnyLaw law, Density density) {

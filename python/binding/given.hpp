@@ -56,6 +56,8 @@ std::string expected()
     return "a whole number";
   else if constexpr (std::floating_point<T>)
     return "a number";
+  else if constexpr (requires { typename T::iterator; })
+    return "a list, each item " + expected<typename T::value_type>();
   else if constexpr (requires { typename T::value_type; })
     return expected<typename T::value_type>() + ", or None";
   else // a class of this module

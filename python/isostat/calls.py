@@ -13,6 +13,21 @@ from isostat import _core
 STOPPING = (signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGXCPU)  # and SIGINT, as the programs have them
 
 
+def path_text(name, value):
+    """An argument that is a path, as text.   Raises InputError with its name"""
+    try:
+        return os.fspath(value)
+    except TypeError:
+        raise _core.InputError(f"{name}: must be a path, but is {value!r}.") from None
+
+
+def check_use(overwrite, resume):
+    """Raises InputError where a run is to replace what it is to go on from."""
+    if overwrite and resume:
+        raise _core.InputError("overwrite and resume exclude each other: one replaces the results that the other goes on "
+                               "from. Give one of them.")
+
+
 @contextlib.contextmanager
 def warned(name, quiet):
     """Gives a list for the warnings of a call, and warns of them when the call is over: "name: text".

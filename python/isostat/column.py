@@ -10,7 +10,7 @@ import os
 import numpy as np
 
 from isostat import _core
-from isostat.calls import warned
+from isostat.calls import check_use, path_text, warned
 from isostat.results import Results
 from isostat.scene import Scene, scene_source
 
@@ -110,9 +110,12 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
     """
     if not isinstance(scene, ColumnScene):
         raise _core.InputError(f"scene: must be an isostat.column.ColumnScene, but is {scene!r}.")
-    folder = os.fspath(output) if output is not None else scene.folder
+    check_use(overwrite, resume)
+    folder = path_text("output", output) if output is not None else scene.folder
     if not folder:
         raise _core.InputError("output: is missing, and the scene names no folder. Give one.")
+    if not isinstance(materials, dict | None):
+        raise _core.InputError(f"materials: must be a dictionary of names of layers, but is {materials!r}.")
     for name, law in (materials or {}).items():
         if not isinstance(law, Material):
             raise _core.InputError(f"materials[{name!r}]: must be an isostat.column.Material, but is {law!r}.")

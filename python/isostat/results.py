@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from isostat import _core
+from isostat.calls import path_text
 from isostat.scene import Scene
 
 
@@ -50,7 +51,7 @@ class History(collections.abc.Mapping[str, np.ndarray]):
 
 def read_table(path: str | os.PathLike[str]) -> History:
     """A CSV table whose header has `name (unit)`, as a History."""
-    with open(path, newline="", encoding="utf-8") as file:
+    with open(path_text("path", path), newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     if not rows:
         raise _core.InputError(f"{path}: is empty.")
@@ -77,7 +78,7 @@ def draw(folder: str | os.PathLike[str], name: str, program: str = "element_test
     if name not in drawing.figures:
         raise _core.InputError(f"{name}: no figure of {program}; there are {', '.join(drawing.figures)}.")
     try:
-        results = drawing.results(pathlib.Path(folder))
+        results = drawing.results(pathlib.Path(path_text("folder", folder)))
     except figures.BadInput as error:
         raise _core.InputError(f"{error}.") from error
     with figures.plt.rc_context(figures.STYLE):
@@ -101,10 +102,13 @@ class Results:
     program = "element_test"
 
     def __init__(self, folder: str | os.PathLike[str]):
-        self.folder = pathlib.Path(folder)
+        self.folder = pathlib.Path(path_text("folder", folder))
         if not (self.folder / "history.csv").is_file():
             raise _core.InputError(f"{self.folder}: holds no history.csv. Give the folder of a run of element_test.")
         self.history = read_table(self.folder / "history.csv")
+        if (self.folder / "history.h5").is_file():  # all digits, of a run under way perhaps of fewer rows
+            for name, values in _core.read_series(self.folder / "history.h5").items():
+                self.history[name][:len(values)] = values[:len(self.history[name])]
         self.snapshot: _core.Snapshot | None = None
         self.warnings: list[str] = []
         self.snapshots = sorted((self.folder / "snapshots").glob("snapshot_*.h5"))

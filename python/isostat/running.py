@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from isostat import _core
-from isostat.calls import stopped_by_signals, warned
+from isostat.calls import check_use, path_text, stopped_by_signals, warned
 from isostat.results import History, Results, draw
 from isostat.scene import Scene
 
@@ -36,7 +36,7 @@ def prepare(scene: SceneLike, *, cache: str | os.PathLike[str] = CACHE, threads:
     """
     scene = as_scene(scene)
     with warned(scene.title, quiet) as listed, stopped_by_signals():
-        return _core.prepare(scene, os.fspath(cache), threads, quiet is not False, listed)
+        return _core.prepare(scene, path_text("cache", cache), threads, quiet is not False, listed)
 
 
 def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
@@ -53,7 +53,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
                 and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
                 stiffness). It is kept in `output` as specimen.h5, which the scene there names
     cache       folder of prepared specimens; None: beside the output folder, as the program does
-    overwrite   replaces results that are there
+    overwrite   replaces results that are there; excludes resume
     resume      goes on from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
                 that is not over ends later, also of a run that has finished: strain, max_steps, times, and below until
                 cycles, reversals_after_liquefaction, strain and volumetric_strain. The bits are those of one long run
@@ -77,13 +77,14 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
     for name, function in (("on_record", on_record), ("on_step", on_step)):
         if function is not None and not callable(function):
             raise _core.InputError(f"{name}: must be a function of a Moment, but is {function!r}.")
+    check_use(overwrite, resume)
     if (resume or overwrite) and output is None:
         raise _core.InputError("resume and overwrite need the output folder. Give output.")
-    folder = os.fspath(output) if output is not None else ""
+    folder = path_text("output", output) if output is not None else ""
     if cache is None:
         cache = os.path.join(os.path.dirname(os.path.normpath(folder)), "specimens") if folder else CACHE
     with warned(folder or scene.title, quiet) as listed, stopped_by_signals():
-        done = _core.run(scene, folder, os.fspath(cache), specimen, overwrite, resume, threads, quiet is not False, listed,
+        done = _core.run(scene, folder, path_text("cache", cache), specimen, overwrite, resume, threads, quiet is not False, listed,
                          on_record, on_step, every)
         if not folder:
             return Run(scene, done, listed)

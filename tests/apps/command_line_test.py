@@ -141,7 +141,8 @@ class SpecimenMistakes(AppTest):
         self.make_specimen()
         text = tiny_scene(specimen='file = "specimen.h5"', stages=CYCLIC.format(steps=10))
         scene = self.write("scene.toml", text)
-        result = self.run_test(scene, "-o", "out", "--set", "grading.grains=77", "--set", "specimen.pressure=20 kPa", "-q")
+        result = self.run_test(scene, "-o", "out", "--set", "grading.grains=77", "-q", "--set",
+                               "specimen.pressure=20 kPa")
         self.assert_done(result)
         for part in ("specimen.h5: is taken as it is", "grading.grains = 77 (200)", "specimen.pressure = 20 kPa; the"):
             self.assertIn(part, result.stderr)

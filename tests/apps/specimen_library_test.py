@@ -29,8 +29,8 @@ class Library(AppTest):
                             group["snapshot/grains/position"][()].tobytes()) for entry, group in file.items()}
 
     def test_densities_far_from_their_limits_are_warned_of(self):
-        result = self.make("-o", "loose.h5", "-q", "--set", "specimen.e_min=0.2", "--set", "specimen.e_max=0.3", "--set",
-                           "contact.friction=5 deg")
+        result = self.make("-o", "loose.h5", "-q", "--set", "specimen.e_min=0.2", "--set", "specimen.e_max=0.3",
+                           "--set", "contact.friction=5 deg")
         self.assert_done(result)
         self.assertIn("warning: seed 1, isotropic 50 kPa, prepared at 10.00 deg: the packing is prepared with",
                       result.stderr)

@@ -65,7 +65,13 @@ class ArgumentsTest(ToleranceTest):
                 ("snapshot: must be an isostat.Snapshot, but is of type Specimen", isostat.write_vtp,
                  ("p.vtp", isostat.Specimen(spheres())), {}),
                 ("snapshot: must be an isostat.Snapshot, but is 5", isostat.Specimen, (5,), {}),
-                ("target: must be a path, but is 7", isostat.convert, ("p.csv", 7), {})):
+                ("target: must be a path, but is 7", isostat.convert, ("p.csv", 7), {}),
+                ("path: must be a path, but is 5", isostat.list_library, (5,), {}),
+                ("specimens: must be a list, each item an isostat.Specimen, but is 5", isostat.write_library,
+                 ("l.h5", 5), {}),
+                ("append: must be True or False, but is 'yes'", isostat.write_library, ("l.h5", []), {"append": "yes"}),
+                ("folder: must be a path, but is 5", isostat.read, (5,), {}),
+                ("folder: must be a path, but is 5", isostat.draw, (5, "fig_redundancy"), {})):
             self.expect(words, function, *arguments, **keywords)
 
     def test_of_runs(self):
@@ -73,11 +79,24 @@ class ArgumentsTest(ToleranceTest):
         for name, wrong, words in (("every", -1, "a whole number, 0 or more, but is -1"),
                                    ("threads", "all", "a whole number, 0 or more, but is 'all'"),
                                    ("specimen", "p.h5", "a Specimen or a Snapshot, but is 'p.h5'. Read a file"),
-                                   ("on_step", 5, "a function of a Moment, but is 5")):
-            self.expect(f"{name}: must be {words}", isostat.run, scene, **{"specimen": spheres(), name: wrong})
+                                   ("on_step", 5, "a function of a Moment, but is 5"),
+                                   ("output", 5, "a path, but is 5"), ("cache", 3, "a path, but is 3"),
+                                   ("overwrite", "yes", "True or False, but is 'yes'"),
+                                   ("resume", "yes", "True or False, but is 'yes'")):
+            output = "never" if name in ("overwrite", "resume") else None
+            self.expect(f"{name}: must be {words}", isostat.run, scene,
+                        **{"specimen": spheres(), "output": output, name: wrong})
         self.expect("threads: must be a whole number, 0 or more, but is -1", isostat.prepare, scene, threads=-1)
+        self.expect("cache: must be a path, but is 3", isostat.prepare, scene, cache=3)
+        self.expect("set: must be a dictionary of keys and values, but is 5", isostat.Scene, scene.text, set=5)
         for wrong in (None, 5):
             self.expect(f"scene: must be a.*, but is {wrong}", isostat.run, wrong)
+
+    def test_wishes_that_contradict_each_other(self):
+        scene = isostat.Scene(contact={}, specimen={"domain": "periodic-cell", "void_ratio": 1}, stage=[STAGE])
+        self.expect("overwrite and resume exclude each other", isostat.run, scene, "never", overwrite=True, resume=True)
+        self.expect("overwrite and append exclude each other", isostat.write_library, "l.h5", [], overwrite=True,
+                    append=True)
 
 
 if __name__ == "__main__":

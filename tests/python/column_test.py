@@ -231,11 +231,14 @@ class ColumnTest(ToleranceTest):
                 self.run_with(law, type(law).__name__)
         for materials, message in [({}, r'layer.0 \("sand"\).*none was given'),
                                    ({"sand": Elastic(), "mud": Elastic()}, '"mud"'),
+                                   (5, "^materials: must be a dictionary of names of layers, but is 5"),
                                    ({"sand": 3}, "must be an isostat.column.Material")]:
             with self.subTest(message), self.assertRaisesRegex(isostat.InputError, message):
                 column.run(self.scene, self.folder / "none", materials=materials)
         with self.assertRaisesRegex(isostat.InputError, "^threads: must be a whole number, 0 or more, but is 'two'"):
             self.run_with(Elastic(), "none", threads="two")
+        with self.assertRaisesRegex(isostat.InputError, "^overwrite and resume exclude each other"):
+            self.run_with(Elastic(), "none", overwrite=True, resume=True)
         with self.assertRaisesRegex(isostat.InputError, "^scene: must be an isostat.column.ColumnScene, but is 5"):
             column.run(5)
         with self.assertRaisesRegex(isostat.InputError, "^stiffness: must be an array of numbers, but is 'stiff'"):

@@ -48,6 +48,9 @@ class LibraryTest(FolderTest):
         again = isostat.read_specimen(f"{library}#s0002")
         np.testing.assert_array_equal(again.snapshot.positions, packing.positions)
         self.assertEqual(again.numbers, self.specimens[1].numbers)
+        with self.assertRaisesRegex(isostat.InputError, r"none of them is named. Name one of its 3 entries, for "
+                                    r"example .*library.h5#s0001:\n.*\n +s0001 .*\n +s0002 .*\n +s0003 "):
+            isostat.read_specimen(library)
         box = isostat.Specimen(isostat.Snapshot.from_spheres([[1e-3] * 3], [1e-3], box=[[0, 0, 0], [2e-3] * 3]))
         self.assertNotIn("K0", box.numbers)
         with self.assertRaisesRegex(isostat.InputError, "specimen 0: is between rigid walls.*periodic-cell"):

@@ -71,8 +71,9 @@ class RunTest(FolderTest):
         self.assertEqual(results.history.units["p"], "Pa")
         in_memory = self.run_scene()
         for name in results.history:
-            self.assert_near(in_memory.history[name], results.history[name], 1e-9 * np.abs(results.history[name]),
-                             f"digits of a history file, in {name}")
+            np.testing.assert_array_equal(in_memory.history[name], results.history[name], err_msg=name)
+        (self.folder / "python/history.h5").unlink()  # the table has fewer digits
+        self.assert_close(isostat.read(self.folder / "python").history["p"], results.history["p"], 1e-9, "its digits")
         np.testing.assert_array_equal(in_memory.snapshot.positions, results.snapshot.positions)
         for name, value in results.summary.items():
             if isinstance(value, float) and name != "seconds":

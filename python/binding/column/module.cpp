@@ -75,8 +75,9 @@ UserMaterials user_materials(const py::dict &laws)
   return materials;
 }
 
-void run(const ColumnScene &scene, const std::string &output, const py::dict &materials, bool overwrite, bool resume,
-         Threads threads, bool quiet, const py::list &warnings)
+void run(const ColumnScene &scene, const std::string &output, const py::dict &materials,
+         Given<bool, "overwrite"> overwrite, Given<bool, "resume"> resume, Threads threads, bool quiet,
+         const py::list &warnings)
 {
   const WarningsListed listed(warnings);
   static std::recursive_mutex columns; // PETSc, MPI and signals serve one thread at a time
