@@ -84,8 +84,8 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
     if cache is None:
         cache = os.path.join(os.path.dirname(os.path.normpath(folder)), "specimens") if folder else CACHE
     with warned(folder or scene.title, quiet) as listed, stopped_by_signals():
-        done = _core.run(scene, folder, path_text("cache", cache), specimen, overwrite, resume, threads, quiet is not False, listed,
-                         on_record, on_step, every)
+        done = _core.run(scene, folder, path_text("cache", cache), specimen, overwrite, resume, threads,
+                         quiet is not False, listed, on_record, on_step, every)
         if not folder:
             return Run(scene, done, listed)
         results = Results(folder)
