@@ -86,7 +86,7 @@ Words header_names(std::string_view text)
     return split_commas(text);
   Words names;
   for (const std::string_view word : split_words(text))
-    if (names.empty() || (word.front() != '(' && word.front() != '['))
+    if (names.empty() || !(word.starts_with('(') || word.starts_with('[')))
       names.push_back(word);
     else
       names.back() = std::string_view(names.back().data(), word.data() + word.size() - names.back().data());
@@ -187,7 +187,7 @@ RowReader read_rows(const fs::path &path, const std::string &text, double scale)
       const Words words = split_words(lines[l]);
       if (words.empty())
         continue;
-      if (words[0].front() == '#')
+      if (words[0].starts_with('#'))
         reader.comment(l + 1, lines[l]);
       else if (reader.table.centres.empty() && !header_seen && is_header(lines[l]))
         {

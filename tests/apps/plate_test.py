@@ -98,7 +98,7 @@ class PlateTest(ColumnTest):
     def test_a_part_of_a_side(self):
         way, force, _, summary = self.forces(analysis__from="1 m", analysis__to="2 m")
         self.assertEqual(summary["length"], 1)
-        self.assertEqual(force[0], 0)
+        self.assert_near(force[0], 0, 1e-9, "round-off of forces of kN")
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil beside it helps")
 
     def test_goes_on_where_it_was_stopped(self):
