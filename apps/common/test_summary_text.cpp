@@ -20,6 +20,9 @@ namespace
 /// "I = 4e-05 at p0'" or "2 1/s", of all stages that shear, with their numbers unless they are the same.
 std::string rate_text(const Scene &scene)
 {
+  if (const StaticDrive &drive = scene.drive; drive.on)
+    return fmt::format("none: increments of {:g}, each to balance within {:g} for all but {:g} % of the loaded grains",
+                       drive.increment, drive.balance.tolerance, 100 * drive.balance.left_out);
   std::set<std::string> rates;
   std::vector<std::string> lines;
   bool bounded = false;

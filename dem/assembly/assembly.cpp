@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "dem/assembly/contact_forces-inl.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -211,6 +212,7 @@ void Assembly::deform(const Mat3 &displacement_gradient)
 
 void Assembly::stop_grains()
 {
+  forces(); // of the motion that was
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
     {
       packing_.set_linear_velocity(i, Vec3::Zero());
@@ -218,8 +220,38 @@ void Assembly::stop_grains()
     }
 }
 
+void Assembly::add_motion(GrainMotion &sum) const
+{
+  sum.resize(6 * packing_.n_grains());
+  const double dt = settings.time_step;
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    for (int k = 0; k < 3; ++k)
+      {
+        sum[6 * i + k] += dt * packing_.velocity[4 * i + k];
+        sum[6 * i + 3 + k] += dt * packing_.spin[4 * i + k];
+      }
+}
+
+void Assembly::set_motion(const GrainMotion &motion, double share, const Vec3 &strain)
+{
+  const double *action = forces().action().data();
+  const double dt = settings.time_step;
+  const Vec3 centre = domain_.box.centre();
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    {
+      const bool touches = std::any_of(action + 8 * i, action + 8 * i + 8, [](double x) { return x != 0; });
+      for (int k = 0; touches && k < 3; ++k)
+        {
+          packing_.velocity[4 * i + k] =
+              (share * motion[6 * i + k] + strain[k] * (packing_.position[4 * i + k] - centre[k])) / dt;
+          packing_.spin[4 * i + k] = share * motion[6 * i + 3 + k] / dt;
+        }
+    }
+}
+
 void Assembly::set_inverse_inertia(const std::vector<InverseInertia> &inertia)
 {
+  forces();
   for (std::size_t i = 0; i < inertia.size(); ++i)
     {
       packing_.velocity[4 * i + 3] = inertia[i].mass;

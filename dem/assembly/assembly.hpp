@@ -33,6 +33,9 @@ struct AssemblyState
   std::size_t bytes() const;
 };
 
+/// What each grain has moved and turned beyond the homogeneous strain, m and rad: 6 numbers a grain.
+using GrainMotion = std::vector<double>;
+
 /// What a grain resists motion with, inverted: 1/kg and 1/(kg m2).
 struct InverseInertia
 {
@@ -72,12 +75,20 @@ public:
   /// @pre settings.time_step > 0, a periodic cell
   void deform(const Mat3 &displacement_gradient);
 
-  /// For relaxations (dem/static), between compute_forces() and deform(): grains lose their motion; they move with
-  /// other masses; F.v of all of them, W, positive while they gain speed.
+  /// For relaxations (dem/static), between compute_forces() and the next move. Grains lose their motion.
   void stop_grains();
+  /// They have moved by dt v in the last move, which is added to `sum` (empty: zero).
+  void add_motion(GrainMotion &sum) const;
+  /// Those that touch something are to move in the next one by `share` of a motion, and in a box with its strain about
+  /// the centre, tension positive.
+  void set_motion(const GrainMotion &motion, double share, const Vec3 &strain);
+  /// They move with other masses.   @pre one for each grain
+  void set_inverse_inertia(const std::vector<InverseInertia> &inertia);
   std::vector<InverseInertia> inverse_inertia() const;
-  void set_inverse_inertia(const std::vector<InverseInertia> &inertia); ///< @pre one for each grain
-  double power() const;
+  double power() const;          ///< sum of F.v and T.w, W: positive while they gain speed
+  double kinetic_energy() const; ///< under their masses at present, J
+  /// A loss that counts as of damping, J.
+  void add_loss(double energy) { meter_.add_motion({.damping_loss = energy}); }
 
   /// Changes the law from the next force evaluation on; history of the parts that stay is kept.
   void set_law(const Law &law);

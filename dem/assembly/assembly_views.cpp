@@ -42,6 +42,15 @@ double Assembly::power() const
   return sum;
 }
 
+double Assembly::kinetic_energy() const
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
+    sum += packing_.mass(i) * packing_.linear_velocity(i).squaredNorm() +
+           packing_.inertia(i) * packing_.angular_velocity(i).squaredNorm();
+  return 0.5 * sum;
+}
+
 std::vector<InverseInertia> Assembly::inverse_inertia() const
 {
   std::vector<InverseInertia> all(packing_.n_grains());

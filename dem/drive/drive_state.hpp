@@ -32,7 +32,8 @@ struct Pace
   double rate = 0;      ///< bound on the driven strain rate, 1/s
   double load_rate = 0; ///< bound on |d load/dt|, Pa/s; 0: none
   double time_step = 0; ///< s
-  double indicator = 0; ///< quasi-static error indicator of the last control, see rate_control.hpp [-]
+  double indicator = 0; ///< quasi-static error indicator of the last control, see rate_control.hpp; of a static drive
+                        ///< the imbalance that the last increment has left [-]
 
   ISOSTAT_FIELDS(rate, load_rate, time_step, indicator)
 };
@@ -66,6 +67,20 @@ struct Loading
 
   ISOSTAT_FIELDS(strain, signed_rate, direction, slope, window_load, window_strain, window_steps, begun_load,
                  begun_strain, half_cycle)
+};
+
+/// The last increment of a static drive: what the next one is compared with.
+struct LastIncrement
+{
+  Vec3 strain = Vec3::Zero(); ///< along x, y, z, tension positive [-]
+  double gamma = 0;           ///< of a cell [-]
+  // where stresses are kept (dem/drive/servo.hpp): sigma and tau before it, compression positive, and moduli, Pa
+  Vec3 stress = Vec3::Zero();
+  double tau = 0;
+  Vec3 moduli_x = Vec3::Zero(), moduli_y = Vec3::Zero(), moduli_z = Vec3::Zero(); ///< rows d sigma_i / d eps_j
+  double shear_modulus = 0;
+
+  ISOSTAT_FIELDS(strain, gamma, stress, tau, moduli_x, moduli_y, moduli_z, shear_modulus)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.
@@ -317,7 +332,8 @@ struct DriveState
   RecordedState recorded;
   ControlState control;
   std::vector<StageEnd> ends;
+  LastIncrement increment;
 
-  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control, ends)
+  ISOSTAT_FIELDS(place, pace, loading, path, progress, servo, undrained, recorded, control, ends, increment)
 };
 } // namespace isostat

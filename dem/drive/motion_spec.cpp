@@ -68,6 +68,26 @@ constexpr Key chosen[] = {
    .field = [](MotionSpec &m) -> Field { return &m.time_step; }},
 };
 
+constexpr const char *drives[] = {"dynamic", "static"};
+constexpr Key statics[] = {
+  {.path = "drive", .kind = Kind::choice, .value = "dynamic", .choices = drives,
+   .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
+           "taken to balance; rates and dampings have no part in it. Preparation is dynamic.",
+   .field = [](StaticDrive &d) -> Field { return &d.on; }},
+  {.path = "increment", .value = "1e-5", .range = {0, 1e-3, true, false},
+   .reason = "because contacts slide by a part of their overlap in an increment of 1e-3",
+   .text = "static: driven strain of an increment; shorter ones end where the load turns.",
+   .field = [](StaticDrive &d) -> Field { return &d.increment; }},
+  {.path = "balance", .value = "0.01", .range = ranges::fraction,
+   .reason = "because it is relative to the forces on the grain",
+   .text = "static: an increment ends when the sum of forces on each grain, and the sum of torques over its radius, are at most "
+           "this share of the largest contact force on it.",
+   .field = [](StaticDrive &d) -> Field { return &d.balance.tolerance; }},
+  {.path = "left_out", .value = "0.01", .range = {0, 1, false, true}, .reason = "because it is a share",
+   .text = "static: share of the grains with contacts, the worst, that need not be in balance.",
+   .field = [](StaticDrive &d) -> Field { return &d.balance.left_out; }},
+};
+
 constexpr Key controlled[] = {
   damping("0.2", "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their stress hardly "
           "come to rest."),
@@ -88,6 +108,8 @@ SceneFragment<MotionSpec> motion_keys()
   static const KeyTable table{shared, chosen};
   return {table.keys()};
 }
+
+SceneFragment<StaticDrive> static_drive_keys() { return {statics}; }
 
 void check(const MotionSpec &motion)
 {

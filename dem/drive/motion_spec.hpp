@@ -3,6 +3,7 @@
 #include "base/fields.hpp"
 #include "base/scene/fragment.hpp"
 #include "dem/assembly/contact_forces.hpp"
+#include "dem/static/relaxation.hpp"
 
 namespace isostat
 {
@@ -27,7 +28,18 @@ struct MotionSpec
                  strain_rate, time_step_safety, time_step)
 };
 
-/// The keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
+/// Whether stages that drive go from balance to balance, so that no rate plays a part, and how.
+struct StaticDrive : StaticStepping
+{
+  bool on = false;
+
+  bool operator==(const StaticDrive &) const = default;
+};
+
+/// The keys of [motion] that say so.
+SceneFragment<StaticDrive> static_drive_keys();
+
+/// The other keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
 SceneFragment<MotionSpec> motion_keys();
 /// The defaults of packings whose strain answers their stress, as in a column: with less local damping packing and
 /// column keep each other in motion (docs/results/free_grains.md, "Columns"), and at a higher rate they liquefy late

@@ -7,7 +7,9 @@
 #include "dem/drive/stages/stage_end.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/measure/stress.hpp"
+#include "dem/static/relaxation.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace isostat
@@ -23,7 +25,7 @@ public:
   StageRun(const Programme &programme, const StageBehaviour &stage, Assembly &assembly, DriveState &state,
            RunObserver &observer)
       : programme_(programme), stage_(stage), assembly_(assembly), state_(state),
-        observer_(observer), context_{programme.motion, programme.servo, assembly, state}
+        observer_(observer), context_{programme.motion, programme.servo, assembly, state, programme.drive}
   {}
 
   RunOutcome run()
@@ -32,11 +34,22 @@ public:
       begin();
     if (!stage_.takes_steps())
       return RunOutcome::finished;
+    if (stage_.drives() && programme_.drive.on)
+      {
+        relaxation_.emplace(assembly_);
+        assembly_.settings.carry_grains = false; // they are set to go with the walls
+        state_.pace.time_step = 1;               // of iterations
+      }
     assembly_.settings.time_step = state_.pace.time_step;
     for (bool finished = false; !finished;)
       {
-        update_time_step(programme_.motion, stage_.shears(), state_.place.steps, assembly_, state_.pace);
+        if (!relaxation_)
+          update_time_step(programme_.motion, stage_.shears(), state_.place.steps, assembly_, state_.pace);
         assembly_.compute_forces();
+        if (relaxation_ && state_.place.steps == 0)
+          assembly_.stop_grains(); // whose masses are still their own
+        if (relaxation_)
+          state_.pace.indicator = relaxation_->run(programme_.drive.balance).balance.within;
         const Observation seen = look();
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.end.has_value();
@@ -61,6 +74,7 @@ private:
     state_.servo.step.setZero();
     state_.servo.balanced_checks = 0;
     state_.control.restart();
+    state_.increment = {};
     if (!stage_.keeps_volume())
       state_.path.undrained.reset();
     state_.pace.rate = 0; // of a shear stage: when it begins to shear
@@ -141,13 +155,30 @@ private:
   {
     if (!assembly_.cell())
       {
-        assembly_.move(finished ? assembly_.box() : stage_.next_box(context_, seen));
+        const RigidBox next = finished ? assembly_.box() : stage_.next_box(context_, seen);
+        extrapolate((next.edges().array() / assembly_.box().edges().array()).log(), 0);
+        assembly_.move(next);
         return;
       }
     const Mat3 gradient = finished ? Mat3::Zero() : stage_.next_gradient(context_, seen);
+    extrapolate(gradient.diagonal(), gradient(0, 1));
     state_.path.cell_strain += gradient.diagonal();
     state_.path.gamma += gradient(0, 1);
     assembly_.deform(gradient);
+  }
+
+  /// Grains go on as in the last increment, as far as the next one is along it.
+  void extrapolate(const Vec3 &strain, double gamma)
+  {
+    if (!relaxation_)
+      return;
+    LastIncrement &last = state_.increment;
+    const double along = last.strain.dot(strain) + last.gamma * gamma,
+                 size = last.strain.squaredNorm() + last.gamma * last.gamma,
+                 share = size > 0 ? std::clamp(along / size, -1.0, 1.5) : 0;
+    relaxation_->extrapolate(share, assembly_.cell() ? Vec3(Vec3::Zero()) : Vec3(strain - share * last.strain));
+    last.strain = strain;
+    last.gamma = gamma;
   }
 
   const Programme &programme_;
@@ -156,6 +187,7 @@ private:
   DriveState &state_;
   RunObserver &observer_;
   StageContext context_;
+  std::optional<Relaxation> relaxation_ = {}; ///< of a stage that goes from balance to balance
 };
 } // namespace
 

@@ -22,6 +22,7 @@ struct RecordSpec
 struct Programme
 {
   MotionSpec motion = {};
+  StaticDrive drive = {};
   ServoSpec servo = {};
   RecordSpec record = {};
   ControlSpec control = {};

@@ -15,7 +15,54 @@ constexpr std::uint64_t modulus_interval = 20;
 /// G over the modulus of one normal strain where grains follow the strain and contacts point everywhere:
 /// (2 + 3r)/(6 + 4r) with r = ks/kn, 1/3 to 1/2; here r = 0.3 (docs/theory.md, section 15).
 constexpr double shear_over_normal = 0.4;
+
+/// Of grains that find their places, and lateral over axial stiffness: where static_servo() begins.
+constexpr double relaxed_over_affine = 0.6, lateral_over_normal = 0.25;
+
+/// The stiffness of normal strains after the last increment.
+Mat3 corrected_moduli(const Assembly &assembly, const Vec3 &now, LastIncrement &last)
+{
+  Mat3 k;
+  k << last.moduli_x.transpose(), last.moduli_y.transpose(), last.moduli_z.transpose();
+  const Vec3 strain = -last.strain;
+  if (k.isZero(0))
+    {
+      const Vec3 moduli = relaxed_over_affine * affine_moduli(assembly.live_contacts(), assembly.volume());
+      k.setConstant(lateral_over_normal * moduli.mean());
+      k.diagonal() = moduli;
+      last.shear_modulus = shear_over_normal * moduli.mean();
+    }
+  else if (strain.squaredNorm() > 0)
+    k += (now - last.stress - k * strain) * strain.transpose() / strain.squaredNorm();
+  last.moduli_x = k.row(0), last.moduli_y = k.row(1), last.moduli_z = k.row(2);
+  return k;
+}
 } // namespace
+
+StaticComponents static_servo(const Assembly &assembly, const StaticComponents &now, const StaticComponents &target,
+                              const std::array<bool, 4> &controlled, const StaticComponents &prescribed, double cap,
+                              LastIncrement &last)
+{
+  Mat3 factors = corrected_moduli(assembly, now.head<3>(), last);
+  Vec3 right = (target - now).head<3>();
+  for (int k = 0; k < 3; ++k)
+    if (!controlled[k])
+      factors.row(k) = Vec3::Unit(k), right[k] = prescribed[k];
+  if (last.gamma != 0 && (now[3] - last.tau) / last.gamma > 0)
+    last.shear_modulus = (now[3] - last.tau) / last.gamma;
+  StaticComponents strain;
+  strain << Vec3(factors.partialPivLu().solve(right)), (target[3] - now[3]) / last.shear_modulus;
+  for (int k = 0; k < 4; ++k)
+    if (!controlled[k])
+      strain[k] = prescribed[k];
+    else if (const double missing = target[k] - now[k]; std::isfinite(strain[k]))
+      strain[k] = std::clamp(strain[k], -cap, cap);
+    else // nothing bears any load
+      strain[k] = missing == 0 ? 0 : std::copysign(cap, missing);
+  last.stress = now.head<3>();
+  last.tau = now[3];
+  return strain;
+}
 
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,
                  ServoState &state)

@@ -28,6 +28,21 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 Mat3 stress_servo(const Assembly &assembly, const Mat3 &target, const Eigen::Matrix<bool, 3, 3> &controlled,
                   double rate_cap, std::uint64_t step_number, ServoState &state);
 
+/// Stresses sigma_x, sigma_y, sigma_z, tau_xy or strains eps_x, eps_y, eps_z, gamma_xy: compression positive, shear
+/// towards positive gamma.
+using StaticComponents = Eigen::Vector4d;
+
+/// The next increment of a static drive: strains of the controlled components that bring their stresses to the targets,
+///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
+/// beside those that are prescribed (p). K of the normal components begins as three fifths of the affine stiffness and
+/// is corrected after each increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577,
+/// doi:10.1090/S0025-5718-1965-0198670-6); the shear modulus is a secant.
+/// @param now  stresses as they are, Pa   @param prescribed  [-]   @param cap  on each strain, an amount [-]
+/// tested: tests/verification/static_drive_test.cpp
+StaticComponents static_servo(const Assembly &assembly, const StaticComponents &now, const StaticComponents &target,
+                              const std::array<bool, 4> &controlled, const StaticComponents &prescribed, double cap,
+                              LastIncrement &last);
+
 /// Largest |sigma_k / target_k - 1| over the controlled axes, and in a cell |shear stress| / mean target.
 double stress_error(const Assembly &assembly, const Vec3 &target,
                     const std::array<bool, 3> &controlled = {true, true, true});

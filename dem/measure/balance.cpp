@@ -8,7 +8,8 @@ namespace isostat
 {
 namespace
 {
-constexpr double least_load = 1e-3; ///< of the mean contact force
+constexpr double least_load = 1e-3;     ///< of the mean contact force
+constexpr double least_overlap = 1e-11; ///< of the radius
 
 /// Largest contact force on each grain, 0: it touches nothing.   @param mean  of all contacts
 std::vector<double> largest_forces(const LiveContacts &contacts, double &mean)
@@ -44,7 +45,9 @@ Balance balance(const LiveContacts &contacts, const double *action, double left_
       {
         const double residual =
             std::max(Vec3(action + 8 * i).norm(), Vec3(action + 8 * i + 4).norm() / contacts.packing.radius(i));
-        imbalance.push_back(residual / std::max(largest[i], least_load * mean));
+        const double r = contacts.packing.radius(i);
+        imbalance.push_back(
+            residual / std::max({largest[i], least_load * mean, contacts.law.normal_force(r, r, least_overlap * r)}));
         if (imbalance.back() > found.worst)
           found.worst = imbalance.back(), found.grain = contacts.packing.id[i];
       }

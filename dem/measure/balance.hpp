@@ -6,10 +6,11 @@ namespace isostat
 {
 /// Balance of a packing, grain by grain. The imbalance of a grain that carries load is
 ///
-///     r_i = max( |sum of forces|, |sum of torques| / R_i ) / max( largest contact force on it, 1e-3 f )
+///     r_i = max( |sum of forces|, |sum of torques| / R_i ) / max( largest contact force on it, 1e-3 f, f_0 )
 ///
 /// f the mean contact force of the packing: a mean over grains hides weakly loaded trains of grains, which decide when
-/// a packing gives way, and below a thousandth of f a grain carries nothing worth balancing.
+/// a packing gives way, and below a thousandth of f a grain carries nothing worth balancing. f_0 is the force of an
+/// overlap of 1e-11 R_i, some 0.1 Pa of stress: where no network is left grains that part never do so altogether.
 struct Balance
 {
   std::size_t loaded = 0;  ///< grains with a contact

@@ -107,11 +107,8 @@ void RveSettings::check() const
                                  max_increment, largest_increment));
   if (max_steps == 0)
     throw InputError("max_steps of a representative volume element must be positive");
-  if (stepping && !(stepping->increment > 0 && stepping->increment <= 1e-3))
-    throw InputError(
-        fmt::format("increment = {} of a representative volume element; allowed is (0, 1e-3]", stepping->increment));
   if (stepping)
-    stepping->balance.check();
+    stepping->check();
   if (min_steps == 0 || min_steps > max_steps)
     throw InputError(fmt::format("min_steps = {} of a representative volume element; allowed is 1 to max_steps = {}",
                                  min_steps, max_steps));
@@ -170,35 +167,36 @@ void Rve::step(const Mat3 &own_gradient)
   assembly_.compute_forces();
 }
 
-void Rve::run_balanced(const Mat3 &own_gradient, const BalanceSpec &spec)
+void Rve::run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping)
 {
+  const double size = strain_measure(own_gradient), parts = std::max(1.0, std::ceil(size / stepping.increment));
+  if (!(parts < static_cast<double>(settings_.max_steps)))
+    throw RunFailure(fmt::format("an increment of strain {:.3g} has {:.3g} parts", size, parts));
   update_time_step(settings_.motion, true, 0, assembly_, drive_.pace);
   RelaxationLimits limits{settings_.max_steps, {}};
   if (!rolling_back_)
     limits.go_on = settings_.go_on;
-  const Relaxed relaxed = isostat::relax(assembly_, own_gradient, spec, limits);
-  balance_ = relaxed.balance;
-  cost_.steps += relaxed.steps;
+  Relaxation relaxation(assembly_);
+  assembly_.stop_grains();
+  const std::uint64_t n = static_cast<std::uint64_t>(parts);
+  for (std::uint64_t k = 0; k < n; ++k)
+    {
+      if (k > 0)
+        relaxation.extrapolate(1);
+      assembly_.deform(own_gradient / parts);
+      assembly_.compute_forces();
+      const Relaxed relaxed = relaxation.run(stepping.balance, limits);
+      balance_ = relaxed.balance;
+      cost_.steps += relaxed.steps + 1;
+      limits.max_steps -= std::min(limits.max_steps, relaxed.steps + 1);
+    }
 }
 
 void Rve::run_strain(const Mat3 &own_gradient)
 {
-  const double size = strain_measure(own_gradient);
   if (settings_.stepping)
-    {
-      const double parts = std::max(1.0, std::ceil(size / settings_.stepping->increment));
-      if (!(parts < static_cast<double>(settings_.max_steps)))
-        throw RunFailure(fmt::format("an increment of strain {:.3g} has {:.3g} parts", size, parts));
-      const std::uint64_t before = cost_.steps, n = static_cast<std::uint64_t>(parts);
-      for (std::uint64_t k = 0; k < n; ++k)
-        {
-          run_balanced(own_gradient / parts, settings_.stepping->balance);
-          if (cost_.steps - before > settings_.max_steps)
-            throw RunFailure(fmt::format("an increment of strain {:.3g} takes more than {} force evaluations", size,
-                                         settings_.max_steps));
-        }
-      return;
-    }
+    return run_balanced(own_gradient, *settings_.stepping);
+  const double size = strain_measure(own_gradient);
   double left = 1, minimum = static_cast<double>(settings_.min_steps);
   for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
     {
@@ -344,7 +342,7 @@ RveResponse Rve::relax(const BalanceSpec &spec)
 {
   spec.check();
   return guarded(0, [&] {
-    run_balanced(Mat3::Zero(), spec);
+    run_balanced(Mat3::Zero(), {.balance = spec});
     keep_safe();
   });
 }

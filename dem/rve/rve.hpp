@@ -12,13 +12,6 @@
 
 namespace isostat
 {
-/// Increments of strain that are each taken to balance (dem/static/relaxation.hpp), in place of time steps at a rate.
-struct StaticStepping
-{
-  double increment = 1e-5; ///< largest strain of one of them, as the rate control counts it [-]
-  BalanceSpec balance = {};
-};
-
 /// How a representative volume element is run.
 struct RveSettings
 {
@@ -160,7 +153,7 @@ private:
   RveResponse guarded(double size, const Run &run);
   RveResponse strain(const Mat3 &displacement_gradient, bool constant_volume);
   void run_strain(const Mat3 &own_gradient);
-  void run_balanced(const Mat3 &own_gradient, const BalanceSpec &spec);
+  void run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping);
   void run_mixed(const MixedIncrement &own);
   void step(const Mat3 &own_gradient);
   void review();

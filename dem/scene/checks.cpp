@@ -126,6 +126,25 @@ void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoad
     }
 }
 
+/// Keys that the drive leaves without a part.
+void check_drive(const SceneDocument &document, const Scene &scene)
+{
+  std::vector<std::string> idle;
+  if (scene.drive != StaticDrive{}) // defaults of the printed scene do no harm
+    idle = {"motion.increment", "motion.balance", "motion.left_out"};
+  if (scene.drive.on)
+    {
+      idle = {"motion.inertial_number", "motion.strain_rate", "motion.load_per_wave"};
+      for (std::size_t i = 0; i < scene.stages.size(); ++i)
+        for (const char *key : {"strain_rate", "stress_rate"})
+          idle.push_back(fmt::format("stage.{}.{}", i, key));
+    }
+  for (const std::string &path : idle)
+    if (document.find(path))
+      document.refuse(path, fmt::format("has no effect with motion.drive = \"{}\". Leave it out, or give the other "
+                                        "drive.",
+                                        scene.drive.on ? "static" : "dynamic"));
+}
 } // namespace
 
 void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out)
@@ -134,6 +153,7 @@ void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);
+  check_drive(document, scene);
   check_stages(document, scene, left_out);
 }
 } // namespace isostat

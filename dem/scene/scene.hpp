@@ -82,12 +82,13 @@ struct Scene
   Law contact;
   SpecimenSpec specimen;
   MotionSpec motion;
+  StaticDrive drive;
   ControlSpec control;
   std::vector<Stage> stages;
   OutputSpec output;
 
   /// The part of it that is run on a specimen.
-  Programme programme() const { return {motion, specimen, output, control, stages}; }
+  Programme programme() const { return {motion, drive, specimen, output, control, stages}; }
   bool operator==(const Scene &) const = default; ///< bit for bit, every field
 };
 

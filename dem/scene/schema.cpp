@@ -230,7 +230,9 @@ bool is_implied(const Key &key, const void *scene)
          (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
          (path.starts_with("grading.") && !s.specimen.file.empty() &&
           (path != "grading.density" || specimen_place(s.specimen.file).path.ends_with(".h5"))) ||
-         (path == "specimen.pressure" && !takes_pressure(s));
+         (path == "specimen.pressure" && !takes_pressure(s)) ||
+         (s.drive.on ? path == "motion.load_per_wave"
+                     : path == "motion.increment" || path == "motion.balance" || path == "motion.left_out");
 }
 
 /// The word of contact.law is a number of registered_laws().
@@ -280,6 +282,7 @@ struct WholeSchema
                  .field = [](Scene &, Stage &stage) -> Field { return EnumField(&stage); }}};
     runs.emplace_back(specimen_keys);
     runs.push_back(splice("motion", motion_keys(), 0, [](Scene &s) -> MotionSpec & { return s.motion; }));
+    runs.push_back(splice("motion", static_drive_keys(), 0, [](Scene &s) -> StaticDrive & { return s.drive; }));
     runs.push_back(splice("control", control_keys(), 0, [](Scene &s) -> ControlSpec & { return s.control; }));
     runs.push_back({kind_key, "", 0, {}});
     runs.push_back(

@@ -11,68 +11,20 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t look_interval = 10, mass_interval = 200;
+constexpr std::uint64_t look_interval = 10, mass_interval = 200; ///< iterations
 /// Contacts of its own size that a grain has at least, as far as its mass goes: one that gains a contact stays stable.
 constexpr double least_contacts = 3;
 
-/// Gives an assembly fictitious masses and no damping but that of grains without a force, as long as it lives.
-class WithoutInertia
+/// Grains that rattle between others would do so for ever while the kinetic energy of the rest has its peaks.
+constexpr double contact_damping = 0.05;
+constexpr double overlap_expected = 1e-3; ///< of the radius: for laws whose stiffness grows with overlap
+
+/// Adds `times` one contact to the sums of k over contacts that M (`normal`) and J (`rolling`) are made of.
+void add(ContactStiffness &sum, const ContactStiffness &k, double r, double times)
 {
-public:
-  explicit WithoutInertia(Assembly &assembly)
-      : assembly_(assembly), settings_(assembly.settings), own_(assembly.inverse_inertia())
-  {
-    follow_stiffness();
-    assembly.settings.contact_damping = assembly.settings.damping = 0;
-    assembly.settings.free_grain_damping = 1;
-  }
-  ~WithoutInertia()
-  {
-    assembly_.stop_grains();
-    assembly_.set_inverse_inertia(own_);
-    assembly_.settings = settings_;
-  }
-  WithoutInertia(const WithoutInertia &) = delete;
-  WithoutInertia &operator=(const WithoutInertia &) = delete;
-
-  /// M_i and J_i of the contacts as they are.
-  void follow_stiffness()
-  {
-    const Packing &grains = assembly_.packing();
-    const ContactLaw &law = assembly_.law();
-    std::vector<ContactStiffness> sums(grains.n_grains(), ContactStiffness{});
-    const auto add = [&](std::size_t i, const ContactStiffness &k, double times) {
-      const double r = grains.radius(i);
-      sums[i].normal += times * (k.normal + k.shear);
-      sums[i].rolling += times * (k.shear * r * r + k.rolling + k.twisting);
-    };
-    assembly_.live_contacts().for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
-      const double r1 = grains.radius(i), r2 = grains.radius(j);
-      const ContactStiffness k = law.stiffness(r1, r2, r1 + r2 - branch.norm());
-      add(i, k, 1);
-      add(j, k, 1);
-    });
-    const double dt2 = assembly_.settings.time_step * assembly_.settings.time_step;
-    std::vector<InverseInertia> inverse(sums.size());
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      {
-        const ContactStiffness found = std::exchange(sums[i], ContactStiffness{});
-        const double r = grains.radius(i);
-        add(i, law.stiffness(r, r, overlap_expected * r), least_contacts);
-        const double least_inertia = least_contacts * 1e-3 * sums[i].normal * r * r; // of a law without friction
-        inverse[i] = {1 / (dt2 * std::max(found.normal, sums[i].normal)),
-                      1 / (dt2 * std::max({found.rolling, sums[i].rolling, least_inertia}))};
-      }
-    assembly_.set_inverse_inertia(inverse);
-  }
-
-private:
-  static constexpr double overlap_expected = 1e-3; ///< of the radius: for laws whose stiffness grows with overlap
-
-  Assembly &assembly_;
-  StepSettings settings_;
-  std::vector<InverseInertia> own_;
-};
+  sum.normal += times * (k.normal + k.shear);
+  sum.rolling += times * (k.shear * r * r + k.rolling + k.twisting);
+}
 } // namespace
 
 void BalanceSpec::check() const
@@ -83,36 +35,127 @@ void BalanceSpec::check() const
     throw InputError(fmt::format("balance: left_out = {:g}; must be in [0, 1)", left_out));
 }
 
-Relaxed relax(Assembly &assembly, const Mat3 &displacement_gradient, const BalanceSpec &spec,
-              const RelaxationLimits &limits)
+void StaticStepping::check() const
 {
-  Relaxed found;
-  WithoutInertia scope(assembly);
-  assembly.stop_grains();
-  for (Mat3 gradient = displacement_gradient;; gradient.setZero())
+  if (!(increment > 0 && increment <= 1e-3))
+    throw InputError(fmt::format("increment = {:g}; must be in (0, 1e-3]", increment));
+  balance.check();
+}
+
+Relaxation::Relaxation(Assembly &assembly)
+    : assembly_(assembly), settings_(assembly.settings), own_(assembly.inverse_inertia())
+{
+  assembly.settings.contact_damping = assembly.settings.damping = 0;
+  assembly.settings.free_grain_damping = 1;
+}
+
+Relaxation::~Relaxation()
+{
+  assembly_.set_inverse_inertia(own_);
+  assembly_.settings = settings_;
+}
+
+void Relaxation::follow_stiffness()
+{
+  const Packing &grains = assembly_.packing();
+  const ContactLaw &law = assembly_.law();
+  std::vector<ContactStiffness> sums(grains.n_grains(), ContactStiffness{});
+  const LiveContacts contacts = assembly_.live_contacts();
+  contacts.for_pairs([&](std::uint32_t i, std::uint32_t j, const Vec3 &branch, const Vec3 &) {
+    const double r1 = grains.radius(i), r2 = grains.radius(j);
+    const ContactStiffness k = law.stiffness(r1, r2, r1 + r2 - branch.norm());
+    add(sums[i], k, r1, 1);
+    add(sums[j], k, r2, 1);
+  });
+  contacts.for_walls([&](std::uint32_t i, int, double overlap, double) {
+    sums[i].normal += law.wall(grains.radius(i), overlap).stiffness;
+  });
+  const double dt2 = assembly_.settings.time_step * assembly_.settings.time_step;
+  std::vector<InverseInertia> inverse(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i)
     {
-      if (found.steps == 1 || (found.steps > 0 && found.steps % look_interval == 0))
-        {
-          found.balance = assembly.balance(spec.left_out);
-          if (found.balance.within <= spec.tolerance)
-            return found;
-          if (limits.go_on && !limits.go_on())
-            throw RunFailure("it was interrupted");
-          if (found.steps >= limits.max_steps)
-            throw RunFailure(
-                fmt::format("not in balance after {} force evaluations: {:.3g} where {:g} is allowed for all but {:g} "
-                            "% of {} loaded "
-                            "grains; grain {} is worst, {:.3g}. Take a smaller increment, or a larger tolerance.",
-                            found.steps, found.balance.within, spec.tolerance, 100 * spec.left_out,
-                            found.balance.loaded, found.balance.grain, found.balance.worst));
-          if (found.steps % mass_interval == 0)
-            scope.follow_stiffness();
-        }
-      if (!(assembly.power() > 0))
-        assembly.stop_grains();
-      assembly.deform(gradient);
-      assembly.compute_forces();
-      ++found.steps;
+      const double r = grains.radius(i);
+      ContactStiffness least{};
+      add(least, law.stiffness(r, r, overlap_expected * r), r, least_contacts);
+      const double least_inertia = least_contacts * 1e-3 * least.normal * r * r; // of a law without friction
+      inverse[i] = {1 / (dt2 * std::max(sums[i].normal, least.normal)),
+                    1 / (dt2 * std::max({sums[i].rolling, least.rolling, least_inertia}))};
     }
+  assembly_.set_inverse_inertia(inverse);
+}
+
+void Relaxation::hold()
+{
+  if (assembly_.cell())
+    assembly_.deform(Mat3::Zero());
+  else
+    assembly_.move(assembly_.box());
+  assembly_.compute_forces();
+}
+
+void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const
+{
+  found.balance = assembly_.balance(spec.left_out);
+  found.balanced = found.balance.within <= spec.tolerance;
+  if (found.balanced)
+    return;
+  if (limits.go_on && !limits.go_on())
+    throw RunFailure("it was interrupted");
+  if (found.steps >= limits.max_steps)
+    throw RunFailure(fmt::format(
+        "not in balance after {} force evaluations: {:.3g} where {:g} is allowed for all but {:g} % of {} loaded "
+        "grains; grain {} is worst, {:.3g}. Take a smaller increment, or a larger tolerance.",
+        found.steps, found.balance.within, spec.tolerance, 100 * spec.left_out, found.balance.loaded,
+        found.balance.grain, found.balance.worst));
+}
+
+void Relaxation::add_half_work()
+{
+  if (assembly_.settings.measure_energy)
+    assembly_.add_loss(0.5 * assembly_.settings.time_step * assembly_.power());
+}
+
+// Leapfrog: kinetic energy is half a step old, and is lost with what the forces have done since.
+void Relaxation::stop()
+{
+  if (assembly_.settings.measure_energy)
+    assembly_.add_loss(assembly_.kinetic_energy());
+  add_half_work();
+  assembly_.stop_grains();
+}
+
+Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
+{
+  way_.clear();
+  assembly_.add_motion(way_);
+  add_half_work();
+  assembly_.stop_grains();
+  follow_stiffness();
+  Relaxed found;
+  std::uint64_t followed = 0; ///< when masses were made last
+  look(found, spec, limits);  // forces of the move that was have no dashpots
+  assembly_.settings.contact_damping = contact_damping;
+  for (; !found.balanced; ++found.steps)
+    {
+      if (!(assembly_.power() > 0))
+        {
+          stop();
+          if (found.steps >= followed + mass_interval)
+            follow_stiffness(), followed = found.steps;
+        }
+      hold();
+      assembly_.add_motion(way_);
+      if ((found.steps + 1) % look_interval == 0)
+        look(found, spec, limits);
+    }
+  stop();
+  assembly_.settings.contact_damping = 0;
+  return found;
+}
+
+void Relaxation::extrapolate(double share, const Vec3 &strain)
+{
+  assembly_.set_motion(way_, share, strain);
+  add_half_work();
 }
 } // namespace isostat

@@ -10,9 +10,21 @@ namespace isostat
 /// When a packing counts as balanced.
 struct BalanceSpec
 {
-  double tolerance = 1e-3; ///< on the imbalance of single grains, dem/measure/balance.hpp [-], > 0
+  double tolerance = 0.01; ///< on the imbalance of single grains, dem/measure/balance.hpp [-], > 0
   double left_out = 0.01;  ///< share of the loaded grains, the worst, for which it need not hold [-], [0, 1)
 
+  bool operator==(const BalanceSpec &) const = default;
+  /// @throws InputError  naming what is out of range
+  void check() const;
+};
+
+/// Increments of strain that are each taken to balance, in place of time steps at a rate.
+struct StaticStepping
+{
+  double increment = 1e-5; ///< largest strain of one of them, as the rate control counts it [-], (0, 1e-3]
+  BalanceSpec balance = {};
+
+  bool operator==(const StaticStepping &) const = default;
   /// @throws InputError  naming what is out of range
   void check() const;
 };
@@ -28,26 +40,55 @@ struct Relaxed
 {
   Balance balance;
   std::uint64_t steps = 0; ///< force evaluations
+  bool balanced = false;
 };
 
-/// Strains a periodic packing by one increment and takes it to balance without inertia:
+/// Takes packings to balance without inertia, each time after they have been strained with all their grains:
 ///
-///     x <- x + L dt x (all grains with the cell);  repeat { forces;  v <- v + dt F/M;  x <- x + v dt } until balanced
+///     x <- x + L dt x + s u (cell or walls, and grains);  repeat { forces;  v <- v + dt F/M;  x <- x + v dt }
+///     until balanced;  u = what grains have moved beyond L dt x
 ///
 /// Dynamic relaxation with kinetic damping (Cundall 1976; Barnes 1999, Int. J. Space Struct. 14, 89,
 /// doi:10.1260/0266351991494722): grains move under fictitious masses in proportion to the stiffness they feel,
 /// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr) over their contacts, so that all of them are as quick; where
-/// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Grains that touch nothing stay with the cell.
+/// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Dashpots in the contacts, 5 % of critical, take
+/// the motion of grains that rattle between others. Grains that touch nothing stay with the cell.
 /// The history of contacts goes along with every iteration: with history frozen at the start of an increment
 /// relaxation ends in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks
 /// is part of this definition, which is fully dissipative.
 ///
-/// Afterwards grains are at rest, with their own masses. Depends on nothing but the state it begins with: same bits for
-/// any number of threads.
-/// @param displacement_gradient  laboratory frame, |L dt| < 1 %; zero: only to balance
-/// @pre compute_forces(), settings.time_step > 0, a periodic cell
-/// @throws RunFailure  not balanced within limits.max_steps, naming the worst grain; interrupted; exploded
-/// tested: tests/dem/static/relaxation_test.cpp
-Relaxed relax(Assembly &assembly, const Mat3 &displacement_gradient, const BalanceSpec &spec,
-              const RelaxationLimits &limits = {});
+/// As long as it lives grains have these masses and dashpots; afterwards they have their own masses. Depends on nothing but the state it begins with: same bits for any number
+/// of threads.
+/// @pre no gravity
+/// tested: tests/dem/static/relaxation_test.cpp, tests/dem/drive/static_drive_test.cpp
+class Relaxation
+{
+public:
+  explicit Relaxation(Assembly &assembly);
+  ~Relaxation();
+  Relaxation(const Relaxation &) = delete;
+  Relaxation &operator=(const Relaxation &) = delete;
+
+  /// From where the last move has left the grains to balance, at rest.
+  /// @pre compute_forces(), settings.time_step > 0
+  /// @throws RunFailure  not balanced within limits.max_steps, naming the worst grain; interrupted; exploded
+  Relaxed run(const BalanceSpec &spec, const RelaxationLimits &limits = {});
+
+  /// Grains take `share` of their last u with them into the move that follows: a packing that answers as it did before
+  /// is nearly in balance then.
+  /// @param strain  of a box, in which u counts all motion: what the share leaves of its walls', tension positive
+  void extrapolate(double share, const Vec3 &strain = Vec3::Zero());
+
+private:
+  void follow_stiffness(); ///< M and J of the contacts as they are
+  void hold();             ///< one iteration
+  void stop();             ///< of all motion, whose energy is lost
+  void add_half_work();    ///< of a move of the grains as a whole: W = 1/2 (F + F').u is lost
+  void look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const;
+
+  Assembly &assembly_;
+  StepSettings settings_;
+  std::vector<InverseInertia> own_;
+  GrainMotion way_; ///< u
+};
 } // namespace isostat

@@ -57,6 +57,7 @@ struct StageContext
   const ServoSpec &servo;
   Assembly &assembly;
   DriveState &state;
+  StaticDrive drive = {};
 
   /// A box of these edges about the centre of the one that the stage began with.
   RigidBox box_of(const Vec3 &edges) const { return RigidBox::about(state.path.reference.centre(), edges); }

@@ -187,7 +187,7 @@ void Path::walk(const StageContext &c) const
   const double dt = c.assembly.settings.time_step;
   if (knots.at.empty() || progress.place >= knots.at.back())
     return;
-  if (knots.by_time)
+  if (knots.by_time && !c.drive.on)
     {
       progress.place += dt;
       return;
@@ -253,13 +253,33 @@ void Path::close_step(const StageContext &c, const Observation &seen, Vec3 &step
     return;
   Loading &loading = c.state.loading;
   const double largest = step.cwiseAbs().maxCoeff();
-  loading.signed_rate = largest / c.assembly.settings.time_step;
+  loading.signed_rate = c.drive.on ? 0 : largest / c.assembly.settings.time_step;
   loading.strain += largest;
   note_inertia(c, seen);
 }
 
+StaticComponents Path::static_step(const StageContext &c, const Observation &seen) const
+{
+  const std::array<double, 4> steps = prescribed_steps(c, seen);
+  std::array<bool, 4> controlled;
+  for (std::size_t k = 0; k < 4; ++k)
+    controlled[k] = components[k].follows_stress();
+  StaticComponents now, target;
+  now << seen.stress, seen.tau;
+  target << stress_targets(c.state, c.assembly.stress()), tau_target(c.state);
+  StaticComponents step = static_servo(c.assembly, now, target, controlled, StaticComponents(steps.data()),
+                                       servo_rate_factor * c.state.pace.rate, c.state.increment);
+  Vec3 normal = step.head<3>();
+  close_step(c, seen, normal);
+  c.state.progress.gamma += step[3];
+  step.head<3>() = normal;
+  return step;
+}
+
 RigidBox Path::next_box(const StageContext &c, const Observation &seen) const
 {
+  if (c.drive.on)
+    return c.box_of(c.assembly.box().edges().array() * (-static_step(c, seen).head<3>()).array().exp());
   const std::array<double, 4> prescribed = prescribed_steps(c, seen);
   std::array<bool, 3> controlled = {};
   for (std::size_t k = 0; k < 3; ++k)
@@ -279,6 +299,13 @@ RigidBox Path::next_box(const StageContext &c, const Observation &seen) const
 
 Mat3 Path::next_gradient(const StageContext &c, const Observation &seen) const
 {
+  if (c.drive.on)
+    {
+      const StaticComponents step = static_step(c, seen);
+      Mat3 along = (-step.head<3>()).asDiagonal();
+      along(0, 1) = step[3];
+      return along;
+    }
   const std::array<double, 4> prescribed = prescribed_steps(c, seen);
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
   for (int k = 0; k < 3; ++k)

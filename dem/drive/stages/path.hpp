@@ -17,6 +17,7 @@
 // (path_table.hpp) has many such lines, of strains too. They are passed no faster than the rate control allows, or at
 // the times of the table.
 #pragma once
+#include "dem/drive/servo.hpp"
 #include "dem/drive/stages/constant_volume.hpp"
 #include "dem/drive/stages/path_table.hpp"
 
@@ -160,6 +161,8 @@ private:
   Vec3 stress_targets(const DriveState &state, const Mat3 &stress) const;
   double tau_target(const DriveState &state) const;
   std::array<double, 4> prescribed_steps(const StageContext &c, const Observation &seen) const;
+  /// Strains of an increment of a static drive.
+  StaticComponents static_step(const StageContext &c, const Observation &seen) const;
   void close_step(const StageContext &c, const Observation &seen, Vec3 &step) const;
   std::array<double, 4> strain_step(const StageContext &c, double driven, double before) const;
   /// No setting, so paths that differ in nothing else are equal.

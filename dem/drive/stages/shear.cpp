@@ -16,8 +16,9 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t indicator_interval = 50;
-constexpr double consolidation_tolerance = 0.01; ///< of p', on the stresses that a stage begins with
-constexpr double modulus_over_affine = 0.5;      ///< after a reversal grains give way: 0.55 to 0.7 was seen
+constexpr double consolidation_tolerance = 0.01;     ///< of p', on the stresses that a stage begins with
+constexpr double approach = 0.9, least_share = 0.01; ///< of the way to a turn, and of an increment
+constexpr double modulus_over_affine = 0.5;          ///< after a reversal grains give way: 0.55 to 0.7 was seen
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -67,7 +68,10 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
       path.cell_strain.setZero();
       path.gamma = 0;
     }
-  set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
+  if (c.drive.on)
+    c.state.pace = {.rate = c.drive.increment, .time_step = 1, .indicator = c.state.pace.indicator};
+  else
+    set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
   if (const bool vertical = &mode() == &simple_shear_mode; shears() && keeps_volume() && !path.undrained)
     path.undrained = UndrainedStart{vertical ? path.lateral_target[1] : now.p, vertical};
@@ -102,7 +106,7 @@ void ShearStage::load_from_rest(const StageContext &c, double present) const
 void ShearStage::note_inertia(const StageContext &c, const Observation &seen)
 {
   DriveState &state = c.state;
-  if (state.place.steps % indicator_interval == 0)
+  if (state.place.steps % indicator_interval == 0 && !c.drive.on)
     state.pace.indicator =
         quasi_static_indicator(c.assembly, seen.p, state.path.p0(), std::abs(state.loading.signed_rate));
 }
@@ -123,8 +127,25 @@ void ShearStage::note_half_cycle(DriveState &state, double load) const
   loading.half_cycle = std::clamp(done, loading.half_cycle, 1.0);
 }
 
+double ShearStage::increment(const StageContext &c, double present) const
+{
+  Loading &loading = c.state.loading;
+  update_slope(loading, present, 1);
+  const double direction = sign(loading.direction), whole = c.drive.increment,
+               load_left = direction * (turning_load(c.state) - present),
+               strain_left = direction * (turning_strain(c.state) - loading.strain);
+  double step = std::min(whole, strain_left);
+  if (loading.slope > 0) // most of the way, so that a load which grows stiffer does not pass its turn by much
+    step = std::min(step, std::max(approach * load_left / loading.slope, least_share * whole));
+  loading.strain += direction * step;
+  note_half_cycle(c.state, present);
+  return direction * step;
+}
+
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {
+  if (c.drive.on)
+    return increment(c, load(seen));
   DriveState &state = c.state;
   note_inertia(c, seen);
   Loading &loading = state.loading;
@@ -151,8 +172,21 @@ Verdict ShearStage::reached(const StageContext &c, const Observation &) const
   return {.end = there ? std::optional(EndCondition::strain) : std::nullopt};
 }
 
+Vec3 ServoedShear::static_step(const StageContext &c, const Observation &seen) const
+{
+  StaticComponents target, now, prescribed = StaticComponents::Zero();
+  target << lateral_stresses(c), 0;
+  now << seen.stress, 0;
+  prescribed[1] = driven_step(c, seen);
+  return static_servo(c.assembly, now, target, {true, false, true, false}, prescribed,
+                      servo_rate_factor * c.state.pace.rate, c.state.increment)
+      .head<3>();
+}
+
 RigidBox ServoedShear::next_box(const StageContext &c, const Observation &seen) const
 {
+  if (c.drive.on)
+    return c.box_of(c.assembly.box().edges().array() * (-static_step(c, seen)).array().exp());
   driven_step(c, seen);
   const double cap = servo_rate_factor * c.state.pace.rate;
   Vec3 edges = servo_edges(c.assembly, lateral_stresses(c), {true, false, true}, cap, c.state.servo);
@@ -162,6 +196,8 @@ RigidBox ServoedShear::next_box(const StageContext &c, const Observation &seen) 
 
 Mat3 ServoedShear::next_gradient(const StageContext &c, const Observation &seen) const
 {
+  if (c.drive.on)
+    return (-static_step(c, seen)).asDiagonal();
   const double axial = driven_step(c, seen);
   Eigen::Matrix<bool, 3, 3> controlled = Eigen::Matrix<bool, 3, 3>::Constant(false);
   controlled(0, 0) = controlled(2, 2) = true;

@@ -66,6 +66,8 @@ protected:
   void load_from_rest(const StageContext &c, double present) const;
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
+  /// driven_step() of a static drive: the whole increment, or what the slope of the load leaves until it turns.
+  double increment(const StageContext &c, double present) const;
   /// Load at which the present direction turns, Pa; of infinite amount: it does not.
   virtual double turning_load(const DriveState &state) const
   {
@@ -99,6 +101,10 @@ public:
 protected:
   /// Along x, y, z; that along y is not looked at. Pa, compression positive.
   virtual Vec3 lateral_stresses(const StageContext &c) const = 0;
+
+private:
+  /// Strains of an increment of a static drive, compression positive.
+  Vec3 static_step(const StageContext &c, const Observation &seen) const;
 };
 
 /// Lateral stresses are kept at what they are when the stage begins.

@@ -216,6 +216,10 @@ TEST(SceneError, KeysThatExcludeEachOther)
     }
   expect_complaint(smallest + "[motion]\nstrain_rate = \"0.5 1/s\"\ninertial_number = 1e-4",
                    {"motion.strain_rate = 0.5 1/s", "excludes motion.inertial_number (scene.toml:5)"});
+  expect_complaint(smallest + "[motion]\nincrement = 1e-6",
+                   {"motion.increment", "no effect with motion.drive = \"dynamic\""});
+  for (const char *key : {"inertial_number = 1e-4", "strain_rate = \"1 1/s\"", "load_per_wave = 0.1"})
+    expect_complaint(smallest + "[motion]\ndrive = \"static\"\n" + key, {"no effect with motion.drive = \"static\""});
   for (const char *number : {"0", "1", "-1e-4", "nan"})
     expect_complaint(smallest + "[motion]\ninertial_number = " + number, {"scene.toml:4: motion.inertial_number"});
   expect_complaint(smallest + "[motion]\ninertial_number = \"1e-4 1/s\"", {"scene.toml:4: motion.inertial_number"});

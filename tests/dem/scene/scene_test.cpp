@@ -312,12 +312,24 @@ TEST(Scene, RoundTripToTheBit)
           scene.grading = {};
         if (!takes_pressure(scene))
           scene.specimen.pressure = SpecimenSpec{}.pressure;
+        scene.drive = {}; // of a static one
         if (scene.specimen.e_min)
           scene.specimen.e_max = *scene.specimen.e_min * 1.37;
         for (auto &[diameter, percent] : scene.grading.table)
           diameter *= 1.0 / 3.0;
         EXPECT_EQ(parse_scene(to_toml(scene), "resolved.toml"), scene) << to_toml(scene);
       }
+}
+
+TEST(Scene, StaticDrive)
+{
+  const std::string text = smallest + "[motion]\ndrive = \"static\"\nincrement = 2e-6\nbalance = 1e-4\nleft_out = 0\n";
+  const Scene scene = parse_scene(text, "s");
+  EXPECT_TRUE(scene.drive.on);
+  EXPECT_EQ(scene.drive.increment, 2e-6);
+  EXPECT_EQ(scene.drive.balance, (BalanceSpec{1e-4, 0}));
+  EXPECT_EQ(parse_scene(to_toml(scene), "s"), scene);
+  EXPECT_FALSE(parse_scene(smallest, "s").drive.on);
 }
 
 TEST(Scene, LimitsOfTheVoidRatioBelongToTheGrading)

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests that go from balance to balance: every state is balanced, loads turn where they should, paths converge in the
+// increment and hardly depend on the tolerance, energy is accounted for, a stopped run goes on to the same bits.
+#include "dem/drive/programme.hpp"
+#include "tests/support/near.hpp"
+#include "tests/support/specimens.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isostat
+{
+namespace
+{
+struct Watcher : RunObserver
+{
+  void record(const Assembly &a, const DriveState &state, const Observation &seen, bool) override
+  {
+    worst = std::max(worst, a.balance(left_out).within);
+    if (state.undrained.reversals > turns.size())
+      turns.push_back(seen);
+    last = seen;
+    highest = std::max(highest, a.volume()), lowest = std::min(lowest, a.volume());
+    if (a.settings.measure_energy)
+      energy = a.energy();
+    ++rows;
+  }
+  bool after_step(const Assembly &, const DriveState &state, const Observation &) override
+  {
+    return state.place.steps != stop_at;
+  }
+
+  double left_out = 0.01;
+  double worst = 0; ///< imbalance in any row [-]
+  std::vector<Observation> turns;
+  Observation last{};
+  double highest = 0, lowest = HUGE_VAL; ///< volume, m3
+  EnergyBalance energy;
+  std::size_t rows = 0;
+  std::uint64_t stop_at = 0; ///< increments of a stage
+};
+
+struct Result
+{
+  Watcher watcher;
+  DriveState state;
+  Snapshot end;
+};
+
+Programme programme(const Stage &stage, double increment, double tolerance = 0.01)
+{
+  StaticDrive drive;
+  drive.on = true;
+  drive.increment = increment;
+  drive.balance.tolerance = tolerance;
+  return {.drive = drive, .record = {.record_steps = 1}, .stages = {stage}}; // every increment
+}
+
+Result run(const Programme &programme, const Snapshot &initial, int threads = 1, bool energy = false)
+{
+  Result result;
+  Assembly assembly(initial);
+  assembly.settings.threads = threads;
+  assembly.settings.fixed_threads = threads > 1;
+  assembly.settings.measure_energy = energy;
+  EXPECT_EQ(run_programme(programme, assembly, result.state, result.watcher), RunOutcome::finished);
+  result.end = assembly.checkpoint();
+  return result;
+}
+
+UndrainedCyclic cyclic(std::uint64_t cycles, double amplitude = 60e3)
+{
+  UndrainedCyclic stage;
+  stage.deviator_amplitude = amplitude;
+  stage.max_cycles = cycles;
+  return stage;
+}
+
+const Snapshot &in(const std::string &domain) { return test::specimen(500, 8, domain); }
+} // namespace
+
+TEST(StaticDrive, EveryRowIsInBalanceAndLoadsTurnWhereTheyShould)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    {
+      const Watcher seen = run(programme(cyclic(2), 1e-5), in(domain)).watcher;
+      EXPECT_GT(seen.rows, 30u);
+      EXPECT_BELOW_BECAUSE(seen.worst, 0.0101, "0.01 is asked for");
+      ASSERT_EQ(seen.turns.size(), 4u);
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR_BECAUSE(seen.turns[k].q, k % 2 ? -60e3 : 60e3, 300, "a hundredth of an increment is some 40 Pa");
+      EXPECT_BELOW_BECAUSE(seen.highest / seen.lowest - 1, 1e-12, "round-off: no water flows");
+    }
+}
+
+TEST(StaticDrive, PathsConvergeInTheIncrementAndTheTolerance)
+{
+  const auto at_turn = [](double increment, double tolerance) {
+    return run(programme(cyclic(2), increment, tolerance), in("periodic-cell")).watcher.turns.back().p;
+  };
+  const double p0 = 200e3, chosen = at_turn(1e-5, 0.01);
+  EXPECT_BELOW_BECAUSE(std::abs(at_turn(5e-6, 0.01) - chosen), 3e-3 * p0, "the default is good for 0.3 % of p0'");
+  EXPECT_BELOW_BECAUSE(std::abs(at_turn(1e-5, 1e-3) - chosen), 1e-3 * p0, "the tolerance counts less");
+}
+
+TEST(StaticDrive, StressesThatAreKeptStayOnTheirTargets)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    {
+      const Result found = run(programme(test::sheared_to<Drained>(2e-3), 1e-5), in(domain));
+      EXPECT_GT(found.watcher.last.q, 100e3);
+      for (int k : {0, 2})
+        EXPECT_NEAR_BECAUSE(found.watcher.last.stress[k] / found.state.path.lateral_target[k], 1, 0.01,
+                            "the control of a test asks for 1 %");
+      EXPECT_TRUE(found.state.control.losses.empty());
+    }
+}
+
+TEST(StaticDrive, EnergyGoesIntoSpringsFrictionAndRelaxation)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    {
+      const EnergyBalance e =
+          run(programme(test::sheared_to<UndrainedMonotonic>(1e-3), 1e-5), in(domain), 1, true).watcher.energy;
+      EXPECT_GT(e.boundary_work, 0);
+      EXPECT_GT(e.sliding, 0);
+      EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 0.02 * (e.boundary_work + std::abs(e.elastic) + e.dissipated()),
+                           "0.2 % of what went round in the cell, 1 % in the box: iterations are at the stable limit");
+    }
+}
+
+TEST(StaticDrive, HasTheSameBitsForAnyNumberOfThreadsAndAfterAStop)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    {
+      const Programme test = programme(cyclic(1), 2e-5);
+      const Snapshot whole = run(test, in(domain)).end;
+      EXPECT_EQ(run(test, in(domain), 3).end.grains.position, whole.grains.position);
+      Watcher watcher;
+      watcher.stop_at = 7;
+      DriveState state;
+      Assembly first(in(domain));
+      ASSERT_EQ(run_programme(test, first, state, watcher), RunOutcome::interrupted);
+      Assembly second(first.checkpoint());
+      watcher.stop_at = 0;
+      ASSERT_EQ(run_programme(test, second, state, watcher), RunOutcome::finished);
+      const Snapshot end = second.checkpoint();
+      EXPECT_EQ(end.grains.position, whole.grains.position);
+      EXPECT_EQ(end.grains.spin, whole.grains.spin);
+      EXPECT_EQ(end.contacts.size(), whole.contacts.size());
+    }
+}
+
+TEST(StaticDrive, GoesThroughLiquefactionAndReversals)
+{
+  UndrainedCyclic stage = cyclic(20, 50e3);
+  stage.max_strain = 0.02;
+  const Result found = run(programme(stage, 1e-4), test::periodic_specimen(300, 11));
+  EXPECT_TRUE(found.state.undrained.liquefaction);
+  EXPECT_GT(found.state.undrained.reversals, 0u);
+  EXPECT_BELOW_BECAUSE(found.watcher.worst, 0.0101, "0.01 is asked for, without a network too");
+}
+
+TEST(StaticDrive, HardCases)
+{
+  Snapshot smooth = in("periodic-cell");
+  LinearRolling law;
+  smooth.law = law; // frictionless: it collapses
+  const Result collapsed = run(programme(test::sheared_to<UndrainedMonotonic>(2e-3), 1e-4), smooth);
+  EXPECT_BELOW_BECAUSE(collapsed.watcher.last.p, 20e3, "rough grains hold 200 kPa, smooth ones nearly nothing");
+  const Result large = run(programme(test::sheared_to<UndrainedMonotonic>(5e-3), 1e-3), in("periodic-cell"));
+  EXPECT_BELOW_BECAUSE(large.watcher.worst, 0.0101, "increments of 1e-3 are coarse, but balanced");
+}
+} // namespace isostat
