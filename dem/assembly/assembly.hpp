@@ -120,8 +120,9 @@ public:
   Vec3 contact_stress() const;
   /// See unbalanced_force().  @pre compute_forces(), not yet moved
   double unbalanced_force_ratio() const;
-  /// See dem/measure/balance.hpp.  @pre compute_forces(), not yet moved
-  Balance balance(double left_out) const;
+  /// See dem/measure/balance.hpp: forces that a mean stress of 1e-3 of a reference makes count as none, and those of
+  /// overlaps of 1e-11 d50.   @param reference  Pa   @pre compute_forces(), not yet moved
+  Balance balance(double left_out, double reference) const;
   /// The closed contacts for further measures.  @pre compute_forces(), not yet moved
   LiveContacts live_contacts() const;
 

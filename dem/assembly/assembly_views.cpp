@@ -27,9 +27,11 @@ double Assembly::unbalanced_force_ratio() const
   return unbalanced_force(live_contacts(), forces().action().data(), settings.gravity);
 }
 
-Balance Assembly::balance(double left_out) const
+Balance Assembly::balance(double left_out, double reference) const
 {
-  return isostat::balance(live_contacts(), forces().action().data(), left_out);
+  const double no_force =
+      std::max(1e-3 * reference * d50_ * d50_, law_->normal_force(0.5 * d50_, 0.5 * d50_, 1e-11 * d50_));
+  return isostat::balance(live_contacts(), forces().action().data(), left_out, no_force);
 }
 
 double Assembly::power() const

@@ -49,7 +49,7 @@ public:
         if (relaxation_ && state_.place.steps == 0)
           assembly_.stop_grains(); // whose masses are still their own
         if (relaxation_)
-          state_.pace.indicator = relaxation_->run(programme_.drive.balance).balance.within;
+          state_.pace.indicator = relaxation_->run(programme_.drive.balance, {state_.path.p0()}).balance.within;
         const Observation seen = look();
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.end.has_value();

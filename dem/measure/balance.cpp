@@ -8,8 +8,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double least_load = 1e-3;     ///< of the mean contact force
-constexpr double least_overlap = 1e-11; ///< of the radius
+constexpr double least_load = 1e-3; ///< of the mean contact force
 
 /// Largest contact force on each grain, 0: it touches nothing.   @param mean  of all contacts
 std::vector<double> largest_forces(const LiveContacts &contacts, double &mean)
@@ -34,7 +33,7 @@ std::vector<double> largest_forces(const LiveContacts &contacts, double &mean)
 }
 } // namespace
 
-Balance balance(const LiveContacts &contacts, const double *action, double left_out)
+Balance balance(const LiveContacts &contacts, const double *action, double left_out, double no_force)
 {
   double mean = 0;
   const std::vector<double> largest = largest_forces(contacts, mean);
@@ -45,9 +44,7 @@ Balance balance(const LiveContacts &contacts, const double *action, double left_
       {
         const double residual =
             std::max(Vec3(action + 8 * i).norm(), Vec3(action + 8 * i + 4).norm() / contacts.packing.radius(i));
-        const double r = contacts.packing.radius(i);
-        imbalance.push_back(
-            residual / std::max({largest[i], least_load * mean, contacts.law.normal_force(r, r, least_overlap * r)}));
+        imbalance.push_back(residual / std::max({largest[i], least_load * mean, no_force}));
         if (imbalance.back() > found.worst)
           found.worst = imbalance.back(), found.grain = contacts.packing.id[i];
       }

@@ -173,7 +173,7 @@ void Rve::run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping)
   if (!(parts < static_cast<double>(settings_.max_steps)))
     throw RunFailure(fmt::format("an increment of strain {:.3g} has {:.3g} parts", size, parts));
   update_time_step(settings_.motion, true, 0, assembly_, drive_.pace);
-  RelaxationLimits limits{settings_.max_steps, {}};
+  RelaxationLimits limits{drive_.p0, settings_.max_steps, {}};
   if (!rolling_back_)
     limits.go_on = settings_.go_on;
   Relaxation relaxation(assembly_);

@@ -95,7 +95,7 @@ void Relaxation::hold()
 
 void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const
 {
-  found.balance = assembly_.balance(spec.left_out);
+  found.balance = assembly_.balance(spec.left_out, limits.reference);
   found.balanced = found.balance.within <= spec.tolerance;
   if (found.balanced)
     return;

@@ -32,6 +32,7 @@ struct StaticStepping
 /// How a relaxation is watched.
 struct RelaxationLimits
 {
+  double reference = 0; ///< mean stress by which one is small: forces of a thousandth of it count as none, Pa
   std::uint64_t max_steps = 1'000'000;
   std::function<bool()> go_on = {}; ///< asked at every look at the balance, if given
 };
@@ -57,10 +58,10 @@ struct Relaxed
 /// relaxation ends in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks
 /// is part of this definition, which is fully dissipative.
 ///
-/// As long as it lives grains have these masses and dashpots; afterwards they have their own masses. Depends on nothing but the state it begins with: same bits for any number
-/// of threads.
+/// As long as it lives grains have these masses and dashpots; afterwards they have their own masses. Depends on nothing
+/// but the state it begins with: same bits for any number of threads.
 /// @pre no gravity
-/// tested: tests/dem/static/relaxation_test.cpp, tests/dem/drive/static_drive_test.cpp
+/// tested: tests/dem/static/relaxation_test.cpp, tests/verification/static_drive_test.cpp
 class Relaxation
 {
 public:

@@ -15,7 +15,7 @@ struct Watcher : RunObserver
 {
   void record(const Assembly &a, const DriveState &state, const Observation &seen, bool) override
   {
-    worst = std::max(worst, a.balance(left_out).within);
+    worst = std::max(worst, a.balance(left_out, state.path.p0()).within);
     if (state.undrained.reversals > turns.size())
       turns.push_back(seen);
     last = seen;
