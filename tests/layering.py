@@ -63,7 +63,7 @@ INNER = {
         "measure": GRAINS,
         "assembly": GRAINS | {"contact", "neighbours", "motion", "measure"},
         "static": STEP,
-        "drive": STEP,
+        "drive": STEP | {"static"},
         "scene": BY_NAME | {"drive"},
         "io": BY_NAME | GRAINS | {"measure", "drive"},
         "prepare": STEP | BY_NAME | {"scene", "io", "drive"},
