@@ -76,7 +76,8 @@ void remove_end(const fs::path &folder, bool same_scene)
           files.push_back(figure.path());
     }
   for (const fs::path &file : files)
-    fs::remove(file);
+    if (!fs::is_directory(file)) // a folder of the user's
+      fs::remove(file);
 }
 
 /// @throws InputError  it speaks of stages that the scene does not have

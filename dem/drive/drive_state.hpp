@@ -78,9 +78,10 @@ struct LastIncrement
   Vec3 stress = Vec3::Zero();
   double tau = 0;
   Vec3 moduli_x = Vec3::Zero(), moduli_y = Vec3::Zero(), moduli_z = Vec3::Zero(); ///< rows d sigma_i / d eps_j
+  Vec3 by_gamma = Vec3::Zero(), of_tau = Vec3::Zero(); ///< d sigma_i / d gamma, d tau / d eps_j
   double shear_modulus = 0;
 
-  ISOSTAT_FIELDS(strain, gamma, stress, tau, moduli_x, moduli_y, moduli_z, shear_modulus)
+  ISOSTAT_FIELDS(strain, gamma, stress, tau, moduli_x, moduli_y, moduli_z, by_gamma, of_tau, shear_modulus)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.

@@ -36,6 +36,8 @@ public:
       return RunOutcome::finished;
     if (stage_.drives() && programme_.drive.on)
       {
+        if (state_.place.steps == 0)
+          end_motion();
         relaxation_.emplace(assembly_);
         assembly_.settings.carry_grains = false; // they are set to go with the walls
         state_.pace.time_step = 1;               // of iterations
@@ -46,10 +48,8 @@ public:
         if (!relaxation_)
           update_time_step(programme_.motion, stage_.shears(), state_.place.steps, assembly_, state_.pace);
         assembly_.compute_forces();
-        if (relaxation_ && state_.place.steps == 0)
-          assembly_.stop_grains(); // whose masses are still their own
         if (relaxation_)
-          state_.pace.indicator = relaxation_->run(programme_.drive.balance, {state_.path.p0()}).balance.within;
+          relax();
         const Observation seen = look();
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.end.has_value();
@@ -81,6 +81,22 @@ private:
     if (const std::string cycle = cycle_text(programme_.stages, state_.place.done); !cycle.empty())
       observer_.event(fmt::format("stage {} ({}){}", state_.place.stage, stage_.kind(), cycle));
     stage_.begin(context_);
+  }
+
+  /// Before a static stage: the last move of the stage before counts with its own time step, and grains stop.
+  void end_motion()
+  {
+    if (assembly_.settings.time_step > 0)
+      assembly_.compute_forces();
+    if (assembly_.settings.measure_energy)
+      assembly_.add_loss(assembly_.kinetic_energy());
+    assembly_.stop_grains();
+  }
+
+  void relax()
+  {
+    const double reference = state_.path.start ? state_.path.p0() : -assembly_.stress().trace() / 3;
+    state_.pace.indicator = relaxation_->run(programme_.drive.balance, {reference}).balance.within;
   }
 
   Observation look()
@@ -136,7 +152,7 @@ private:
   void look_at_control(const Observation &seen, bool finished)
   {
     std::vector<std::string> lost;
-    if (state_.place.steps % control_interval == 1) // the indicator is of the step before
+    if (relaxation_ || state_.place.steps % control_interval == 1) // the indicator is of the step before
       lost = check_control(programme_.control, stage_.kept_stresses(context_),
                            {seen.stress[0], seen.stress[1], seen.stress[2], seen.tau}, stage_.planned_strain(), state_,
                            stage_.stress_scale(context_));
@@ -146,9 +162,9 @@ private:
     for (const std::string &line : lost)
       observer_.event(line);
     if (programme_.control.stop && !lost.empty())
-      throw RunFailure(fmt::format("step {}: {}. Lower motion.inertial_number, prepare a specimen that can carry the "
+      throw RunFailure(fmt::format("step {}: {}. Lower motion.{}, prepare a specimen that can carry the "
                                    "stresses, or give control.on_loss = \"report\".",
-                                   seen.step, lost.front()));
+                                   seen.step, lost.front(), relaxation_ ? "increment" : "inertial_number"));
   }
 
   void move(const Observation &seen, bool finished)

@@ -19,22 +19,25 @@ constexpr double shear_over_normal = 0.4;
 /// Of grains that find their places, and lateral over axial stiffness: where static_servo() begins.
 constexpr double relaxed_over_affine = 0.6, lateral_over_normal = 0.25;
 
-/// The stiffness of normal strains after the last increment.
-Mat3 corrected_moduli(const Assembly &assembly, const Vec3 &now, LastIncrement &last)
+/// The stiffness after the last increment.
+Eigen::Matrix4d corrected_moduli(const Assembly &assembly, const StaticComponents &now, LastIncrement &last)
 {
-  Mat3 k;
-  k << last.moduli_x.transpose(), last.moduli_y.transpose(), last.moduli_z.transpose();
-  const Vec3 strain = -last.strain;
+  Eigen::Matrix4d k;
+  k << last.moduli_x.transpose(), last.by_gamma[0], last.moduli_y.transpose(), last.by_gamma[1],
+      last.moduli_z.transpose(), last.by_gamma[2], last.of_tau.transpose(), last.shear_modulus;
+  StaticComponents strain, before;
+  strain << -last.strain, last.gamma;
+  before << last.stress, last.tau;
   if (k.isZero(0))
     {
       const Vec3 moduli = relaxed_over_affine * affine_moduli(assembly.live_contacts(), assembly.volume());
-      k.setConstant(lateral_over_normal * moduli.mean());
-      k.diagonal() = moduli;
-      last.shear_modulus = shear_over_normal * moduli.mean();
+      k.topLeftCorner<3, 3>().setConstant(lateral_over_normal * moduli.mean());
+      k.diagonal() << moduli, shear_over_normal * moduli.mean();
     }
   else if (strain.squaredNorm() > 0)
-    k += (now - last.stress - k * strain) * strain.transpose() / strain.squaredNorm();
-  last.moduli_x = k.row(0), last.moduli_y = k.row(1), last.moduli_z = k.row(2);
+    k += (now - before - k * strain) * strain.transpose() / strain.squaredNorm();
+  last.moduli_x = k.row(0).head<3>(), last.moduli_y = k.row(1).head<3>(), last.moduli_z = k.row(2).head<3>();
+  last.by_gamma = k.col(3).head<3>(), last.of_tau = k.row(3).head<3>(), last.shear_modulus = k(3, 3);
   return k;
 }
 } // namespace
@@ -43,15 +46,12 @@ StaticComponents static_servo(const Assembly &assembly, const StaticComponents &
                               const std::array<bool, 4> &controlled, const StaticComponents &prescribed, double cap,
                               LastIncrement &last)
 {
-  Mat3 factors = corrected_moduli(assembly, now.head<3>(), last);
-  Vec3 right = (target - now).head<3>();
-  for (int k = 0; k < 3; ++k)
+  Eigen::Matrix4d factors = corrected_moduli(assembly, now, last);
+  StaticComponents right = target - now;
+  for (int k = 0; k < 4; ++k)
     if (!controlled[k])
-      factors.row(k) = Vec3::Unit(k), right[k] = prescribed[k];
-  if (last.gamma != 0 && (now[3] - last.tau) / last.gamma > 0)
-    last.shear_modulus = (now[3] - last.tau) / last.gamma;
-  StaticComponents strain;
-  strain << Vec3(factors.partialPivLu().solve(right)), (target[3] - now[3]) / last.shear_modulus;
+      factors.row(k) = StaticComponents::Unit(k), right[k] = prescribed[k];
+  StaticComponents strain = factors.partialPivLu().solve(right);
   for (int k = 0; k < 4; ++k)
     if (!controlled[k])
       strain[k] = prescribed[k];

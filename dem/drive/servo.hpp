@@ -34,9 +34,8 @@ using StaticComponents = Eigen::Vector4d;
 
 /// The next increment of a static drive: strains of the controlled components that bring their stresses to the targets,
 ///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
-/// beside those that are prescribed (p). K of the normal components begins as three fifths of the affine stiffness and
-/// is corrected after each increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577,
-/// doi:10.1090/S0025-5718-1965-0198670-6); the shear modulus is a secant.
+/// beside those that are prescribed (p). K begins as three fifths of the affine stiffness and is corrected after each
+/// increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577, doi:10.1090/S0025-5718-1965-0198670-6).
 /// @param now  stresses as they are, Pa   @param prescribed  [-]   @param cap  on each strain, an amount [-]
 /// tested: tests/verification/static_drive_test.cpp
 StaticComponents static_servo(const Assembly &assembly, const StaticComponents &now, const StaticComponents &target,

@@ -104,7 +104,8 @@ void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationL
   if (found.steps >= limits.max_steps)
     throw RunFailure(fmt::format(
         "not in balance after {} force evaluations: {:.3g} where {:g} is allowed for all but {:g} % of {} loaded "
-        "grains; grain {} is worst, {:.3g}. Take a smaller increment, or a larger tolerance.",
+        "grains; grain {} is worst, {:.3g}. Take a smaller increment (motion.increment) or a larger tolerance "
+        "(motion.balance).",
         found.steps, found.balance.within, spec.tolerance, 100 * spec.left_out, found.balance.loaded,
         found.balance.grain, found.balance.worst));
 }

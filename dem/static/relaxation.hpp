@@ -33,7 +33,7 @@ struct StaticStepping
 struct RelaxationLimits
 {
   double reference = 0; ///< mean stress by which one is small: forces of a thousandth of it count as none, Pa
-  std::uint64_t max_steps = 1'000'000;
+  std::uint64_t max_steps = 200'000;
   std::function<bool()> go_on = {}; ///< asked at every look at the balance, if given
 };
 

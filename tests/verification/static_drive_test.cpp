@@ -115,6 +115,33 @@ TEST(StaticDrive, StressesThatAreKeptStayOnTheirTargets)
     }
 }
 
+TEST(StaticDrive, BeginsWhereADynamicStageHasEnded)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    {
+      Compress compress;
+      compress.pressure = 210e3;
+      compress.balance = 1e-3;
+      Programme two = programme(compress, 1e-5);
+      two.stages.push_back(test::sheared_to<UndrainedMonotonic>(1.005e-3));
+      const Result found = run(two, in(domain));
+      EXPECT_NEAR_BECAUSE(found.state.path.p0() / 210e3, 1, 5e-3, "the servo stops within 0.3 %, grains come to rest");
+      EXPECT_NEAR_BECAUSE(found.state.loading.strain, 1.005e-3, 1e-8, "the last increment is cut at the end");
+    }
+}
+
+TEST(StaticDrive, AShearThatDilatesKeepsItsNormalStress)
+{
+  Path path;
+  path.drive = DrivenComponent::xy;
+  path.components[1].keep = PathCondition::stress;
+  path.end.strain = 1e-3;
+  const Result found = run(programme(path, 1e-5), in("periodic-cell"));
+  EXPECT_GT(found.watcher.last.tau, 20e3);
+  EXPECT_NEAR_BECAUSE(found.watcher.last.stress[1] / found.state.progress.stress[1], 1, 0.02, "1 % is usual");
+  EXPECT_TRUE(found.state.control.losses.empty());
+}
+
 TEST(StaticDrive, EnergyGoesIntoSpringsFrictionAndRelaxation)
 {
   for (const std::string domain : {"periodic-cell", "rigid-box"})

@@ -135,6 +135,8 @@ double ShearStage::increment(const StageContext &c, double present) const
                load_left = direction * (turning_load(c.state) - present),
                strain_left = direction * (turning_strain(c.state) - loading.strain);
   double step = std::min(whole, strain_left);
+  if (const double end = planned_strain(); end > std::abs(loading.strain))
+    step = std::min(step, (1 + 1e-9) * (end - std::abs(loading.strain))); // round-off does not keep it from the end
   if (loading.slope > 0) // most of the way, so that a load which grows stiffer does not pass its turn by much
     step = std::min(step, std::max(approach * load_left / loading.slope, least_share * whole));
   loading.strain += direction * step;
