@@ -178,7 +178,7 @@ void Rve::run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping)
     limits.go_on = settings_.go_on;
   Relaxation relaxation(assembly_);
   assembly_.stop_grains();
-  const std::uint64_t n = static_cast<std::uint64_t>(parts);
+  const auto n = static_cast<std::uint64_t>(parts);
   for (std::uint64_t k = 0; k < n; ++k)
     {
       if (k > 0)

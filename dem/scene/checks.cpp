@@ -140,14 +140,14 @@ void check_drive(const SceneDocument &document, const Scene &scene)
         for (const char *key : {"strain_rate", "stress_rate"})
           idle.push_back(fmt::format("stage.{}.{}", i, key));
     }
-  if (scene.drive.on && std::none_of(scene.stages.begin(), scene.stages.end(),
-                                     [](const Stage &stage) { return behaviour(stage).drives(); }))
-    document.refuse("motion.drive", "has no effect, because no stage shears. Leave it out, or add a stage that does.");
   for (const std::string &path : idle)
     if (document.find(path))
       document.refuse(path, fmt::format("has no effect with motion.drive = \"{}\". Leave it out, or give the other "
                                         "drive.",
                                         scene.drive.on ? "static" : "dynamic"));
+  if (scene.drive.on && std::none_of(scene.stages.begin(), scene.stages.end(),
+                                     [](const Stage &stage) { return behaviour(stage).drives(); }))
+    document.refuse("motion.drive", "has no effect, because no stage shears. Leave it out, or add a stage that does.");
 }
 } // namespace
 

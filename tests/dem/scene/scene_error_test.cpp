@@ -220,6 +220,8 @@ TEST(SceneError, KeysThatExcludeEachOther)
                    {"motion.increment", "no effect with motion.drive = \"dynamic\""});
   for (const char *key : {"inertial_number = 1e-4", "strain_rate = \"1 1/s\"", "load_per_wave = 0.1"})
     expect_complaint(smallest + "[motion]\ndrive = \"static\"\n" + key, {"no effect with motion.drive = \"static\""});
+  expect_complaint(smallest + "[motion]\ndrive = \"static\"",
+                   {"motion.drive = static; has no effect, because no stage shears"});
   for (const char *number : {"0", "1", "-1e-4", "nan"})
     expect_complaint(smallest + "[motion]\ninertial_number = " + number, {"scene.toml:4: motion.inertial_number"});
   expect_complaint(smallest + "[motion]\ninertial_number = \"1e-4 1/s\"", {"scene.toml:4: motion.inertial_number"});

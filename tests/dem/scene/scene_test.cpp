@@ -323,7 +323,8 @@ TEST(Scene, RoundTripToTheBit)
 
 TEST(Scene, StaticDrive)
 {
-  const std::string text = smallest + "[motion]\ndrive = \"static\"\nincrement = 2e-6\nbalance = 1e-4\nleft_out = 0\n";
+  const std::string text = smallest + "[motion]\ndrive = \"static\"\nincrement = 2e-6\nbalance = 1e-4\nleft_out = 0\n" +
+                           "[[stage]]\nkind = \"drained\"\nstrain = 0.1\n";
   const Scene scene = parse_scene(text, "s");
   EXPECT_TRUE(scene.drive.on);
   EXPECT_EQ(scene.drive.increment, 2e-6);
