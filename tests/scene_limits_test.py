@@ -19,7 +19,7 @@ STATED = {
     "scene": {
         "specimen.pressure": "a twentieth of the modulus", "specimen.e_min": "Below `e_max`",
         "specimen.consolidation": "in the periodic-cell only; not together with `file`",
-        "specimen.relative_density": "",
+        "specimen.relative_density": "", "motion.drive": "static needs a stage that shears",
         "specimen.file": "", "contact.rolling": "Needs `friction`", "contact.twisting": "Needs `friction`",
         "stage.friction": "Above 0 deg only where", "stage.stages": "At most as many as there are",
         "stage.kind": "need the domain periodic-cell", "stage.deviator_average": "q must lie between them"},
