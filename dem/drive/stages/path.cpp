@@ -279,7 +279,7 @@ StaticComponents Path::static_step(const StageContext &c, const Observation &see
 RigidBox Path::next_box(const StageContext &c, const Observation &seen) const
 {
   if (c.drive.on)
-    return c.box_of(c.assembly.box().edges().array() * (-static_step(c, seen).head<3>()).array().exp());
+    return c.assembly.box().strained(-static_step(c, seen).head<3>());
   const std::array<double, 4> prescribed = prescribed_steps(c, seen);
   std::array<bool, 3> controlled = {};
   for (std::size_t k = 0; k < 3; ++k)

@@ -188,7 +188,7 @@ Vec3 ServoedShear::static_step(const StageContext &c, const Observation &seen) c
 RigidBox ServoedShear::next_box(const StageContext &c, const Observation &seen) const
 {
   if (c.drive.on)
-    return c.box_of(c.assembly.box().edges().array() * (-static_step(c, seen)).array().exp());
+    return c.assembly.box().strained(-static_step(c, seen));
   driven_step(c, seen);
   const double cap = servo_rate_factor * c.state.pace.rate;
   Vec3 edges = servo_edges(c.assembly, lateral_stresses(c), {true, false, true}, cap, c.state.servo);
