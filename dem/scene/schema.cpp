@@ -230,7 +230,7 @@ bool is_implied(const Key &key, const void *scene)
          (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
          (path.starts_with("grading.") && !s.specimen.file.empty() &&
           (path != "grading.density" || specimen_place(s.specimen.file).path.ends_with(".h5"))) ||
-         (path == "specimen.pressure" && !takes_pressure(s)) ||
+         (path == "specimen.pressure" && !takes_pressure(s) && s.specimen.pressure == SpecimenSpec{}.pressure) ||
          (s.drive.on ? path == "motion.load_per_wave"
                      : path == "motion.increment" || path == "motion.balance" || path == "motion.left_out");
 }

@@ -310,8 +310,6 @@ TEST(Scene, RoundTripToTheBit)
           scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
         if (!scene.specimen.file.empty()) // whose grains are its own
           scene.grading = {};
-        if (!takes_pressure(scene))
-          scene.specimen.pressure = SpecimenSpec{}.pressure;
         scene.drive = {}; // of a static one
         if (scene.specimen.e_min)
           scene.specimen.e_max = *scene.specimen.e_min * 1.37;
