@@ -220,33 +220,12 @@ void Assembly::stop_grains()
     }
 }
 
-void Assembly::add_motion(GrainMotion &sum) const
-{
-  sum.resize(6 * packing_.n_grains());
-  const double dt = settings.time_step;
-  for (std::size_t i = 0; i < packing_.n_grains(); ++i)
-    for (int k = 0; k < 3; ++k)
-      {
-        sum[6 * i + k] += dt * packing_.velocity[4 * i + k];
-        sum[6 * i + 3 + k] += dt * packing_.spin[4 * i + k];
-      }
-}
-
-void Assembly::set_motion(const GrainMotion &motion, double share, const Vec3 &strain)
+void Assembly::set_homogeneous_motion(const Vec3 &rate)
 {
   const double *action = forces().action().data();
-  const double dt = settings.time_step;
-  const Vec3 centre = domain_.box.centre();
   for (std::size_t i = 0; i < packing_.n_grains(); ++i)
-    {
-      const bool touches = std::any_of(action + 8 * i, action + 8 * i + 8, [](double x) { return x != 0; });
-      for (int k = 0; touches && k < 3; ++k)
-        {
-          packing_.velocity[4 * i + k] =
-              (share * motion[6 * i + k] + strain[k] * (packing_.position[4 * i + k] - centre[k])) / dt;
-          packing_.spin[4 * i + k] = share * motion[6 * i + 3 + k] / dt;
-        }
-    }
+    if (std::any_of(action + 8 * i, action + 8 * i + 8, [](double x) { return x != 0; }))
+      packing_.set_linear_velocity(i, rate.cwiseProduct(packing_.centre(i) - domain_.box.centre()));
 }
 
 void Assembly::set_inverse_inertia(const std::vector<InverseInertia> &inertia)

@@ -33,9 +33,6 @@ struct AssemblyState
   std::size_t bytes() const;
 };
 
-/// What each grain has moved and turned beyond the homogeneous strain, m and rad: 6 numbers a grain.
-using GrainMotion = std::vector<double>;
-
 /// What a grain resists motion with, inverted: 1/kg and 1/(kg m2).
 struct InverseInertia
 {
@@ -77,11 +74,8 @@ public:
 
   /// For relaxations (dem/static), between compute_forces() and the next move. Grains lose their motion.
   void stop_grains();
-  /// They have moved by dt v in the last move, which is added to `sum` (empty: zero).
-  void add_motion(GrainMotion &sum) const;
-  /// Those that touch something are to move in the next one by `share` of a motion, and in a box with its strain about
-  /// the centre, tension positive.
-  void set_motion(const GrainMotion &motion, double share, const Vec3 &strain);
+  /// Those that touch something go with a strain rate of a box about its centre, 1/s, tension positive.
+  void set_homogeneous_motion(const Vec3 &rate);
   /// They move with other masses.   @pre one for each grain
   void set_inverse_inertia(const std::vector<InverseInertia> &inertia);
   std::vector<InverseInertia> inverse_inertia() const;

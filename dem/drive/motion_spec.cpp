@@ -74,7 +74,7 @@ constexpr Key statics[] = {
    .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
            "taken to balance; rates and dampings have no part in it. Preparation is dynamic; static needs a stage that shears.",
    .field = [](StaticDrive &d) -> Field { return &d.on; }},
-  {.path = "increment", .value = "1e-5", .range = {0, 1e-3, true, false},
+  {.path = "increment", .value = "5e-5", .range = {0, 1e-3, true, false},
    .reason = "because there is no other end to an increment, and contacts slide by more than their overlap in one of 1e-3",
    .text = "static: driven strain of an increment; shorter ones end where the load turns.",
    .field = [](StaticDrive &d) -> Field { return &d.increment; }},

@@ -38,7 +38,7 @@ public:
       {
         if (state_.place.steps == 0)
           end_motion();
-        relaxation_.emplace(assembly_);
+        relaxation_.emplace(assembly_, programme_.drive.increment);
         assembly_.settings.carry_grains = false; // they are set to go with the walls
         state_.pace.time_step = 1;               // of iterations
       }
@@ -172,29 +172,21 @@ private:
     if (!assembly_.cell())
       {
         const RigidBox next = finished ? assembly_.box() : stage_.next_box(context_, seen);
-        extrapolate((next.edges().array() / assembly_.box().edges().array()).log(), 0);
-        assembly_.move(next);
+        note_increment((next.edges().array() / assembly_.box().edges().array()).log(), 0);
+        relaxation_ ? void(relaxation_->move(next)) : assembly_.move(next);
         return;
       }
     const Mat3 gradient = finished ? Mat3::Zero() : stage_.next_gradient(context_, seen);
-    extrapolate(gradient.diagonal(), gradient(0, 1));
+    note_increment(gradient.diagonal(), gradient(0, 1));
     state_.path.cell_strain += gradient.diagonal();
     state_.path.gamma += gradient(0, 1);
-    assembly_.deform(gradient);
+    relaxation_ ? void(relaxation_->deform(gradient)) : assembly_.deform(gradient);
   }
 
-  /// Grains go on as in the last increment, as far as the next one is along it.
-  void extrapolate(const Vec3 &strain, double gamma)
+  void note_increment(const Vec3 &strain, double gamma)
   {
-    if (!relaxation_)
-      return;
-    LastIncrement &last = state_.increment;
-    const double along = last.strain.dot(strain) + last.gamma * gamma,
-                 size = last.strain.squaredNorm() + last.gamma * last.gamma,
-                 share = size > 0 ? std::clamp(along / size, -1.0, 1.5) : 0;
-    relaxation_->extrapolate(share, assembly_.cell() ? Vec3(Vec3::Zero()) : Vec3(strain - share * last.strain));
-    last.strain = strain;
-    last.gamma = gamma;
+    if (relaxation_)
+      state_.increment.strain = strain, state_.increment.gamma = gamma;
   }
 
   const Programme &programme_;

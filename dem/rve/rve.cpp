@@ -176,19 +176,17 @@ void Rve::run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping)
   RelaxationLimits limits{drive_.p0, settings_.max_steps, {}};
   if (!rolling_back_)
     limits.go_on = settings_.go_on;
-  Relaxation relaxation(assembly_);
+  Relaxation relaxation(assembly_, stepping.increment);
   assembly_.stop_grains();
   const auto n = static_cast<std::uint64_t>(parts);
   for (std::uint64_t k = 0; k < n; ++k)
     {
-      if (k > 0)
-        relaxation.extrapolate(1);
-      assembly_.deform(own_gradient / parts);
+      const std::uint64_t moved = relaxation.deform(own_gradient / parts);
       assembly_.compute_forces();
       const Relaxed relaxed = relaxation.run(stepping.balance, limits);
       balance_ = relaxed.balance;
-      cost_.steps += relaxed.steps + 1;
-      limits.max_steps -= std::min(limits.max_steps, relaxed.steps + 1);
+      cost_.steps += relaxed.steps + moved;
+      limits.max_steps -= std::min(limits.max_steps, relaxed.steps + moved);
     }
 }
 

@@ -121,8 +121,8 @@ Scene parse_scene(const std::string &text, const std::string &name, const std::v
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
 /// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign
-/// to the kind of its stage, the control of a scene without stages, the consolidation in a rigid box, and the grading of
-/// a scene whose packing comes from a file.
+/// to the kind of its stage, the control of a scene without stages, the consolidation in a rigid box, and the grading
+/// of a scene whose packing comes from a file.
 std::string to_toml(const Scene &scene);
 
 /// A commented TOML scene with all defaults, units, ranges and one sentence per key (--print-defaults).

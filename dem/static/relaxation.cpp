@@ -12,6 +12,7 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t look_interval = 10, mass_interval = 200; ///< iterations
+constexpr double iterations_of_increment = 100;
 /// Contacts of its own size that a grain has at least, as far as its mass goes: one that gains a contact stays stable.
 constexpr double least_contacts = 3;
 
@@ -42,8 +43,8 @@ void StaticStepping::check() const
   balance.check();
 }
 
-Relaxation::Relaxation(Assembly &assembly)
-    : assembly_(assembly), settings_(assembly.settings), own_(assembly.inverse_inertia())
+Relaxation::Relaxation(Assembly &assembly, double increment)
+    : assembly_(assembly), increment_(increment), settings_(assembly.settings), own_(assembly.inverse_inertia())
 {
   assembly.settings.contact_damping = assembly.settings.damping = 0;
   assembly.settings.free_grain_damping = 1;
@@ -110,28 +111,65 @@ void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationL
         found.balance.grain, found.balance.worst));
 }
 
-void Relaxation::add_half_work()
+// Leapfrog: velocities are half a step older than forces.
+double Relaxation::energy_of_motion() const
 {
-  if (assembly_.settings.measure_energy)
-    assembly_.add_loss(0.5 * assembly_.settings.time_step * assembly_.power());
+  return assembly_.kinetic_energy() + 0.5 * assembly_.settings.time_step * assembly_.power();
 }
 
-// Leapfrog: kinetic energy is half a step old, and is lost with what the forces have done since.
 void Relaxation::stop()
 {
   if (assembly_.settings.measure_energy)
-    assembly_.add_loss(assembly_.kinetic_energy());
-  add_half_work();
+    assembly_.add_loss(energy_of_motion());
   assembly_.stop_grains();
+}
+
+template <typename Move>
+std::uint64_t Relaxation::spread(double strain, const Vec3 &box_strain, const Move &move)
+{
+  if (strain == 0)
+    return 0;
+  follow_stiffness();
+  const bool loaded = !assembly_.stress().isZero(0);
+  const double n = loaded ? std::max(1.0, std::ceil(iterations_of_increment * strain / increment_ * (1 - 1e-12))) : 1;
+  if (assembly_.walls())
+    {
+      assembly_.set_homogeneous_motion(box_strain / (n * assembly_.settings.time_step));
+      if (assembly_.settings.measure_energy)
+        assembly_.add_loss(-energy_of_motion()); // that they are given
+    }
+  assembly_.settings.contact_damping = contact_damping;
+  for (double k = 1; k <= n; ++k)
+    {
+      assembly_.compute_forces();
+      move(k, n);
+    }
+  assembly_.settings.contact_damping = 0;
+  return static_cast<std::uint64_t>(n);
+}
+
+std::uint64_t Relaxation::deform(const Mat3 &gradient)
+{
+  return spread(gradient.cwiseAbs().maxCoeff(), Vec3::Zero(),
+                [&](double, double n) { assembly_.deform(gradient / n); });
+}
+
+std::uint64_t Relaxation::move(const RigidBox &next)
+{
+  const RigidBox from = assembly_.box();
+  const Vec3 strain = (next.edges().array() / from.edges().array()).log();
+  return spread(strain.cwiseAbs().maxCoeff(), strain, [&](double k, double n) {
+    const double left = (n - k) / n;
+    assembly_.move(k == n ? next
+                          : RigidBox{next.lower + left * (from.lower - next.lower),
+                                     next.upper + left * (from.upper - next.upper)});
+  });
 }
 
 Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
 {
-  way_.clear();
-  assembly_.add_motion(way_);
-  add_half_work();
-  assembly_.stop_grains();
-  follow_stiffness();
+  follow_stiffness(); // before the move that was is over: a run that was resumed has no others
+  stop();
   Relaxed found;
   std::uint64_t followed = 0; ///< when masses were made last
   look(found, spec, limits);  // forces of the move that was have no dashpots
@@ -145,18 +183,11 @@ Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
             follow_stiffness(), followed = found.steps;
         }
       hold();
-      assembly_.add_motion(way_);
       if ((found.steps + 1) % look_interval == 0)
         look(found, spec, limits);
     }
   stop();
   assembly_.settings.contact_damping = 0;
   return found;
-}
-
-void Relaxation::extrapolate(double share, const Vec3 &strain)
-{
-  assembly_.set_motion(way_, share, strain);
-  add_half_work();
 }
 } // namespace isostat

@@ -21,7 +21,7 @@ struct BalanceSpec
 /// Increments of strain that are each taken to balance, in place of time steps at a rate.
 struct StaticStepping
 {
-  double increment = 1e-5; ///< largest strain of one of them, as the rate control counts it [-], (0, 1e-3]
+  double increment = 5e-5; ///< largest strain of one of them, as the rate control counts it [-], (0, 1e-3]
   BalanceSpec balance = {};
 
   bool operator==(const StaticStepping &) const = default;
@@ -44,16 +44,19 @@ struct Relaxed
   bool balanced = false;
 };
 
-/// Takes packings to balance without inertia, each time after they have been strained with all their grains:
+/// Strains packings from balance to balance without inertia:
 ///
-///     x <- x + L dt x + s u (cell or walls, and grains);  repeat { forces;  v <- v + dt F/M;  x <- x + v dt }
-///     until balanced;  u = what grains have moved beyond L dt x
+///     n times { x <- x + L dt x / n (cell or walls, and grains);  one iteration };  v <- 0
+///     repeat one iteration until balanced;                      iteration: forces;  v <- v + dt F/M;  x <- x + v dt
 ///
 /// Dynamic relaxation with kinetic damping (Cundall 1976; Barnes 1999, Int. J. Space Struct. 14, 89,
 /// doi:10.1260/0266351991494722): grains move under fictitious masses in proportion to the stiffness they feel,
 /// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr) over their contacts, so that all of them are as quick; where
 /// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Dashpots in the contacts, 5 % of critical, take
 /// the motion of grains that rattle between others. Grains that touch nothing stay with the cell.
+/// A strain of `increment` is spread over n = 100 iterations, a smaller one over fewer in proportion: all at once it
+/// would load contacts as if grains moved affinely, many would slide, and their way back loses stress
+/// (docs/theory.md, section 17).
 /// The history of contacts goes along with every iteration: with history frozen at the start of an increment
 /// relaxation ends in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks
 /// is part of this definition, which is fully dissipative.
@@ -65,31 +68,35 @@ struct Relaxed
 class Relaxation
 {
 public:
-  explicit Relaxation(Assembly &assembly);
+  /// @param increment  strain that is spread over 100 iterations [-], > 0
+  Relaxation(Assembly &assembly, double increment);
   ~Relaxation();
   Relaxation(const Relaxation &) = delete;
   Relaxation &operator=(const Relaxation &) = delete;
 
-  /// From where the last move has left the grains to balance, at rest.
+  /// Strains a cell, or moves the walls of a box and the grains with them. The last of the n moves is pending
+  /// afterwards: compute_forces() and run() follow.
+  /// @return n   @pre compute_forces(), settings.time_step > 0
+  std::uint64_t deform(const Mat3 &gradient);
+  std::uint64_t move(const RigidBox &next);
+
+  /// From where they are to balance, at rest.
   /// @pre compute_forces(), settings.time_step > 0
   /// @throws RunFailure  not balanced within limits.max_steps, naming the worst grain; interrupted; exploded
   Relaxed run(const BalanceSpec &spec, const RelaxationLimits &limits = {});
 
-  /// Grains take `share` of their last u with them into the move that follows: a packing that answers as it did before
-  /// is nearly in balance then.
-  /// @param strain  of a box, in which u counts all motion: what the share leaves of its walls', tension positive
-  void extrapolate(double share, const Vec3 &strain = Vec3::Zero());
-
 private:
-  void follow_stiffness(); ///< M and J of the contacts as they are
-  void hold();             ///< one iteration
-  void stop();             ///< of all motion, whose energy is lost
-  void add_half_work();    ///< of a move of the grains as a whole: W = 1/2 (F + F').u is lost
+  template <typename Move>
+  std::uint64_t spread(double strain, const Vec3 &box_strain, const Move &move);
+  void follow_stiffness();         ///< M and J of the contacts as they are
+  void hold();                     ///< one iteration
+  void stop();                     ///< of all motion, whose energy is lost
+  double energy_of_motion() const; ///< what forces have done, or will have, since the last peak, J
   void look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const;
 
   Assembly &assembly_;
+  double increment_;
   StepSettings settings_;
   std::vector<InverseInertia> own_;
-  GrainMotion way_; ///< u
 };
 } // namespace isostat

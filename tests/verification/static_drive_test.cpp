@@ -82,8 +82,8 @@ TEST(StaticDrive, EveryRowIsInBalanceAndLoadsTurnWhereTheyShould)
 {
   for (const std::string domain : {"periodic-cell", "rigid-box"})
     {
-      const Watcher seen = run(programme(cyclic(2), 1e-5), in(domain)).watcher;
-      EXPECT_GT(seen.rows, 30u);
+      const Watcher seen = run(programme(cyclic(2), 5e-5), in(domain)).watcher;
+      EXPECT_GT(seen.rows, 15u);
       EXPECT_BELOW_BECAUSE(seen.worst, 0.0101, "0.01 is asked for");
       ASSERT_EQ(seen.turns.size(), 4u);
       for (std::size_t k = 0; k < 4; ++k)
@@ -97,9 +97,9 @@ TEST(StaticDrive, PathsConvergeInTheIncrementAndTheTolerance)
   const auto at_turn = [](double increment, double tolerance) {
     return run(programme(cyclic(2), increment, tolerance), in("periodic-cell")).watcher.turns.back().p;
   };
-  const double p0 = 200e3, chosen = at_turn(1e-5, 0.01);
-  EXPECT_BELOW_BECAUSE(std::abs(at_turn(5e-6, 0.01) - chosen), 3e-3 * p0, "the default is good for 0.3 % of p0'");
-  EXPECT_BELOW_BECAUSE(std::abs(at_turn(1e-5, 1e-3) - chosen), 1e-3 * p0, "the tolerance counts less");
+  const double p0 = 200e3, chosen = at_turn(5e-5, 0.01);
+  EXPECT_BELOW_BECAUSE(std::abs(at_turn(2.5e-5, 0.01) - chosen), 2e-3 * p0, "the default is good for 0.2 % of p0'");
+  EXPECT_BELOW_BECAUSE(std::abs(at_turn(5e-5, 1e-3) - chosen), 1e-3 * p0, "the tolerance counts less");
 }
 
 TEST(StaticDrive, StressesThatAreKeptStayOnTheirTargets)
@@ -179,7 +179,7 @@ TEST(StaticDrive, HasTheSameBitsForAnyNumberOfThreadsAndAfterAStop)
 
 TEST(StaticDrive, GoesThroughLiquefactionAndReversals)
 {
-  UndrainedCyclic stage = cyclic(20, 50e3);
+  UndrainedCyclic stage = cyclic(40, 50e3);
   stage.max_strain = 0.02;
   const Result found = run(programme(stage, 1e-4), test::periodic_specimen(300, 11));
   EXPECT_TRUE(found.state.undrained.liquefaction);
@@ -187,14 +187,20 @@ TEST(StaticDrive, GoesThroughLiquefactionAndReversals)
   EXPECT_BELOW_BECAUSE(found.watcher.worst, 0.0101, "0.01 is asked for, without a network too");
 }
 
-TEST(StaticDrive, HardCases)
+TEST(StaticDrive, AgreesWithASlowDynamicTestWhereFrictionIsGone)
 {
   Snapshot smooth = in("periodic-cell");
-  LinearRolling law;
-  smooth.law = law; // frictionless: it collapses
-  const Result collapsed = run(programme(test::sheared_to<UndrainedMonotonic>(2e-3), 1e-4), smooth);
-  EXPECT_BELOW_BECAUSE(collapsed.watcher.last.p, 20e3, "rough grains hold 200 kPa, smooth ones nearly nothing");
+  smooth.law = LinearRolling();
+  Programme fine = programme(test::sheared_to<UndrainedMonotonic>(2e-3), 1e-5), dynamic = fine;
+  dynamic.drive = {};
+  const Watcher still = run(fine, smooth).watcher, slow = run(dynamic, smooth).watcher;
+  EXPECT_BELOW_BECAUSE(still.last.p, 100e3, "rough grains hold 200 kPa");
+  EXPECT_NEAR_BECAUSE(still.last.p / slow.last.p, 1, 0.05, "1 % was seen; contacts yield in all increments");
+}
+
+TEST(StaticDrive, CoarseIncrementsAreBalancedToo)
+{
   const Result large = run(programme(test::sheared_to<UndrainedMonotonic>(5e-3), 1e-3), in("periodic-cell"));
-  EXPECT_BELOW_BECAUSE(large.watcher.worst, 0.0101, "increments of 1e-3 are coarse, but balanced");
+  EXPECT_BELOW_BECAUSE(large.watcher.worst, 0.0101, "0.01 is asked for");
 }
 } // namespace isostat

@@ -16,9 +16,9 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t indicator_interval = 50;
-constexpr double consolidation_tolerance = 0.01;     ///< of p', on the stresses that a stage begins with
-constexpr double approach = 0.9, least_share = 0.01; ///< of the way to a turn, and of an increment
-constexpr double modulus_over_affine = 0.5;          ///< after a reversal grains give way: 0.55 to 0.7 was seen
+constexpr double consolidation_tolerance = 0.01;      ///< of p', on the stresses that a stage begins with
+constexpr double approach = 0.9, least_share = 0.002; ///< of the way to a turn, and of an increment
+constexpr double modulus_over_affine = 0.5;           ///< after a reversal grains give way: 0.55 to 0.7 was seen
 } // namespace
 
 const ShearMode triaxial_mode{
