@@ -30,7 +30,7 @@ class ColumnScene(_column.ColumnScene):
     """
 
     def __init__(self, source=None, /, *, set=None, **sections):
-        super().__init__(*scene_source(_column.ColumnScene, source, set, sections))
+        super().__init__(*scene_source(source, set, sections))
 
     def member(self, k):
         """The k-th member of an ensemble, as `soil_column --ensemble` runs it: layers of grains have the next seeds of

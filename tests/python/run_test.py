@@ -222,6 +222,20 @@ times = 2
         again = isostat.run(folder / "scene.toml", self.folder / "other_again", threads=1)
         np.testing.assert_array_equal(again.history["p"], results.history["p"])
 
+    def test_what_a_scene_file_writes_out_is_held_against_its_packing(self):
+        """Also where it is the default. The file that names the packing is read as the program does."""
+        isostat.write_specimen(self.folder / "held.h5", self.specimen)
+        path = self.folder / "held.toml"
+        text = SCENE.replace('preparation_friction = "12 deg"', 'file = "held.h5"')
+        for written, has in ((("", ""), None), (("grains = 300", "grains = 10000"), "grading.grains = 10000 (300)"),
+                             (('[specimen]', '[specimen]\npressure = "200 kPa"'), None)):
+            path.write_text(text.replace('cloud_edge = "3.1 mm"\n', "").replace(*written), encoding="utf-8")
+            scene = isostat.Scene(path)
+            self.assertEqual(isostat.Scene(scene.text), scene)
+            self.assertEqual('pressure = "200 kPa"' in scene.text, "pressure" in written[1])
+            warnings = isostat.run(scene, quiet=True, on_record=lambda moment: False).warnings
+            self.assertEqual([has in text for text in warnings], [True] if has else [], warnings)
+
     def test_another_contact_stiffness_than_that_of_the_packing(self):
         soft = self.scene.with_(**{"contact.young": "2 GPa"})
         with self.assertRaisesRegex(isostat.InputError, r"the specimen that is given: was made with another contact "
