@@ -4,7 +4,6 @@
 #include "apps/deposit/layer_tables.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
-#include "fem/water/drainage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,29 +59,6 @@ Record motion_of(const ColumnMotion &motion)
       return {ricker_motion(motion.amplitude, motion.frequency, motion.peak_time(), motion.sample_interval()), {}};
     }
   return {};
-}
-
-/// M of each layer at the mean effective stress in its middle, infinite if only its material knows. Pa
-std::vector<double> constrained_moduli(const ColumnScene &scene, const SoilProfile &soil)
-{
-  std::vector<double> moduli;
-  double top = soil.height();
-  for (const ColumnLayer &layer : scene.layers)
-    {
-      const double middle = top - layer.thickness / 2, nu = layer.poisson_ratio;
-      const double p = soil.vertical_effective_stress(middle, scene.load.surcharge) * (1 + 2 * layer.k0) / 3;
-      const auto rise = [&](const auto &law) {
-        return std::pow(std::max(1e-3, p / law.reference_pressure), law.exponent);
-      };
-      top -= layer.thickness;
-      moduli.push_back(layer.from_formula() ? 2 * layer.small_strain_modulus() * (1 - nu) / (1 - 2 * nu)
-                                            : std::numeric_limits<double>::infinity());
-      if (layer.material == LayerMaterial::iwan)
-        moduli.back() *= rise(layer.iwan);
-      if (layer.material == LayerMaterial::mohr_coulomb)
-        moduli.back() *= rise(layer.mohr_coulomb);
-    }
-  return moduli;
 }
 } // namespace
 
@@ -194,12 +170,6 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.line[0] = scene.output.x.value_or(scene.mesh.sides == Sides::walls ? scene.mesh.width / 2 : 0);
   if (scene.analysis.kind == AnalysisKind::plate)
     mesh.patches = {plate_patch(scene)};
-  if (scene.analysis.kind == AnalysisKind::consolidation)
-    {
-      const auto planes =
-          drainage_planes(mesh, {Face::surface}, constrained_moduli(scene, mesh.soil), scene.analysis.first_time);
-      mesh.fine.assign(planes.begin(), planes.end());
-    }
   return mesh;
 }
 

@@ -228,7 +228,7 @@ SoilProfile soil_profile(const ColumnScene &scene);
 
 /// The surface of a box that is not level.
 GroundLine ground_line(const ColumnMesh &mesh);
-/// The mesh of a scene; its plate is patch 0.
+/// The mesh of a scene, before a consolidation cuts its cells (cut_mesh()); its plate is patch 0.
 MeshSpec mesh_spec(const ColumnScene &scene);
 
 /// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given. They have one clock:

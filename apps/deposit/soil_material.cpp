@@ -14,11 +14,6 @@ namespace isostat
 {
 namespace
 {
-std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user)
-{
-  return layer.material == LayerMaterial::user ? user.at(layer.name)(n_points) : formula_material(layer, n_points);
-}
-
 /// A layer without grains at some points with their stress.
 std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t layer,
                                          const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ,
@@ -146,6 +141,11 @@ void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
                                    name));
 }
 } // namespace
+
+std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user)
+{
+  return layer.material == LayerMaterial::user ? user.at(layer.name)(n_points) : formula_material(layer, n_points);
+}
 
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
 {

@@ -53,9 +53,11 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 /// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear, or a user material
 /// that is missing or not asked for
 /// @throws RunFailure  stress not reached
-SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads,
-                           const UserMaterials &user = {});
+SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user);
 
+/// The material of one layer that is not of grains, without stress.
+/// @throws std::out_of_range  a user's material that is missing
+std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user);
 /// The material of one layer from a formula, without stress.   @pre layer.material is elastic, iwan or mohr_coulomb
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/common/interrupt.hpp"
+#include "apps/deposit/cut_mesh.hpp"
 #include "apps/deposit/ranks.hpp"
-#include "apps/deposit/soil_material.hpp"
 #include "apps/soil_column/files.hpp"
 #include "apps/soil_column/resolution.hpp"
 #include "apps/soil_column/run.hpp"
@@ -27,7 +27,8 @@ public:
   template <class Settings>
   ColumnRun(const ColumnRequest &request, const std::array<Motion, 3> &motions, const Settings &settings)
       : request_(request), scene_(request.scene), motions_(motions),
-        space_(mesh_spec(scene_), supports_of(scene_), scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
+        space_(cut_mesh(scene_, request.materials), supports_of(scene_),
+               scene_.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF),
         soil_(soil_material(scene_, space_, request.threads, request.materials)), settled_(settled()),
         run_(space_, *soil_.material, settings), files_(request.folder, scene_, space_, motions_, steps_between_rows()),
         follower_(space_, files_.line(), files_.history().vertical_stress()),
@@ -159,7 +160,7 @@ private:
     if (scene_.mesh.sides != Sides::walls)
       return 0;
     const Progress progress(request_.quiet);
-    return settle(scene_, *soil_.material, [&](const std::string &line) {
+    return settle(scene_, space_.mesh(), *soil_.material, [&](const std::string &line) {
       if (scene_.has_grains()) // formulas settle at once
         progress.say(line);
       if (on_any_rank(stop_requested()))

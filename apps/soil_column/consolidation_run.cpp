@@ -18,9 +18,10 @@ StaticsSettings settings_of(const ColumnLoad &load, bool pore_water)
 
 /// Of the surface, when all water has left; not-a-number if the soil cannot bear the load.
 template <int dim>
-double final_settlement(const ColumnScene &scene, const Discretisation<dim> &space)
+double final_settlement(const ColumnRequest &request, const Discretisation<dim> &space)
 {
-  const SoilMaterial soil = soil_material(scene, space, 1);
+  const ColumnScene &scene = request.scene;
+  const SoilMaterial soil = soil_material(scene, space, 1, request.materials);
   Statics drained(space, *soil.material, settings_of(scene.load, false));
   double settlement = std::numeric_limits<double>::quiet_NaN();
   try
@@ -85,7 +86,7 @@ private:
 
   void add_results(ColumnSummary &summary) override
   {
-    summary.final_settlement = final_settlement(scene_, space_);
+    summary.final_settlement = final_settlement(this->request_, space_);
     summary.degree =
         (summary.last.settlement - immediate_settlement_) / (summary.final_settlement - immediate_settlement_);
   }

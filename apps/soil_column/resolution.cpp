@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <mpi.h>
+#include <numbers>
 
 namespace isostat
 {
@@ -63,6 +64,22 @@ bool drifts(const Motion &motion)
   for (std::size_t i = 0; i < motion.accelerations().size(); ++i)
     fastest = std::max(fastest, std::abs(motion.velocity(motion.delay() + static_cast<double>(i) * motion.interval())));
   return way > very_far || (way > far && std::abs(motion.velocity(end)) > share * fastest);
+}
+
+/// What is wrong with cells that are too high for the skin of a harmonic load (drainage_bound()).
+std::string coarse_skin(const ColumnScene &scene, const DrainageBound &bound)
+{
+  const double skin = std::sqrt(bound.coefficient / (std::numbers::pi * scene.load.frequency));
+  if (bound.cell <= cells_per_skin * skin)
+    return "";
+  const ColumnLayer &layer = scene.layers[bound.layer];
+  return fmt::format(
+      "the cells of layer.{}{} where water drains, {:.3g} m high, do not show the skin in which a load of {:g} Hz moves "
+      "the water there: sqrt(2 c/omega) = {:.3g} m (c = {:.3g} m2/s), and pore pressures are within 2 % only with cells "
+      "of {:.2f} of it. Set layer.{}.cell_size to {:.2g} m or less, or disregard pore pressures within three cells, "
+      "{:.3g} m, of where water drains.",
+      bound.layer, layer.name.empty() ? "" : " (" + layer.name + ")", bound.cell, scene.load.frequency, skin,
+      bound.coefficient, cells_per_skin, bound.layer, cells_per_skin * skin, 3 * bound.cell);
 }
 } // namespace
 
@@ -156,10 +173,12 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)
 {
   const bool slow = scene.analysis.kind == AnalysisKind::consolidation;
-  if (scene.water.drainage != Drainage::coupled || scene.load.kind != LoadKind::step ||
+  if (scene.water.drainage != Drainage::coupled || scene.load.kind == LoadKind::none ||
       (!slow && scene.load.direction != Axis::z))
     return "";
   const DrainageBound bound = drainage_bound(space, material);
+  if (scene.load.kind == LoadKind::harmonic)
+    return coarse_skin(scene, bound);
   const double first = slow ? scene.analysis.first_time : scene.load.ramp;
   if (bound.time <= first)
     return "";

@@ -32,7 +32,9 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
                             const std::array<Motion, 3> &motions);
 
 /// What is wrong with cells where water drains that are too high for the first results after a load at once
-/// (drainage_bound()): of a consolidation those at first_time, of a dynamic run those that its rise does not smooth.
+/// (drainage_bound()): of a consolidation those at first_time, of a dynamic run those that its rise does not smooth;
+/// and for the skin sqrt(2 c/omega) of a harmonic load. A motion along z has no skin at the surface, where it makes no
+/// total stress.
 /// Collective.   @return empty  fine enough, no such load, or no water that drains
 /// tested: tests/apps/column_water_test.py
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material);

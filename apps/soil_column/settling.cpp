@@ -57,11 +57,11 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
 }
 } // namespace
 
-double settle(const ColumnScene &scene, Material &material, const std::function<void(const std::string &)> &after_step)
+double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
+              const std::function<void(const std::string &)> &after_step)
 {
   const SoilProfile soil = soil_profile(scene);
-  const Discretisation<2> space(mesh_spec(scene), box_supports(scene),
-                                scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
+  const Discretisation<2> space(mesh, box_supports(scene), scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
   Statics statics(space, material, settings_of(scene, soil));
   try
     {

@@ -12,10 +12,11 @@ namespace isostat
 /// the force scale, formulas by Newton's method to 1e-6 where it converges, else by relaxation. Displacements are
 /// forgotten, what the material has undergone is not. A plate on the surface is not there yet, one in the base or a
 /// wall is a part of these: the soil does not hang on it.   Collective.
+/// @param mesh  of the material's points
 /// @param after_step  called after each step with a line on it; what it throws goes through
 /// @return the largest displacement, m
 /// @throws RunFailure  the soil does not bear its weight and the surcharge
 /// tested: tests/apps/box_test.py
-double settle(const ColumnScene &scene, Material &material,
+double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
               const std::function<void(const std::string &)> &after_step = {});
 } // namespace isostat

@@ -94,11 +94,19 @@ void check_stiffness(const Scene &scene, const Snapshot &state, const std::strin
   warnings.push_back(said + "; the first stage brings it back to its stress, at another void ratio");
 }
 
-/// Keys of a grading that would have made other sizes, in their words; defaults are not held against the packing.
-std::vector<std::string> other_sizes(const GradingSpec &said, const Packing &grains)
+/// Whether a scene says a value, which is then held against the packing: one that it leaves out is not. Where a program
+/// gives the packing, the scene has been through to_toml(), which writes all keys: there a default counts as left out.
+/// Consolidation beside a file can be its default only.
+bool is_said(const Scene &scene, std::string_view key, bool is_default)
+{
+  return scene.specimen.file.empty() ? !is_default : scene.written.has(key);
+}
+
+/// Keys of a grading that would have made other sizes, in their words.
+std::vector<std::string> other_sizes(const Scene &scene, const Packing &grains)
 {
   constexpr double unnoticed = 0.01; // of diameters
-  const GradingSpec usual;
+  const GradingSpec &said = scene.grading, usual;
   std::vector<std::string> keys;
   std::vector<double> radii = grains.radii(), made = sample_diameters(grading_curve(said), radii.size());
   std::ranges::sort(radii, std::greater());
@@ -113,22 +121,23 @@ std::vector<std::string> other_sizes(const GradingSpec &said, const Packing &gra
     {
       if (!said.table.empty())
         keys.push_back(fmt::format("grading.table = {} sizes", said.table.size()));
-      else if (said.curve != usual.curve)
+      else if (is_said(scene, "grading.curve", said.curve == usual.curve))
         keys.push_back(fmt::format("grading.curve = \"{}\"", said.curve));
-      if (said.finest_percent != usual.finest_percent || said.coarsest_percent != usual.coarsest_percent)
+      if (is_said(scene, "grading.truncate",
+                  said.finest_percent == usual.finest_percent && said.coarsest_percent == usual.coarsest_percent))
         keys.push_back(fmt::format("grading.truncate = [{:g}, {:g}]", said.finest_percent, said.coarsest_percent));
     }
   if (!said.d50 && std::abs(said.solid_fraction * std::pow(said.cloud_edge, 3) / solid - 1) > 3 * unnoticed)
     {
-      if (said.cloud_edge != usual.cloud_edge)
+      if (is_said(scene, "grading.cloud_edge", said.cloud_edge == usual.cloud_edge))
         keys.push_back(fmt::format("grading.cloud_edge = {:g} mm", 1e3 * said.cloud_edge));
-      if (said.solid_fraction != usual.solid_fraction)
+      if (is_said(scene, "grading.solid_fraction", said.solid_fraction == usual.solid_fraction))
         keys.push_back(fmt::format("grading.solid_fraction = {:g}", said.solid_fraction));
     }
   return keys;
 }
 
-/// Values that are those of the packing, whatever the scene says; defaults are not held against it.
+/// Values that are those of the packing, whatever the scene says.
 void note_values(const Scene &scene, const Specimen &given, const std::string &name, std::vector<std::string> &warnings)
 {
   std::vector<std::string> words;
@@ -137,17 +146,19 @@ void note_values(const Scene &scene, const Specimen &given, const std::string &n
   };
   const GradingSpec &said = scene.grading, usual;
   const Packing &grains = given.state.grains;
-  if (said.grains != usual.grains && said.grains != grains.n_grains())
+  if (is_said(scene, "grading.grains", said.grains == usual.grains) && said.grains != grains.n_grains())
     note("grading.grains", std::to_string(said.grains), std::to_string(grains.n_grains()));
   if (said.d50 && std::abs(grains.d50() / *said.d50 - 1) > 0.01)
     note("grading.d50", fmt::format("{:.4g} mm", 1e3 * *said.d50), fmt::format("{:.4g} mm", 1e3 * grains.d50()));
-  for (const std::string &key : other_sizes(said, grains))
+  for (const std::string &key : other_sizes(scene, grains))
     words.push_back(
         fmt::format("{} (grains of {:.4g} to {:.4g} mm)", key, 2e3 * grains.min_radius(), 2e3 * grains.max_radius()));
-  if (const auto seed = given.numbers.find("seed");
-      seed != given.numbers.end() && said.seed != usual.seed && seed->second != static_cast<double>(said.seed))
+  if (const auto seed = given.numbers.find("seed"); seed != given.numbers.end() &&
+                                                    is_said(scene, "grading.seed", said.seed == usual.seed) &&
+                                                    seed->second != static_cast<double>(said.seed))
     note("grading.seed", std::to_string(said.seed), fmt::format("{:g}", seed->second));
-  if (std::abs(grains.density - said.density) > 1e-3 * said.density)
+  if (is_said(scene, "grading.density", said.density == usual.density) &&
+      std::abs(grains.density - said.density) > 1e-3 * said.density)
     note("grading.density", fmt::format("{:g} kg/m3", said.density), fmt::format("{:g} kg/m3", grains.density));
   const SpecimenSpec &spec = scene.specimen;
   const double e = void_ratio(given.state.volume(), grains.solid_volume());
@@ -182,7 +193,8 @@ void note_pressure(const Scene &scene, const Snapshot &state, const std::string 
       scene.specimen.consolidation != "isotropic")
     return;
   const double p = invariants(contact_stress(state)).p;
-  if (const double said = scene.specimen.pressure; said != SpecimenSpec{}.pressure && std::abs(p - said) > 0.05 * said)
+  if (const double said = scene.specimen.pressure;
+      is_said(scene, "specimen.pressure", said == SpecimenSpec{}.pressure) && std::abs(p - said) > 0.05 * said)
     warnings.push_back(fmt::format("{}: its mean effective stress is {:.4g} kPa, specimen.pressure = {:g} kPa; the "
                                    "test starts from what it has. Bring it there by a stage `compress`",
                                    name, p / 1e3, said / 1e3));

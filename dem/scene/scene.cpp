@@ -25,6 +25,9 @@ Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
 {
   Scene scene;
   fill_scene(document, &scene);
+  for (const Key &key : scene_schema().keys)
+    if ((key.section() == "grading" || key.section() == "specimen") && document.find(key.path))
+      scene.written.paths.emplace_back(key.path);
   if (!document.find("contact.friction"))
     scene.contact->friction = 0;
   if (document.find("grading.table"))

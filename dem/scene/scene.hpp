@@ -3,9 +3,11 @@
 #include "dem/contact/law.hpp"
 #include "dem/drive/programme.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,16 @@ struct SpecimenPlace
 };
 SpecimenPlace specimen_place(const std::string &file);
 
+/// Keys of [grading] and [specimen] that a text, or --set, gave values to. A scene is the same whichever of its values
+/// were written out, so all of these are equal.
+struct WrittenKeys
+{
+  std::vector<std::string> paths; ///< "specimen.pressure"
+
+  bool has(std::string_view path) const { return std::ranges::find(paths, path) != paths.end(); }
+  bool operator==(const WrittenKeys &) const { return true; }
+};
+
 /// What is written, and how often.
 struct OutputSpec : RecordSpec
 {
@@ -86,6 +98,7 @@ struct Scene
   ControlSpec control;
   std::vector<Stage> stages;
   OutputSpec output;
+  WrittenKeys written; ///< what may have its default, and is held against a packing from a file all the same
 
   /// The part of it that is run on a specimen.
   Programme programme() const { return {motion, drive, specimen, output, control, stages}; }
@@ -121,8 +134,8 @@ Scene parse_scene(const std::string &text, const std::string &name, const std::v
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
 /// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign
-/// to the kind of its stage, the control of a scene without stages, the consolidation in a rigid box, and the grading
-/// of a scene whose packing comes from a file.
+/// to the kind of its stage, the control of a scene without stages, and the consolidation in a rigid box. A scene whose
+/// packing comes from a file has of the grading, and of a pressure that no stage takes, what was written.
 std::string to_toml(const Scene &scene);
 
 /// A commented TOML scene with all defaults, units, ranges and one sentence per key (--print-defaults).

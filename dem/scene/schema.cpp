@@ -220,7 +220,7 @@ A scene is one TOML file that says all about a run. This page is generated from 
 
 /// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
 /// controlled. Not writing them keeps the recipes of specimens that are in caches. A packing from a file has grains and
-/// a stress of its own; only files of other programs may lack the density.
+/// a stress of its own, against which only what was written is held; only files of other programs may lack the density.
 bool is_implied(const Key &key, const void *scene)
 {
   const Scene &s = *static_cast<const Scene *>(scene);
@@ -228,9 +228,10 @@ bool is_implied(const Key &key, const void *scene)
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
          (path == "contact.law" && is_default(s.contact)) ||
          (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
-         (path.starts_with("grading.") && !s.specimen.file.empty() &&
+         (path.starts_with("grading.") && !s.specimen.file.empty() && !s.written.has(path) &&
           (path != "grading.density" || specimen_place(s.specimen.file).path.ends_with(".h5"))) ||
-         (path == "specimen.pressure" && !takes_pressure(s) && s.specimen.pressure == SpecimenSpec{}.pressure) ||
+         (path == "specimen.pressure" && !takes_pressure(s) && !s.written.has(path) &&
+          s.specimen.pressure == SpecimenSpec{}.pressure) ||
          (s.drive.on ? path == "motion.load_per_wave"
                      : path == "motion.increment" || path == "motion.balance" || path == "motion.left_out");
 }

@@ -120,15 +120,21 @@ std::map<std::string, std::map<std::string, double>> numbers_of_library(const Pa
   return entries;
 }
 
-/// Columns of history.h5, with all their digits.
-std::map<std::string, std::vector<double>> read_series(const Path &path)
+/// Columns of history.h5 as arrays, with all their digits, and their units.   @throws InputError  damaged, or no history
+py::tuple read_series(const Path &path)
 {
   const hdf5::File file = hdf5::File::open(path.value);
+  if (!file.root().has("history"))
+    throw InputError(fmt::format("{}: no group \"history\"; restore the file", path.value.string()));
   const hdf5::Group series = file.root().group("history");
-  std::map<std::string, std::vector<double>> columns;
+  py::dict columns, units;
   for (const std::string &name : series.names())
-    columns[name] = series.read<double>(name);
-  return columns;
+    {
+      const std::vector<double> values = series.read<double>(name);
+      columns[py::str(name)] = py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+      units[py::str(name)] = series.unit(name);
+    }
+  return py::make_tuple(columns, units);
 }
 
 PackingFormat wanted_format(const fs_path &path, const std::string &format)
@@ -215,7 +221,7 @@ void bind_files(py::module_ &module)
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
-  module.def("read_series", &read_series, py::arg("path"), "Columns of a history.h5, with all their digits.");
+  module.def("read_series", &read_series, py::arg("path"), "Columns of a history.h5, with all their digits, and their units.");
   module.def(
       "import_tables",
       [](const Path &path, AnyLaw law, Density density) {

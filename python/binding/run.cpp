@@ -9,6 +9,7 @@
 #include "dem/io/specimen_file.hpp"
 #include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/specimen.hpp"
+#include "dem/scene/schema.hpp"
 #include "python/binding/binding.hpp"
 #include "python/binding/given.hpp"
 
@@ -161,6 +162,9 @@ void name_kept_specimen(Scene &scene)
 {
   scene.specimen = without_preparation(scene.specimen);
   scene.specimen.file = kept_specimen;
+  scene.written = {}; // of the former scene's text, which had all keys
+  if (!takes_pressure(scene))
+    scene.specimen.pressure = SpecimenSpec{}.pressure;
 }
 
 /// From a specimen that is given. It is kept with the results, so that their scene can be run again.

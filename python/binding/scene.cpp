@@ -30,13 +30,10 @@ void bind_scene(py::module_ &module)
       });
 
   py::class_<Scene>(module, "Scene")
-      .def(py::init(&parse_scene), py::arg("text"), py::arg("name"), py::arg("overrides"))
-      .def_static(
-          "_read",
-          [](const std::string &path, const std::vector<std::string> &overrides) {
-            return read_scene(path, overrides);
-          },
-          py::arg("path"), py::arg("overrides"))
+      .def(py::init(
+               [](const std::string &text, const std::string &name, const std::vector<std::string> &overrides,
+                  bool is_file) { return is_file ? read_scene(name, overrides) : parse_scene(text, name, overrides); }),
+           py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("is_file") = false)
       .def_readonly("title", &Scene::title, "What heads tables and figures.")
       .def_readonly("law", &Scene::contact, "The contact law.")
       .def_property_readonly(

@@ -30,7 +30,7 @@ class ColumnScene(_column.ColumnScene):
     """
 
     def __init__(self, source=None, /, *, set=None, **sections):
-        super().__init__(*scene_source(_column.ColumnScene, source, set, sections))
+        super().__init__(*scene_source(source, set, sections))
 
     def member(self, k):
         """The k-th member of an ensemble, as `soil_column --ensemble` runs it: layers of grains have the next seeds of
@@ -122,7 +122,7 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
     with warned(folder, quiet) as listed:
         _column.run(scene, folder, materials or {}, overwrite, resume, threads, quiet is not False, listed)
         results = ColumnResults(folder)
-        results.warnings = listed
+        results.warnings = listed + results.warnings
         return results
 
 
@@ -134,4 +134,4 @@ class ColumnResults(Results):
     @property
     def scene(self):
         """The ColumnScene that was run, with every key resolved."""
-        return ColumnScene((self.folder / "scene.toml").read_text(encoding="utf-8"))
+        return ColumnScene(self._text("scene.toml"))

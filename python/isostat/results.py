@@ -8,12 +8,13 @@ import pathlib
 import re
 import subprocess
 import sys
+import warnings
 from typing import Any
 
 import numpy as np
 
 from isostat import _core
-from isostat.calls import path_text
+from isostat.calls import depth_of_caller, path_text
 from isostat.scene import Scene
 
 
@@ -50,16 +51,66 @@ class History(collections.abc.Mapping[str, np.ndarray]):
 
 
 def read_table(path: str | os.PathLike[str]) -> History:
-    """A CSV table whose header has `name (unit)`, as a History."""
-    with open(path_text("path", path), newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    if not rows:
-        raise _core.InputError(f"{path}: is empty.")
-    names, units = zip(*(re.fullmatch(r"(.*?)(?: \(([^()]*)\))?", cell).groups() for cell in rows[0]))
-    whole = [row for row in rows[1:] if len(row) == len(names)]
-    body = np.array([[float(cell) if cell else np.nan for cell in row] for row in whole]).reshape(-1, len(names))
+    """A CSV table whose header has `name (unit)`, as a History. A last row that is not complete, of a run that was killed
+    while it wrote, is left out.   Raises InputError (a file that cannot be read, or is damaged, with its line)
+    """
+    try:
+        with open(path_text("path", path), newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    except OSError as error:
+        raise _core.InputError(f"{path}: cannot be read: {error.strerror}.") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise _core.InputError(f"{path}: is damaged (it holds bytes that are no text).") from error
+    if not rows or not rows[0]:
+        raise _core.InputError(f"{path}: is damaged (it is empty).")
+    names, units = zip(*(re.fullmatch(r"(.*?)(?: \(([^()]*)\))?", cell, re.DOTALL).groups() for cell in rows[0]))
+    if len(rows) > 1 and len(rows[-1]) != len(names):
+        rows.pop()
+    body = np.empty((len(rows) - 1, len(names)))
+    for line, row in enumerate(rows[1:], 2):
+        try:
+            body[line - 2] = [float(cell) if cell else np.nan for cell in row]
+        except ValueError as error:
+            raise _core.InputError(f"{path}:{line}: is damaged (it holds no row of {len(names)} numbers).") from error
     return History({name: body[:, k] for k, name in enumerate(names)},
                    {name: unit or "-" for name, unit in zip(names, units)})
+
+
+def read_history(folder: pathlib.Path) -> tuple[History, list[str]]:
+    """The history of a results folder, and warnings. history.h5 has all digits, history.csv ten of them, and of a run under
+    way perhaps more rows; where one of them is damaged, the other one counts.
+
+    Raises InputError (there is no history, or none that can be read)
+    """
+    table, series = folder / "history.csv", folder / "history.h5"
+    exact = rounded = None
+    faults = []
+    if not table.is_file() and not series.is_file():
+        raise _core.InputError(f"{folder}: holds no history.csv. Give the folder of a run of element_test.")
+    try:
+        exact = History(*_core.read_series(series)) if series.is_file() else None  # first: rows may be added meanwhile
+    except _core.InputError as error:
+        faults.append(f"{error}.")
+    try:
+        rounded = read_table(table)
+    except _core.InputError as error:
+        faults.append(str(error))
+    if exact is None and rounded is None:
+        files = importlib.import_module("isostat.figures.files")
+        raise _core.InputError("\n".join([*faults, f"No history is left. {files.REMEDY}"]))
+    if rounded is None:
+        return exact, [f"{faults[0]} The history is that of {series}; rows are missing that the run had not yet written there."]
+    if exact is None:
+        lost = f"The history is that of {table}, to ten digits."
+        return rounded, [f"{fault} {lost}" for fault in faults]
+    if set(exact) != set(rounded):
+        return rounded, [f"{series}: has other columns than {table}. The history is that of the latter, to ten digits."]
+    rows, more = len(next(iter(exact.values()))), len(next(iter(rounded.values())))
+    if rows > more:
+        return exact, [f"{table}: is damaged (it ends after {more} of {rows} rows). The history is that of {series}."]
+    for name, values in exact.items():
+        rounded[name][:rows] = values
+    return rounded, []
 
 
 def draw(folder: str | os.PathLike[str], name: str, program: str = "element_test") -> list[Any]:
@@ -94,7 +145,8 @@ class Results:
     history     History                            scene       Scene, with every key resolved
     summary     numbers of summary.json            snapshots   paths of the stored packings; packing(k) reads one
     provenance  text: version, compiler, seed ...  finished    whether the run came to its end
-    snapshot    the packing at the end, and warnings, texts: where run() gave this; else None and none
+    snapshot    the packing at the end where run() gave this; else None
+    warnings    texts: of run(), and of files that are damaged while others of the folder hold the same
 
     A run that is under way or was interrupted has a history as far as it came; its summary is None, finished False.
     """
@@ -103,20 +155,25 @@ class Results:
 
     def __init__(self, folder: str | os.PathLike[str]):
         self.folder = pathlib.Path(path_text("folder", folder))
-        if not (self.folder / "history.csv").is_file():
-            raise _core.InputError(f"{self.folder}: holds no history.csv. Give the folder of a run of element_test.")
-        self.history = read_table(self.folder / "history.csv")
-        if (self.folder / "history.h5").is_file():  # all digits, of a run under way perhaps of fewer rows
-            for name, values in _core.read_series(self.folder / "history.h5").items():
-                self.history[name][:len(values)] = values[:len(self.history[name])]
+        self.history, self.warnings = read_history(self.folder)
+        for text in self.warnings:
+            warnings.warn(text, _core.IsostatWarning, stacklevel=depth_of_caller())
         self.snapshot: _core.Snapshot | None = None
-        self.warnings: list[str] = []
         self.snapshots = sorted((self.folder / "snapshots").glob("snapshot_*.h5"))
 
     @property
     def scene(self) -> Scene:
         """The Scene that was run, with every key resolved."""
-        return Scene((self.folder / "scene.toml").read_text(encoding="utf-8"))
+        return Scene(self._text("scene.toml"))
+
+    def _text(self, name: str) -> str:
+        path = self.folder / name
+        try:
+            return path.read_text(encoding="utf-8")
+        except OSError as error:
+            raise _core.InputError(f"{path}: cannot be read: {error.strerror}.") from error
+        except UnicodeDecodeError as error:
+            raise _core.InputError(f"{path}: is damaged (it holds bytes that are no text). Restore it from a copy.") from error
 
     @property
     def summary(self) -> dict[str, Any] | None:
@@ -135,14 +192,20 @@ class Results:
     @property
     def provenance(self) -> str:
         """Text: version, compiler, seed, command."""
-        return (self.folder / "provenance.txt").read_text(encoding="utf-8")
+        return self._text("provenance.txt")
 
     def packing(self, number: int) -> _core.Snapshot:
         """The stored Snapshot of this number, from 0; negative numbers count from the last."""
         n = len(self.snapshots)
         if not -n <= number < n:
             raise _core.InputError(f"{self.folder}: has {n} stored packings, numbered from 0; there is no number {number}.")
-        return _core.read_snapshot(str(self.snapshots[number]))
+        path = self.snapshots[number]
+        try:
+            return _core.read_snapshot(str(path))
+        except _core.InputError as error:
+            grains = self.folder / "paraview" / path.name.replace("snapshot_", "grains_").replace(".h5", ".vtp")
+            raise _core.InputError(f"{error}; isostat.read_packing({str(grains)!r}) has its grains, without the history of "
+                                   "their contacts.") from error if grains.is_file() else error
 
     def draw(self, name: str) -> list[Any]:
         """The axes of one of the figures that the program leaves: results.draw("fig_stress_path")."""

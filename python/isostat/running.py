@@ -89,7 +89,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
         if not folder:
             return Run(scene, done, listed)
         results = Results(folder)
-        results.snapshot, results.warnings = done.snapshot, listed
+        results.snapshot, results.warnings = done.snapshot, listed + results.warnings
         return results
 
 

@@ -25,7 +25,7 @@ class Scene(_core.Scene):
 
     def __init__(self, source: str | os.PathLike[str] | dict[str, Any] | None = None, /, *,
                  set: dict[str, Any] | None = None, **sections: Any):
-        super().__init__(*scene_source(_core.Scene, source, set, sections))
+        super().__init__(*scene_source(source, set, sections))
 
     def with_(self, **keys: Any) -> Self:
         """The scene with other values: scene.with_(**{"motion.damping": 0.05}).
@@ -46,8 +46,8 @@ class Scene(_core.Scene):
         return f"<isostat.Scene {self.title!r}>"
 
 
-def scene_source(kind, source, overrides, sections):
-    """Text, name and overrides of a compiled class of scenes from what its class in Python takes."""
+def scene_source(source, overrides, sections):
+    """Text, name, overrides, and whether the name is that of a file: what compiled classes of scenes take."""
     if not isinstance(overrides, dict | None):
         raise _core.InputError(f"set: must be a dictionary of keys and values, but is {overrides!r}.")
     given = [f"{key}={override_text(value, key)}" for key, value in (overrides or {}).items()]
@@ -56,7 +56,7 @@ def scene_source(kind, source, overrides, sections):
             raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
         if not pathlib.Path(source).is_file():
             raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
-        return kind._read(os.fspath(source), given).text, os.fspath(source), []
+        return "", os.fspath(source), given, True
     if isinstance(source, str):
         return source, "scene", given
     if source is not None and not isinstance(source, dict):

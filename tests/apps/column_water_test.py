@@ -80,6 +80,22 @@ class Drainage(ColumnTest):
             self.assert_done(result)
             self.assertEqual(bound in result.stderr, warns, changes)
 
+    def test_the_skin_of_a_harmonic_load(self):
+        shaken = CLAY.split("[analysis]")[0].replace('"step"', '"harmonic"\nfrequency = "2 Hz"')
+        scene = self.write("harmonic.toml", shaken + '[analysis]\nduration = "0.02 s"\n')
+        skin = np.sqrt(self.C / (np.pi * 2))
+        for changes, warns in (((), True), (settings(load__frequency="1e-8 Hz"), False),
+                               (settings(load__direction="x"), False),
+                               (settings(layer__0__permeability="0 m/s"), False),
+                               (settings(water__drainage="undrained"), False)):
+            result = self.run_column(scene, "-o", "out", "--overwrite", *changes)
+            self.assert_done(result)
+            self.assertEqual(f"sqrt(2 c/omega) = {skin:.3g} m" in result.stderr, warns, changes)
+            if warns:
+                self.assertIn("the cells of layer.0 (clay) where water drains, 0.8 m high, do not show", result.stderr)
+                self.assertIn(f"Set layer.0.cell_size to {0.37 * skin:.2g} m or less, or disregard pore pressures "
+                              "within three cells, 2.4 m, of", result.stderr)
+
 
 class Water(ColumnTest):
     def run_scene(self, name, folder, *options):

@@ -141,17 +141,19 @@ class SpecimenMistakes(AppTest):
         self.make_specimen()
         text = tiny_scene(specimen='file = "specimen.h5"', stages=CYCLIC.format(steps=10))
         scene = self.write("scene.toml", text)
-        result = self.run_test(scene, "-o", "out", "--set", "grading.grains=77", "-q", "--set",
-                               "specimen.pressure=20 kPa")
+        said = "--set", "grading.grains=77", "--set", "specimen.pressure=20 kPa"
+        result = self.run_test(scene, "-o", "out", "-q", *said)
         self.assert_done(result)
         for part in ("specimen.h5: is taken as it is", "grading.grains = 77 (200)", "specimen.pressure = 20 kPa; the"):
             self.assertIn(part, result.stderr)
         resolved = (self.folder / "out/scene.toml").read_text(encoding="utf-8")
-        self.assertNotIn("77", resolved)
-        self.assertNotIn("20 kPa", resolved)
+        self.assertIn("[grading]\ngrains = 77\n\n", resolved.replace('cloud_edge = "2.7 mm"\n', ""))
+        self.assertIn('pressure = "20 kPa"', resolved)
         self.assertRegex((self.folder / "out/provenance.txt").read_text(), r"\nspecimen +200 grains")
-        again = self.run_test(scene, "-o", "out", "--resume", "--set", "grading.grains=78")  # without effect
-        self.assertIn("this run has finished", again.stdout)
+        again = self.run_test("out/scene.toml", "-o", "again", "-q")  # is held against the packing likewise
+        self.assertIn("grading.grains = 77 (200)", again.stderr)
+        self.assertIn("this run has finished", self.run_test(scene, "-o", "out", "--resume", *said).stdout)
+        self.assert_refused(self.run_test(scene, "-o", "out", "--resume"), "it has `grains = 77` where this one has")
         self.assert_refused(self.run_test(scene, "-o", "soft", "--set", "contact.young=1 GPa"), "specimen.h5: was made",
                             "contact.young = 1 GPa (0.5 GPa)", "begin with a stage `rebalance`")
         self.assert_refused(self.run_test(scene, "-o", "soft", "--set", "contact.law=hertz-mindlin"),

@@ -38,6 +38,31 @@ duration = "1.2 s"
 [output]
 history_interval = "0.01 s"
 """
+CONSOLIDATION = """title = "a fill on sand and clay"
+[water]
+drainage = "coupled"
+[[layer]]
+name = "sand"
+thickness = "5 m"
+cells = 5
+permeability = "1e-7 m/s"
+material = "user"
+[[layer]]
+name = "clay"
+thickness = "5 m"
+cells = 5
+permeability = "1e-9 m/s"
+material = "elastic"
+shear_velocity = "150 m/s"
+[load]
+kind = "step"
+amplitude = "10 kPa"
+[analysis]
+kind = "consolidation"
+first_time = "10 s"
+last_time = "100 d"
+steps = 20
+"""
 SHEAR, POISSON = 2000 * 200.0**2, 0.3
 
 
@@ -135,6 +160,31 @@ class ColumnTest(ToleranceTest):
         self.assertEqual((ours.folder / "history.csv").read_bytes(), (program / "history.csv").read_bytes())
         self.assertEqual(ours.scene, column.ColumnScene(scene).with_(**{"output.folder": ours.scene.folder}))
         self.assertEqual(ours.summary["points"], 20)
+
+    def test_a_consolidation_cuts_its_elements_where_water_drains(self):
+        scene = column.ColumnScene(CONSOLIDATION)
+        sand = {**scene.to_dict()["layer"][0], "material": "elastic", "shear_velocity": "200 m/s"}
+        built_in = scene.with_(layer=[sand, scene.to_dict()["layer"][1]])
+        due = column.run(built_in, self.folder / "built_in", quiet=True)
+        self.assertEqual(due.warnings, [])
+        self.assertGreater(due.summary["points"], 80, "of 20 without cuts")
+        ours = column.run(scene, self.folder / "ours", materials={"sand": Elastic()}, quiet=True)
+        self.assertEqual((ours.warnings, ours.summary["points"]), ([], due.summary["points"]))
+        self.assert_close(ours.history["settlement"], due.history["settlement"], 1e-9, "rounding")
+        again = column.run(scene, self.folder / "ours", materials={"sand": Elastic()}, quiet=True, resume=True)
+        self.assertEqual(again.summary["points"], due.summary["points"])
+
+        class KnowsItsNumber(Elastic):
+            tangent = elastic_stiffness() / 100
+
+            def initial(self, stress):
+                if len(stress) == 1:
+                    raise ValueError("one point alone")
+                return super().initial(stress)
+
+        coarse = column.run(scene, self.folder / "coarse", materials={"sand": KnowsItsNumber()}, quiet=True)
+        self.assertEqual(len(coarse.warnings), 1)
+        self.assertRegex(coarse.warnings[0], r"the cells of layer\.0 \(sand\) where water drains, \S+ m high, show")
 
     def test_softening_is_more_than_proportional(self):
         scene, peaks = self.scene, []

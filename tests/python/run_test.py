@@ -222,6 +222,20 @@ times = 2
         again = isostat.run(folder / "scene.toml", self.folder / "other_again", threads=1)
         np.testing.assert_array_equal(again.history["p"], results.history["p"])
 
+    def test_what_a_scene_file_writes_out_is_held_against_its_packing(self):
+        """Also where it is the default. The file that names the packing is read as the program does."""
+        isostat.write_specimen(self.folder / "held.h5", self.specimen)
+        path = self.folder / "held.toml"
+        text = SCENE.replace('preparation_friction = "12 deg"', 'file = "held.h5"')
+        for written, has in ((("", ""), None), (("grains = 300", "grains = 10000"), "grading.grains = 10000 (300)"),
+                             (('[specimen]', '[specimen]\npressure = "200 kPa"'), None)):
+            path.write_text(text.replace('cloud_edge = "3.1 mm"\n', "").replace(*written), encoding="utf-8")
+            scene = isostat.Scene(path)
+            self.assertEqual(isostat.Scene(scene.text), scene)
+            self.assertEqual('pressure = "200 kPa"' in scene.text, "pressure" in written[1])
+            warnings = isostat.run(scene, quiet=True, on_record=lambda moment: False).warnings
+            self.assertEqual([has in text for text in warnings], [True] if has else [], warnings)
+
     def test_another_contact_stiffness_than_that_of_the_packing(self):
         soft = self.scene.with_(**{"contact.young": "2 GPa"})
         with self.assertRaisesRegex(isostat.InputError, r"the specimen that is given: was made with another contact "
@@ -287,6 +301,68 @@ times = 2
         with self.assertRaisesRegex(isostat.InputError, "threads: must be a whole number, 0 or more"):
             self.run_scene(threads=-3)
         self.assertRegex(isostat.__version__, r"^\d+\.\d+")
+
+    def test_a_damaged_file_costs_no_more_than_itself(self):
+        folder = self.folder / "damaged"
+        whole = self.run_scene(folder).history
+        names = ("history.h5", "history.csv")
+        series, table = (folder / name for name in names)
+        kept = {name: (folder / name).read_bytes() for name in names}
+        lines = kept["history.csv"].splitlines(keepends=True)
+        n_rows = len(whole["p"])
+
+        def read(warning):
+            with self.assertWarnsRegex(isostat.IsostatWarning, warning) as caught:
+                results = isostat.read(folder)
+            self.assertEqual(caught.filename, __file__)
+            self.assertEqual(results.warnings, [str(caught.warning)])
+            for name in names:
+                (folder / name).write_bytes(kept[name])
+            return results.history
+
+        for damage in (kept["history.h5"][:-100], b"", kept["history.h5"].replace(b"p_LW", b"q_LW", 1)):
+            series.write_bytes(damage)
+            history = read(r"damaged/history\.h5: .*The history is that of .*damaged/history\.csv, to ten digits\.$")
+            self.assertEqual((list(history), history.units), (list(whole), whole.units))
+            for name in whole:
+                self.assert_below(abs(history[name] - whole[name]), 1e-9 * abs(whole[name]), "ten digits")
+        for damage, words in (
+                (b"", r": is damaged \(it is empty\)"), (b"\xff\xfe", r": is damaged \(it holds bytes"),
+                (b"".join([*lines[:3], b"1,2\n", *lines[3:]]), r":4: is damaged \(it holds no row of"),
+                (b"".join([lines[0], lines[1].replace(b".", b"x"), *lines[2:]]), r":2: is damaged \(it holds no"),
+                (b"".join(lines[:-1]), rf": is damaged \(it ends after {n_rows - 1} of {n_rows} rows\)"),
+                (None, ": cannot be read: No such file")):
+            if damage is None:
+                table.unlink()
+            else:
+                table.write_bytes(damage)
+            history = read(rf"damaged/history\.csv{words}.*The history is that of .*damaged/history\.h5")
+            self.assertEqual((set(history), history.units), (set(whole), whole.units))
+            for name in whole:
+                np.testing.assert_array_equal(history[name], whole[name])
+        table.write_bytes(kept["history.csv"] + b"0.5,12")  # killed while it wrote: nothing is damaged
+        self.assertEqual(isostat.read(folder).warnings, [])
+        table.write_bytes(b"")
+        series.write_bytes(b"")
+        with self.assertRaisesRegex(isostat.InputError, r"(?s)history\.h5: .*history\.csv: .*No history is"):
+            isostat.read(folder)
+        (folder / "history.csv").write_bytes(kept["history.csv"])
+        (folder / "provenance.txt").write_bytes(b"\xff\xfe")
+        (folder / "scene.toml").unlink()
+        results = isostat.read(folder)
+        with self.assertRaisesRegex(isostat.InputError, r"provenance\.txt: is damaged .*Restore it from a copy"):
+            results.provenance
+        with self.assertRaisesRegex(isostat.InputError, r"scene\.toml: cannot be read: No such file"):
+            results.scene
+
+    def test_a_damaged_packing_leaves_its_grains(self):
+        results = self.run_scene(self.folder / "cut")
+        path = results.snapshots[-1]
+        path.write_bytes(path.read_bytes()[:-50])
+        grains = path.name.replace("snapshot_", "grains_").replace(".h5", ".vtp")
+        self.assertTrue((self.folder / "cut/paraview" / grains).is_file())
+        with self.assertRaisesRegex(isostat.InputError, rf"{path.name}: .*read_packing\('.*/{grains}'\) has its"):
+            results.packing(-1)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <gmock/gmock.h>
 #include <limits>
 #include <numbers>
@@ -27,10 +28,12 @@ MeshSpec column_of(unsigned cells, double permeability = 1e-6)
 
 struct Terzaghi
 {
-  explicit Terzaghi(const MeshSpec &mesh, std::vector<Face> drained = {Face::surface}, double largest_part = 0.1)
+  explicit Terzaghi(
+      const MeshSpec &mesh, std::vector<Face> drained = {Face::surface}, double largest_part = 0.1,
+      std::function<double(double)> course = [](double) { return 1; })
       : space(mesh, {.fixed = {{Face::base, 0}, {Face::base, 1}, {Face::base, 2}}, .drained = std::move(drained)}),
         soil({modulus / 3, 0.25}, space.n_points()), // D = 3 G
-        statics(space, soil, settings(largest_part))
+        statics(space, soil, settings(largest_part, std::move(course)))
   {
     const Layer &layer = space.mesh().soil.layers[0];
     const Water &water = space.mesh().soil.water;
@@ -39,11 +42,13 @@ struct Terzaghi
     path = height / static_cast<double>(space.supports().drained.size());
     seconds_per_tv = path * path * storage / water.mobility(layer.permeability);
   }
-  static StaticsSettings settings(double largest_part)
+  static StaticsSettings settings(double largest_part, std::function<double(double)> course)
   {
     StaticsSettings settings;
     settings.pore_water = true;
-    settings.tractions = {{Face::surface, [](double, const Place &) { return Place{0, 0, -load}; }}};
+    settings.tractions = {{Face::surface, [course = std::move(course)](double t, const Place &) {
+                             return Place{0, 0, -load * course(t)};
+                           }}};
     settings.largest_part = largest_part;
     return settings;
   }
@@ -220,22 +225,24 @@ TEST(Consolidation, GrowingStepsAreAsAccurate)
   EXPECT_BELOW_BECAUSE(error, 5e-3, "steps that have grown to a fifth of the time");
 }
 
-/// Any first time and any number of steps: the mesh is refined for the first time, and long steps are divided.
+/// Any first time and any number of steps, over six decades: the mesh is refined for the first time, and long steps are
+/// divided. The last of `cases` are the worst of other meshes and of 2,000 steps.
 TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
 {
-  struct
+  struct Case
   {
     std::vector<Face> drained;
     double first;
     unsigned steps, cells;
-  } const cases[] = {{{Face::surface}, 1e-6, 20, 20},
-                     {{Face::surface}, 1e-6, 2000, 20},
-                     {{Face::surface}, 1e-5, 50, 2},
-                     {{Face::surface}, 1e-4, 200, 20},
-                     {{Face::surface}, 1e-2, 20, 20},
-                     {{Face::surface}, 1, 2, 2},
-                     {{Face::surface, Face::base}, 1e-6, 20, 20},
-                     {{Face::surface, Face::base}, 1e-3, 200, 5}};
+  };
+  std::vector<Case> cases;
+  for (const std::vector<Face> &drained : {std::vector{Face::surface}, {Face::surface, Face::base}})
+    for (const double first : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0})
+      for (const unsigned steps : {20, 200})
+        cases.push_back({drained, first, steps, 20});
+  cases.push_back({{Face::surface}, 1e-5, 2000, 20});
+  cases.push_back({{Face::surface}, 1e-5, 50, 2});
+  cases.push_back({{Face::surface}, 1, 2, 2});
   for (const auto &[drained, first, steps, cells] : cases)
     {
       MeshSpec mesh = column_of(cells);
@@ -263,8 +270,8 @@ TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
                   drained.size(), first, steps, cells, column.space.n_cells(), p, u, lowest, highest - 1);
       EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(u, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
-      EXPECT_BELOW_BECAUSE(highest - 1, 1e-4, "the pressure is flat where cells are too large for its front");
-      EXPECT_BELOW_BECAUSE(-lowest, 1e-4, "BDF2 rings below zero when a step is longer than the last mode");
+      EXPECT_BELOW_BECAUSE(highest - 1, 3e-5, "the pressure is flat where cells are too large for its front");
+      EXPECT_BELOW_BECAUSE(-lowest, 3e-5, "BDF2 rings below zero when a step is longer than the last mode");
     }
 }
 
@@ -289,6 +296,52 @@ TEST(Consolidation, CoarseCellsAreRightFromTheirBoundOn)
       std::printf("%2u cells: largest error %.3f before 1.5 h2/c, %.4f after it\n", cells, before, after);
       EXPECT_GT(before, 0.1);
       EXPECT_BELOW_BECAUSE(after, 0.02, "what the bound says");
+    }
+}
+
+/// A harmonic load moves water within sqrt(2 c/omega) of where it drains. At the points, as histories and profiles have
+/// it.
+TEST(Consolidation, CoarseCellsShowTheSkinOfAHarmonicLoadFromTheirBoundOn)
+{
+  constexpr unsigned cells = 20, steps = 150, periods = 2;
+  for (const double cells_of_skin : {0.5 * cells_per_skin, cells_per_skin, 1.0, 10.0})
+    {
+      const MeshSpec mesh = column_of(cells);
+      const double skin = height / cells / cells_of_skin, c = height * height / Terzaghi(mesh).seconds_per_tv,
+                   omega = 2 * c / (skin * skin);
+      Terzaghi column(mesh, {Face::surface}, 0.1, [omega](double t) { return std::sin(omega * t); });
+      const auto exact = [&](double z, double t) { // Terzaghi's series of a load that changes, from rest
+        double sum = 0;
+        for (int m = 0; m < 400; ++m)
+          {
+            const double b = (2 * m + 1) * std::numbers::pi / 2, rate = b * b * c / (height * height);
+            sum += 2 / b * std::sin(b * (height - z) / height) * omega / (rate * rate + omega * omega) *
+                   (rate * (std::cos(omega * t) - std::exp(-rate * t)) + omega * std::sin(omega * t));
+          }
+        return sum;
+      };
+      double points = 0, nodes = 0;
+      for (unsigned n = 1; n <= steps * periods; ++n)
+        {
+          const double t = 2 * std::numbers::pi / omega * n / steps;
+          column.statics.step(t - column.statics.time());
+          const std::vector<double> pressure = column.statics.point_pressure();
+          for (std::size_t q = 0; q < pressure.size(); ++q)
+            points = std::max(points, std::abs(pressure[q] / column.p0() - exact(column.space.position[q][2], t)));
+          for (const Place &corner : column.space.corner)
+            nodes = std::max(nodes, std::abs(column.pressure(corner[2]) - exact(corner[2], t)));
+        }
+      std::printf("cells of %.3f sqrt(2 c/omega): largest error of p/p0 %.4f at points, %.4f at nodes\n", cells_of_skin,
+                  points, nodes);
+      if (cells_of_skin <= cells_per_skin)
+        {
+          EXPECT_BELOW_BECAUSE(points, 0.02, "what the bound says");
+        }
+      else
+        {
+          EXPECT_GT(points, 0.08);
+        }
+      EXPECT_BELOW_BECAUSE(nodes, 0.29, "2 - sqrt(3) of the skin's pressure, in the limit of large cells");
     }
 }
 

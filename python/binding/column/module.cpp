@@ -134,8 +134,11 @@ PYBIND11_MODULE(_column, module)
   using namespace isostat;
   module.doc() = "The compiled part of isostat.column; use what the package itself offers.";
   py::class_<ColumnScene>(module, "ColumnScene")
-      .def(py::init(&parse_column_scene), py::arg("text"), py::arg("name"), py::arg("overrides"))
-      .def_static("_read", &read_column_scene, py::arg("path"), py::arg("overrides"))
+      .def(py::init([](const std::string &text, const std::string &name, const std::vector<std::string> &overrides,
+                       bool is_file) {
+             return is_file ? read_column_scene(name, overrides) : parse_column_scene(text, name, overrides);
+           }),
+           py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("is_file") = false)
       .def_readonly("title", &ColumnScene::title, "What heads tables and figures.")
       .def_property_readonly(
           "folder", [](const ColumnScene &scene) { return scene.output.folder; },

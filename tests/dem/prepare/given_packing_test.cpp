@@ -12,6 +12,7 @@ namespace
 {
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 Scene scene(const std::string &grading, const std::string &contact, const std::string &more,
             const std::string &stage = "kind = \"hold\"")
@@ -66,6 +67,32 @@ TEST(GivenPacking, ItsOwnValuesCountAndAreNamed)
   EXPECT_THAT(notes(scene("", usual, "file = \"p.h5\"\npressure = \"150 kPa\"")),
               ElementsAre(HasSubstr("specimen.pressure = 150 kPa; the test starts from what it has")));
   EXPECT_THAT(notes(scene("", usual, file)), ElementsAre()) << "a default";
+}
+
+TEST(GivenPacking, DefaultsThatAreWrittenCountAsOtherValues)
+{
+  EXPECT_THAT(notes(scene("", usual, "file = \"p.h5\"\npressure = \"200 kPa\"")),
+              ElementsAre(HasSubstr("specimen.pressure = 200 kPa; the test starts from what it has")));
+  const std::vector<std::string> found = notes(
+      scene("grains = 10000\nseed = 1\ncurve = \"karlsruhe-fine-sand\"\ntruncate = [0, 100]\ncloud_edge = \"10 mm\"\n"
+            "solid_fraction = 0.33\ndensity = \"2650 kg/m3\"",
+            usual, at_pressure()));
+  ASSERT_EQ(found.size(), 1u);
+  for (const char *part :
+       {"grading.grains = 10000 (2)", "grading.seed = 1 (7)", "grading.curve = \"karlsruhe-fine-sand\" (grains of 2 to",
+        "grading.truncate = [0, 100] (", "grading.cloud_edge = 10 mm (", "grading.solid_fraction = 0.33 ("})
+    EXPECT_THAT(found[0], HasSubstr(part));
+  EXPECT_THAT(found[0], Not(HasSubstr("density")));
+  Specimen heavy = pressed();
+  heavy.state.grains.density = 3000;
+  EXPECT_THAT(check_given_packing(scene("", usual, at_pressure()), heavy, "p.h5"), ElementsAre()) << "no density said";
+  EXPECT_THAT(check_given_packing(scene("density = \"2650 kg/m3\"", usual, at_pressure()), heavy, "p.h5"),
+              ElementsAre(HasSubstr("grading.density = 2650 kg/m3 (3000 kg/m3)")));
+  const Scene said = scene("", usual, "file = \"p.h5\"\npressure = \"200 kPa\""),
+              again = parse_scene(to_toml(said), "s");
+  EXPECT_EQ(again, said);
+  EXPECT_EQ(notes(again).size(), 1u) << to_toml(said);
+  EXPECT_THAT(notes(parse_scene(to_toml(scene("", usual, file)), "s")), ElementsAre()) << "still left out";
 }
 
 TEST(GivenPacking, SizesAreThoseThatTheGradingWouldMake)
@@ -128,7 +155,7 @@ TEST(GivenPacking, DefaultLimitsBelongToTheGrainsOfThePaper)
   EXPECT_EQ(foreign("", "law = \"hertz-mindlin\"\nfriction = \"18 deg\"" + rolling), "") << "the same resistance";
 }
 
-TEST(GivenPacking, SceneIsWrittenWithoutWhatThePackingHas)
+TEST(GivenPacking, SceneIsWrittenWithoutDefaultsOfWhatThePackingHas)
 {
   const std::string head =
       "[grading]\ngrains = 800\ndensity = \"2700 kg/m3\"\n[specimen]\npressure = \"50 kPa\"\nfile = ";
@@ -137,14 +164,14 @@ TEST(GivenPacking, SceneIsWrittenWithoutWhatThePackingHas)
   };
   const auto holds = [](const std::string &text, const char *key) { return text.find(key) != std::string::npos; };
   const std::string stored = written("\"a.h5#s0001\"", "hold"), foreign = written("\"a.csv\"", "rebalance");
-  for (const char *key : {"\ngrains", "seed", "density =", "pressure"})
-    EXPECT_FALSE(holds(stored, key)) << key << "\n" << stored;
-  for (const char *key : {"\ngrains", "seed"})
-    EXPECT_FALSE(holds(foreign, key)) << key << "\n" << foreign;
-  for (const char *key : {"density = \"2700 kg/m3\"", "pressure = \"50 kPa\""}) // where a file has none; of the stage
-    EXPECT_TRUE(holds(foreign, key)) << key << "\n" << foreign;
+  for (const std::string &text : {stored, foreign})
+    {
+      for (const char *key : {"seed", "truncate", "cloud_edge"})
+        EXPECT_FALSE(holds(text, key)) << key << "\n" << text;
+      for (const char *key : {"\ngrains = 800", "density = \"2700 kg/m3\"", "pressure = \"50 kPa\""})
+        EXPECT_TRUE(holds(text, key)) << key << " is held against the packing\n" << text;
+    }
   EXPECT_EQ(to_toml(parse_scene(stored, "s")), stored);
-  EXPECT_FALSE(holds(written("\"a.h5\"", "compress\"\npressure = \"20 kPa"), "pressure = \"50 kPa\""));
 }
 
 TEST(GivenPacking, NothingRemainsOfItsPreparation)

@@ -308,7 +308,7 @@ TEST(Scene, RoundTripToTheBit)
         scene.specimen.pressure = scene.contact->young / (law == 1 ? 3700 : 37); // at most a twentieth of the modulus
         if (scene.grading.d50)
           scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
-        if (!scene.specimen.file.empty()) // whose grains are its own
+        if (!scene.specimen.file.empty()) // whose grains are its own: a scrambled grading was not written
           scene.grading = {};
         scene.drive = {}; // of a static one
         if (scene.specimen.e_min)
