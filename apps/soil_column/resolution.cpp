@@ -74,10 +74,10 @@ std::string coarse_skin(const ColumnScene &scene, const DrainageBound &bound)
     return "";
   const ColumnLayer &layer = scene.layers[bound.layer];
   return fmt::format(
-      "the cells of layer.{}{} where water drains, {:.3g} m high, do not show the skin in which a load of {:g} Hz moves "
-      "the water there: sqrt(2 c/omega) = {:.3g} m (c = {:.3g} m2/s), and pore pressures are within 2 % only with cells "
-      "of {:.2f} of it. Set layer.{}.cell_size to {:.2g} m or less, or disregard pore pressures within three cells, "
-      "{:.3g} m, of where water drains.",
+      "the cells of layer.{}{} where water drains, {:.3g} m high, do not show the skin in which a load of {:g} Hz "
+      "moves the water there: sqrt(2 c/omega) = {:.3g} m (c = {:.3g} m2/s), and pore pressures are within 2 % only "
+      "with cells of {:.2f} of it. Set layer.{}.cell_size to {:.2g} m or less, or disregard pore pressures within "
+      "three cells, {:.3g} m, of where water drains.",
       bound.layer, layer.name.empty() ? "" : " (" + layer.name + ")", bound.cell, scene.load.frequency, skin,
       bound.coefficient, cells_per_skin, bound.layer, cells_per_skin * skin, 3 * bound.cell);
 }

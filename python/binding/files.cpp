@@ -221,7 +221,8 @@ void bind_files(py::module_ &module)
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
-  module.def("read_series", &read_series, py::arg("path"), "Columns of a history.h5, with all their digits, and their units.");
+  module.def("read_series", &read_series, py::arg("path"),
+             "Columns of a history.h5, with all their digits, and their units.");
   module.def(
       "import_tables",
       [](const Path &path, AnyLaw law, Density density) {
