@@ -196,7 +196,7 @@ void Rve::run_strain(const Mat3 &own_gradient)
     return run_balanced(own_gradient, *settings_.stepping);
   const double size = strain_measure(own_gradient);
   double left = 1, minimum = static_cast<double>(settings_.min_steps);
-  for (bool last = own_gradient.isZero(0); !last; minimum -= 1)
+  for (bool last = false; !last; minimum -= 1)
     {
       review();
       const double whole = std::max(left * size / (drive_.pace.rate * assembly_.settings.time_step), minimum);
@@ -308,6 +308,8 @@ RveResponse Rve::strain(const Mat3 &displacement_gradient, bool constant_volume)
     Mat3 own = logarithm(to_own(displacement_gradient));
     if (constant_volume)
       own -= own.trace() / 3 * Mat3::Identity();
+    if (own.isZero(0))
+      return;
     run_strain(own);
     since_safe_.push_back(own);
     if (assembly_.step() - safe_.grains.step > steps_between_copies)
