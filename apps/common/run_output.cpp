@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
+constexpr std::uint64_t steps_between_looks = 256; ///< at the clock
 constexpr std::uint64_t steps_kept = 2000; ///< between two states that are kept in memory; a copy costs some steps
 
 /// The state of a test for the progress line.
@@ -101,10 +102,15 @@ bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, co
       save_checkpoint(assembly, state);
       return false;
     }
-  if (assembly.step() % 256 == 0 && since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
-    save_checkpoint(assembly, state);
-  if (!kept_ || assembly.step() % steps_kept == 0)
-    kept_ = checkpoint_of(assembly, state);
+  const std::uint64_t step = assembly.step(); // by one, or by all force evaluations of an increment
+  if (step >= looked_ + steps_between_looks)
+    {
+      looked_ = step;
+      if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
+        save_checkpoint(assembly, state);
+    }
+  if (!kept_ || step >= kept_at_ + steps_kept)
+    kept_ = checkpoint_of(assembly, state), kept_at_ = step;
   return true;
 }
 

@@ -69,7 +69,7 @@ struct Loading
                  begun_strain, half_cycle)
 };
 
-/// The last increment of a static drive: what the next one is compared with.
+/// The last increment of a static drive: from its answer the next one learns moduli, where stresses are kept.
 struct LastIncrement
 {
   Vec3 strain = Vec3::Zero(); ///< along x, y, z, tension positive [-]

@@ -19,6 +19,8 @@ constexpr double shear_over_normal = 0.4;
 /// Of grains that find their places, and lateral over axial stiffness: where static_servo() begins.
 constexpr double relaxed_over_affine = 0.6, lateral_over_normal = 0.25;
 
+constexpr double kept_tolerance = 3e-3; ///< of p', on stresses that an increment should keep
+
 /// The stiffness after the last increment.
 Eigen::Matrix4d corrected_moduli(const Assembly &assembly, const StaticComponents &now, LastIncrement &last)
 {
@@ -44,13 +46,16 @@ Eigen::Matrix4d corrected_moduli(const Assembly &assembly, const StaticComponent
 
 StaticComponents static_servo(const Assembly &assembly, const StaticComponents &now, const StaticComponents &target,
                               const std::array<bool, 4> &controlled, const StaticComponents &prescribed, double cap,
-                              LastIncrement &last)
+                              LastIncrement &last, double per_axial)
 {
-  Eigen::Matrix4d factors = corrected_moduli(assembly, now, last);
+  const Eigen::Matrix4d moduli = corrected_moduli(assembly, now, last);
+  Eigen::Matrix4d factors = moduli;
   StaticComponents right = target - now;
   for (int k = 0; k < 4; ++k)
     if (!controlled[k])
       factors.row(k) = StaticComponents::Unit(k), right[k] = prescribed[k];
+    else
+      factors.row(k) -= per_axial * moduli.row(1);
   StaticComponents strain = factors.partialPivLu().solve(right);
   for (int k = 0; k < 4; ++k)
     if (!controlled[k])
@@ -62,6 +67,18 @@ StaticComponents static_servo(const Assembly &assembly, const StaticComponents &
   last.stress = now.head<3>();
   last.tau = now[3];
   return strain;
+}
+
+bool misses_targets(const StaticComponents &now, const StaticComponents &target, const std::array<bool, 4> &controlled,
+                    std::size_t driven, const LastIncrement &last)
+{
+  if ((driven < 3 ? last.strain[static_cast<Eigen::Index>(driven)] : last.gamma) == 0)
+    return false;
+  double worst = 0;
+  for (int k = 0; k < 4; ++k)
+    if (controlled[k])
+      worst = std::max(worst, std::abs(target[k] - now[k]));
+  return worst > kept_tolerance * now.head<3>().mean();
 }
 
 Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<bool, 3> &controlled, double rate_cap,

@@ -37,10 +37,17 @@ using StaticComponents = Eigen::Vector4d;
 /// beside those that are prescribed (p). K begins as three fifths of the affine stiffness and is corrected after each
 /// increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577, doi:10.1090/S0025-5718-1965-0198670-6).
 /// @param now  stresses as they are, Pa   @param prescribed  [-]   @param cap  on each strain, an amount [-]
+/// @param per_axial  targets change by so much with sigma_y: -1/2 where lateral stresses keep p' [-]
 /// tested: tests/verification/static_drive_test.cpp
 StaticComponents static_servo(const Assembly &assembly, const StaticComponents &now, const StaticComponents &target,
                               const std::array<bool, 4> &controlled, const StaticComponents &prescribed, double cap,
-                              LastIncrement &last);
+                              LastIncrement &last, double per_axial = 0);
+
+/// Whether stresses that the last increment should have kept are off by more than 0.3 % of p', so that the next one is
+/// to correct them alone. At most every other increment does.
+/// @param driven  the component that is driven
+bool misses_targets(const StaticComponents &now, const StaticComponents &target, const std::array<bool, 4> &controlled,
+                    std::size_t driven, const LastIncrement &last);
 
 /// Largest |sigma_k / target_k - 1| over the controlled axes, and in a cell |shear stress| / mean target.
 double stress_error(const Assembly &assembly, const Vec3 &target,

@@ -105,8 +105,7 @@ void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationL
   if (found.steps >= limits.max_steps)
     throw RunFailure(fmt::format(
         "not in balance after {} force evaluations: {:.3g} where {:g} is allowed for all but {:g} % of {} loaded "
-        "grains; grain {} is worst, {:.3g}. Take a smaller increment (motion.increment) or a larger tolerance "
-        "(motion.balance).",
+        "grains; grain {} is worst, {:.3g}. Take a smaller `increment` or a larger tolerance, `balance`.",
         found.steps, found.balance.within, spec.tolerance, 100 * spec.left_out, found.balance.loaded,
         found.balance.grain, found.balance.worst));
 }
@@ -127,11 +126,9 @@ void Relaxation::stop()
 template <typename Move>
 std::uint64_t Relaxation::spread(double strain, const Vec3 &box_strain, const Move &move)
 {
-  if (strain == 0)
-    return 0;
   follow_stiffness();
   const bool loaded = !assembly_.stress().isZero(0);
-  const double n = loaded ? std::max(1.0, std::ceil(iterations_of_increment * strain / increment_ * (1 - 1e-12))) : 1;
+  const double n = loaded ? std::max(1.0, std::ceil(iterations_of_increment * strain / increment_ * (1 - 1e-9))) : 1;
   if (assembly_.walls())
     {
       assembly_.set_homogeneous_motion(box_strain / (n * assembly_.settings.time_step));
@@ -145,6 +142,8 @@ std::uint64_t Relaxation::spread(double strain, const Vec3 &box_strain, const Mo
       move(k, n);
     }
   assembly_.settings.contact_damping = 0;
+  if (assembly_.settings.measure_energy)
+    assembly_.add_loss(assembly_.kinetic_energy()); // of the masses it was gained with: run() has others
   return static_cast<std::uint64_t>(n);
 }
 
@@ -168,11 +167,13 @@ std::uint64_t Relaxation::move(const RigidBox &next)
 
 Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
 {
-  follow_stiffness(); // before the move that was is over: a run that was resumed has no others
-  stop();
+  if (assembly_.settings.measure_energy)
+    assembly_.add_loss(0.5 * assembly_.settings.time_step * assembly_.power()); // the rest of what spread() has lost
+  assembly_.stop_grains();
+  follow_stiffness();
   Relaxed found;
   std::uint64_t followed = 0; ///< when masses were made last
-  look(found, spec, limits);  // forces of the move that was have no dashpots
+  look(found, spec, limits);  // the last part of a move has no dashpots
   assembly_.settings.contact_damping = contact_damping;
   for (; !found.balanced; ++found.steps)
     {

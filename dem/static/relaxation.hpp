@@ -46,7 +46,7 @@ struct Relaxed
 
 /// Strains packings from balance to balance without inertia:
 ///
-///     n times { x <- x + L dt x / n (cell or walls, and grains);  one iteration };  v <- 0
+///     n times { cell or walls by a part of the strain;  one iteration };  v <- 0
 ///     repeat one iteration until balanced;                      iteration: forces;  v <- v + dt F/M;  x <- x + v dt
 ///
 /// Dynamic relaxation with kinetic damping (Cundall 1976; Barnes 1999, Int. J. Space Struct. 14, 89,
@@ -54,8 +54,9 @@ struct Relaxed
 /// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr) over their contacts, so that all of them are as quick; where
 /// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Dashpots in the contacts, 5 % of critical, take
 /// the motion of grains that rattle between others. Grains that touch nothing stay with the cell.
-/// A strain of `increment` is spread over n = 100 iterations, a smaller one over fewer in proportion: all at once it
-/// would load contacts as if grains moved affinely, many would slide, and their way back loses stress
+/// A strain of `increment` is spread over n = 100 iterations, others in proportion (at least one). In a cell grains are
+/// strained with it; in a box those that touch something begin with the velocity of its homogeneous strain. All at once
+/// it would load contacts as if grains moved affinely, many would slide, and their way back loses stress
 /// (docs/theory.md, section 17).
 /// The history of contacts goes along with every iteration: with history frozen at the start of an increment
 /// relaxation ends in limit cycles, because Coulomb friction is not associated. What is lost where a network breaks
@@ -74,8 +75,8 @@ public:
   Relaxation(const Relaxation &) = delete;
   Relaxation &operator=(const Relaxation &) = delete;
 
-  /// Strains a cell, or moves the walls of a box and the grains with them. The last of the n moves is pending
-  /// afterwards: compute_forces() and run() follow.
+  /// Strains a cell, or moves the walls of a box and the grains with them. The last of the n >= 1 moves is pending
+  /// afterwards, without strain too: compute_forces() and run() follow.
   /// @return n   @pre compute_forces(), settings.time_step > 0
   std::uint64_t deform(const Mat3 &gradient);
   std::uint64_t move(const RigidBox &next);
@@ -91,7 +92,7 @@ private:
   void follow_stiffness();         ///< M and J of the contacts as they are
   void hold();                     ///< one iteration
   void stop();                     ///< of all motion, whose energy is lost
-  double energy_of_motion() const; ///< what forces have done, or will have, since the last peak, J
+  double energy_of_motion() const; ///< kinetic energy, of velocities that are half a step older than forces, J
   void look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const;
 
   Assembly &assembly_;

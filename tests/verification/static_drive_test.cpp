@@ -87,7 +87,8 @@ TEST(StaticDrive, EveryRowIsInBalanceAndLoadsTurnWhereTheyShould)
       EXPECT_BELOW_BECAUSE(seen.worst, 0.0101, "0.01 is asked for");
       ASSERT_EQ(seen.turns.size(), 4u);
       for (std::size_t k = 0; k < 4; ++k)
-        EXPECT_NEAR_BECAUSE(seen.turns[k].q, k % 2 ? -60e3 : 60e3, 300, "a hundredth of an increment is some 40 Pa");
+        EXPECT_NEAR_BECAUSE(seen.turns[k].q, k % 2 ? -60e3 : 60e3, 300,
+                            "a five-hundredth of an increment is some 40 Pa");
       EXPECT_BELOW_BECAUSE(seen.highest / seen.lowest - 1, 1e-12, "round-off: no water flows");
     }
 }
@@ -106,12 +107,14 @@ TEST(StaticDrive, StressesThatAreKeptStayOnTheirTargets)
 {
   for (const std::string domain : {"periodic-cell", "rigid-box"})
     {
-      const Result found = run(programme(test::sheared_to<Drained>(2e-3), 1e-5), in(domain));
-      EXPECT_GT(found.watcher.last.q, 100e3);
+      const Result drained = run(programme(test::sheared_to<Drained>(2e-3), 5e-5), in(domain));
+      EXPECT_GT(drained.watcher.last.q, 100e3);
       for (int k : {0, 2})
-        EXPECT_NEAR_BECAUSE(found.watcher.last.stress[k] / found.state.path.lateral_target[k], 1, 0.01,
+        EXPECT_NEAR_BECAUSE(drained.watcher.last.stress[k] / drained.state.path.lateral_target[k], 1, 0.01,
                             "the control of a test asks for 1 %");
-      EXPECT_TRUE(found.state.control.losses.empty());
+      EXPECT_TRUE(drained.state.control.losses.empty());
+      const Result constant = run(programme(test::sheared_to<ConstantP>(2e-3), 5e-5), in(domain));
+      EXPECT_NEAR_BECAUSE(constant.watcher.last.p / constant.state.path.p0(), 1, 0.01, "as above");
     }
 }
 
@@ -147,11 +150,11 @@ TEST(StaticDrive, EnergyGoesIntoSpringsFrictionAndRelaxation)
   for (const std::string domain : {"periodic-cell", "rigid-box"})
     {
       const EnergyBalance e =
-          run(programme(test::sheared_to<UndrainedMonotonic>(1e-3), 1e-5), in(domain), 1, true).watcher.energy;
+          run(programme(test::sheared_to<UndrainedMonotonic>(1e-3), 5e-5), in(domain), 1, true).watcher.energy;
       EXPECT_GT(e.boundary_work, 0);
       EXPECT_GT(e.sliding, 0);
-      EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 0.02 * (e.boundary_work + std::abs(e.elastic) + e.dissipated()),
-                           "0.2 % of what went round in the cell, 1 % in the box: iterations are at the stable limit");
+      EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 5e-4 * (e.boundary_work + std::abs(e.elastic) + e.dissipated()),
+                           "trapezoidal work of steps that are finite");
     }
 }
 

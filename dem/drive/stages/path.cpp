@@ -260,13 +260,23 @@ void Path::close_step(const StageContext &c, const Observation &seen, Vec3 &step
 
 StaticComponents Path::static_step(const StageContext &c, const Observation &seen) const
 {
-  const std::array<double, 4> steps = prescribed_steps(c, seen);
   std::array<bool, 4> controlled;
   for (std::size_t k = 0; k < 4; ++k)
     controlled[k] = components[k].follows_stress();
-  StaticComponents now, target;
+  const auto targets = [&] {
+    StaticComponents target;
+    target << stress_targets(c.state, c.assembly.stress()), tau_target(c.state);
+    return target;
+  };
+  StaticComponents now, target = targets();
   now << seen.stress, seen.tau;
-  target << stress_targets(c.state, c.assembly.stress()), tau_target(c.state);
+  std::array<double, 4> steps = {};
+  if (drive == DrivenComponent::none ||
+      !misses_targets(now, target, controlled, static_cast<std::size_t>(drive) - 1, c.state.increment))
+    {
+      steps = prescribed_steps(c, seen);
+      target = targets();
+    }
   StaticComponents step = static_servo(c.assembly, now, target, controlled, StaticComponents(steps.data()),
                                        servo_rate_factor * c.state.pace.rate, c.state.increment);
   Vec3 normal = step.head<3>();

@@ -18,7 +18,8 @@ namespace
 constexpr std::uint64_t indicator_interval = 50;
 constexpr double consolidation_tolerance = 0.01;      ///< of p', on the stresses that a stage begins with
 constexpr double approach = 0.9, least_share = 0.002; ///< of the way to a turn, and of an increment
-constexpr double modulus_over_affine = 0.5;           ///< after a reversal grains give way: 0.55 to 0.7 was seen
+constexpr double share_where_kept = 0.2; ///< of an increment: stresses that are to be kept are off after a larger one
+constexpr double modulus_over_affine = 0.5; ///< after a reversal grains give way: 0.55 to 0.7 was seen
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -131,7 +132,9 @@ double ShearStage::increment(const StageContext &c, double present) const
 {
   Loading &loading = c.state.loading;
   update_slope(loading, present, 1);
-  const double direction = sign(loading.direction), whole = c.drive.increment,
+  const KeptStresses kept = kept_stresses(c);
+  const bool keeps = std::any_of(kept.begin(), kept.end(), [](const auto &stress) { return stress.has_value(); });
+  const double direction = sign(loading.direction), whole = (keeps ? share_where_kept : 1) * c.drive.increment,
                load_left = direction * (turning_load(c.state) - present),
                strain_left = direction * (turning_strain(c.state) - loading.strain);
   double step = std::min(whole, strain_left);
@@ -179,9 +182,11 @@ Vec3 ServoedShear::static_step(const StageContext &c, const Observation &seen) c
   StaticComponents target, now, prescribed = StaticComponents::Zero();
   target << lateral_stresses(c), 0;
   now << seen.stress, 0;
-  prescribed[1] = driven_step(c, seen);
-  return static_servo(c.assembly, now, target, {true, false, true, false}, prescribed,
-                      servo_rate_factor * c.state.pace.rate, c.state.increment)
+  constexpr std::array<bool, 4> controlled = {true, false, true, false};
+  if (!misses_targets(now, target, controlled, 1, c.state.increment))
+    prescribed[1] = driven_step(c, seen);
+  return static_servo(c.assembly, now, target, controlled, prescribed, servo_rate_factor * c.state.pace.rate,
+                      c.state.increment, lateral_per_axial())
       .head<3>();
 }
 

@@ -101,6 +101,7 @@ public:
 protected:
   /// Along x, y, z; that along y is not looked at. Pa, compression positive.
   virtual Vec3 lateral_stresses(const StageContext &c) const = 0;
+  virtual double lateral_per_axial() const { return 0; } ///< by how much they change with sigma_y [-]
 
 private:
   /// Strains of an increment of a static drive, compression positive.
@@ -126,5 +127,6 @@ public:
 
 protected:
   Vec3 lateral_stresses(const StageContext &c) const override;
+  double lateral_per_axial() const override { return -0.5; }
 };
 } // namespace isostat

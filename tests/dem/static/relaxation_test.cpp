@@ -68,7 +68,7 @@ TEST(Relaxation, ABalancedPackingStaysToTheTolerance)
   rve.relax({1e-6, 0});
   const Mat3 before = rve.stress();
   const RveResponse again = rve.relax({1e-6, 0});
-  EXPECT_LE(again.steps, 2u);
+  EXPECT_LE(again.steps, 11u) << "balance is looked at every ten iterations";
   EXPECT_BELOW_BECAUSE((rve.stress() - before).norm(), 1e-6 * before.norm(), "balanced to 1e-6");
 }
 
@@ -108,6 +108,8 @@ TEST(Relaxation, HasTheSameBitsForAnyNumberOfThreadsAndAfterRestoring)
       {
         Relaxation relaxation(assembly, 1e-5);
         relaxation.deform(increment(k));
+        EXPECT_EQ(relaxation.deform(Mat3::Zero()), 1u)
+            << "a move is always pending, so that a resumed run has its bits";
         assembly.compute_forces();
         relaxation.run({1e-2, 0.05});
         if (restored)
