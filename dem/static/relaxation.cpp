@@ -128,15 +128,16 @@ std::uint64_t Relaxation::spread(double strain, const Vec3 &box_strain, const Mo
 {
   follow_stiffness();
   const bool loaded = !assembly_.stress().isZero(0);
-  const double n = loaded ? std::max(1.0, std::ceil(iterations_of_increment * strain / increment_ * (1 - 1e-9))) : 1;
+  const double whole = std::ceil(iterations_of_increment * strain / increment_ * (1 - 1e-9));
+  const std::uint64_t n = loaded && whole > 1 ? static_cast<std::uint64_t>(whole) : 1;
   if (assembly_.walls())
     {
-      assembly_.set_homogeneous_motion(box_strain / (n * assembly_.settings.time_step));
+      assembly_.set_homogeneous_motion(box_strain / (static_cast<double>(n) * assembly_.settings.time_step));
       if (assembly_.settings.measure_energy)
         assembly_.add_loss(-energy_of_motion()); // that they are given
     }
   assembly_.settings.contact_damping = contact_damping;
-  for (double k = 1; k <= n; ++k)
+  for (std::uint64_t k = 1; k <= n; ++k)
     {
       assembly_.compute_forces();
       move(k, n);
@@ -144,21 +145,21 @@ std::uint64_t Relaxation::spread(double strain, const Vec3 &box_strain, const Mo
   assembly_.settings.contact_damping = 0;
   if (assembly_.settings.measure_energy)
     assembly_.add_loss(assembly_.kinetic_energy()); // of the masses it was gained with: run() has others
-  return static_cast<std::uint64_t>(n);
+  return n;
 }
 
 std::uint64_t Relaxation::deform(const Mat3 &gradient)
 {
   return spread(gradient.cwiseAbs().maxCoeff(), Vec3::Zero(),
-                [&](double, double n) { assembly_.deform(gradient / n); });
+                [&](std::uint64_t, std::uint64_t n) { assembly_.deform(gradient / static_cast<double>(n)); });
 }
 
 std::uint64_t Relaxation::move(const RigidBox &next)
 {
   const RigidBox from = assembly_.box();
   const Vec3 strain = (next.edges().array() / from.edges().array()).log();
-  return spread(strain.cwiseAbs().maxCoeff(), strain, [&](double k, double n) {
-    const double left = (n - k) / n;
+  return spread(strain.cwiseAbs().maxCoeff(), strain, [&](std::uint64_t k, std::uint64_t n) {
+    const double left = static_cast<double>(n - k) / static_cast<double>(n);
     assembly_.move(k == n ? next
                           : RigidBox{next.lower + left * (from.lower - next.lower),
                                      next.upper + left * (from.upper - next.upper)});
