@@ -13,13 +13,12 @@ for name in apt/apt.conf.d/01proxy resolv.conf; do
   if [[ -e /etc/$name ]]; then cp -L "/etc/$name" "$root/etc/$name"; fi
 done
 mkdir -p "$root/packages"
-cp "$packages"/*.deb "$root/packages"
+cp "$packages"/*.deb "$(dirname "$0")/drained.py" "$root/packages"
 inside sh -c 'apt-get update -q && apt-get install -q -y --no-install-recommends /packages/*.deb' >"$root/install.log" 2>&1 ||
   { tail -n 20 "$root/install.log"; exit 1; }
 
-cp "$(dirname "$0")/drained.py" "$root/root/drained.py"
 start=$SECONDS
-inside sh -c 'cd /root && python3 drained.py'
+inside sh -c 'cd /root && python3 /packages/drained.py'
 echo "drained test run and drawn: $((SECONDS - start)) s"
 for program in isostat element_test soil_column calibrate specimen_library micromechanics; do
   inside "$program" --version

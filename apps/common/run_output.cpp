@@ -109,8 +109,8 @@ bool RunOutput::after_step(const Assembly &assembly, const DriveState &state, co
       if (since_checkpoint_.seconds() > 60 * scene_.output.checkpoint_minutes)
         save_checkpoint(assembly, state);
     }
-  if (!kept_ || step >= kept_at_ + steps_kept)
-    kept_ = checkpoint_of(assembly, state), kept_at_ = step;
+  if (!kept_ || step >= kept_->state.step + steps_kept)
+    kept_ = checkpoint_of(assembly, state);
   return true;
 }
 

@@ -67,8 +67,8 @@ private:
   PvdCollection grains_, chains_;
   Progress progress_;
   Stopwatch since_checkpoint_;
-  std::optional<Checkpoint> kept_;         ///< in memory
-  std::uint64_t kept_at_ = 0, looked_ = 0; ///< steps: when that was, and when the clock was last looked at
+  std::optional<Checkpoint> kept_; ///< in memory
+  std::uint64_t looked_ = 0;       ///< step at which the clock was last looked at
 };
 
 /// Puts the sums of a checkpoint back into the assembly.

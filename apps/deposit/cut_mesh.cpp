@@ -17,12 +17,11 @@ double constrained_modulus(const ColumnScene &scene, const SoilProfile &soil, co
   constexpr double unknown = std::numeric_limits<double>::infinity();
   if (layer.material == LayerMaterial::grains) // which costs a specimen
     return unknown;
-  const auto [normal, shear] = soil.in_situ(z, scene.load.surcharge);
+  const std::array stress{level_stress(scene, soil, layer.k0, z)};
   try
     {
       const std::unique_ptr<Material> material = layer_material(layer, 1, user);
-      material->set_initial_stress(
-          std::array<Stress, 1>{Stress{-layer.k0 * normal, -layer.k0 * normal, -normal, 0, shear, 0}});
+      material->set_initial_stress(stress);
       std::array<WaveModuli, 1> moduli;
       material->wave_moduli(moduli);
       return moduli[0].p;

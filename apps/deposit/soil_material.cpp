@@ -156,6 +156,12 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
   return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
 }
 
+Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z)
+{
+  const auto [normal, shear] = soil.in_situ(z, scene.load.surcharge);
+  return {-k0 * normal, -k0 * normal, -normal, 0, shear, 0};
+}
+
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh)
 {
   if (scene.mesh.sides == Sides::walls)
@@ -163,11 +169,8 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
   const SoilProfile soil = soil_profile(scene);
   std::vector<Stress> stresses(mesh.n_points());
   for (std::size_t q = 0; q < stresses.size(); ++q)
-    {
-      const auto [normal, shear] = soil.in_situ(mesh.position[q][2], scene.load.surcharge);
-      const double k0 = soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
-      stresses[q] = {-k0 * normal, -k0 * normal, -normal, 0, shear, 0};
-    }
+    stresses[q] =
+        level_stress(scene, soil, soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0, mesh.position[q][2]);
   return stresses;
 }
 

@@ -61,6 +61,9 @@ std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n
 /// The material of one layer from a formula, without stress.   @pre layer.material is elastic, iwan or mohr_coulomb
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
 
+/// Stress in situ at a height of a layer between faces that are parallel: its weight, and K0 times that. Pa, tension
+/// positive
+Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z);
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
 /// K0 times as much. Between walls that is where settle() begins, without a surcharge
 /// on a part of the surface.

@@ -172,21 +172,25 @@ private:
     if (!assembly_.cell())
       {
         const RigidBox next = finished ? assembly_.box() : stage_.next_box(context_, seen);
-        note_increment((next.edges().array() / assembly_.box().edges().array()).log(), 0);
-        relaxation_ ? void(relaxation_->move(next)) : assembly_.move(next);
+        if (relaxation_)
+          {
+            state_.increment.strain = (next.edges().array() / assembly_.box().edges().array()).log();
+            relaxation_->move(next);
+          }
+        else
+          assembly_.move(next);
         return;
       }
     const Mat3 gradient = finished ? Mat3::Zero() : stage_.next_gradient(context_, seen);
-    note_increment(gradient.diagonal(), gradient(0, 1));
     state_.path.cell_strain += gradient.diagonal();
     state_.path.gamma += gradient(0, 1);
-    relaxation_ ? void(relaxation_->deform(gradient)) : assembly_.deform(gradient);
-  }
-
-  void note_increment(const Vec3 &strain, double gamma)
-  {
     if (relaxation_)
-      state_.increment.strain = strain, state_.increment.gamma = gamma;
+      {
+        state_.increment.strain = gradient.diagonal(), state_.increment.gamma = gradient(0, 1);
+        relaxation_->deform(gradient);
+      }
+    else
+      assembly_.deform(gradient);
   }
 
   const Programme &programme_;

@@ -111,10 +111,9 @@ void Relaxation::look(Relaxed &found, const BalanceSpec &spec, const RelaxationL
 }
 
 // Leapfrog: velocities are half a step older than forces.
-double Relaxation::energy_of_motion() const
-{
-  return assembly_.kinetic_energy() + 0.5 * assembly_.settings.time_step * assembly_.power();
-}
+double Relaxation::half_work() const { return 0.5 * assembly_.settings.time_step * assembly_.power(); }
+
+double Relaxation::energy_of_motion() const { return assembly_.kinetic_energy() + half_work(); }
 
 void Relaxation::stop()
 {
@@ -169,7 +168,7 @@ std::uint64_t Relaxation::move(const RigidBox &next)
 Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
 {
   if (assembly_.settings.measure_energy)
-    assembly_.add_loss(0.5 * assembly_.settings.time_step * assembly_.power()); // the rest of what spread() has lost
+    assembly_.add_loss(half_work()); // the rest of what spread() has lost
   assembly_.stop_grains();
   follow_stiffness();
   Relaxed found;

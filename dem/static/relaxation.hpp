@@ -92,6 +92,7 @@ private:
   void follow_stiffness();         ///< M and J of the contacts as they are
   void hold();                     ///< one iteration
   void stop();                     ///< of all motion, whose energy is lost
+  double half_work() const;        ///< of the forces since velocities were made, J
   double energy_of_motion() const; ///< kinetic energy, of velocities that are half a step older than forces, J
   void look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const;
 
