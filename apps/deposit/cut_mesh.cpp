@@ -17,7 +17,7 @@ double constrained_modulus(const ColumnScene &scene, const SoilProfile &soil, co
   constexpr double unknown = std::numeric_limits<double>::infinity();
   if (layer.material == LayerMaterial::grains) // which costs a specimen
     return unknown;
-  const std::array stress{level_stress(scene, soil, layer.k0, z)};
+  const std::array<Stress, 1> stress{level_stress(scene, soil, layer.k0, z)};
   try
     {
       const std::unique_ptr<Material> material = layer_material(layer, 1, user);
