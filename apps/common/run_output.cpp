@@ -67,7 +67,7 @@ fs::path RunOutput::snapshot_file(std::uint64_t k) const
 void RunOutput::record(const Assembly &assembly, const DriveState &state, const Observation &seen, bool snapshot)
 {
   Snapshot now = assembly.snapshot();
-  const Micromechanics m = micromechanics(now);
+  const Micromechanics m = micromechanics(now, scene_.output.yield_margin);
   written_.redundancy = m.network.redundancy_index();
   recorder_.append(history_row(scene_, assembly, state, seen, m));
   if (!snapshot)

@@ -126,6 +126,9 @@ std::optional<LiquefactionRecord> liquefaction(const HistoryRows &history, const
   record.cyclic = is_cyclic(of);
   record.strain_before = state.undrained.max_strain_before;
   record.ratio = as<LiquefactionLimit>(of)->liquefaction_ratio;
+  const std::size_t before = row > 0 ? row - 1 : row;
+  record.before = redundancy(history, before);
+  record.ratio_before = history(before, p) / state.path.p0();
   record.at_onset = redundancy(history, row);
   record.least_redundancy = record.at_onset.index;
   add_recoveries(history, record.ratio * state.path.p0(), record);

@@ -54,6 +54,8 @@ struct LiquefactionRecord
   bool simple_shear = false; ///< the stage it came in: what its strain is
   bool cyclic = false;       ///< likewise
   double strain_before = 0;  ///< largest |axial strain|, in simple shear |gamma| [-]
+  RedundancyOfRow before;    ///< in the row before the onset: of a static test, about its last balanced state
+  double ratio_before = 0;   ///< p'/p0' there [-]
   RedundancyOfRow at_onset;
   double least_redundancy = 0; ///< from the onset on
   double recovered = 0;        ///< mean over half cycles of I_R where p'/p0 comes back above the ratio for good

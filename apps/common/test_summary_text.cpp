@@ -87,12 +87,13 @@ std::string liquefaction_text(const LiquefactionRecord &l)
   if (l.cyclic)
     text += fmt::format("\n  cycles to liquefaction   {:.1f} ({:.0f} reversals)", l.reversals / 2, l.reversals);
   return text +
-         fmt::format("\n  {:<25}{:.4f} %\n  I_R at onset             {}\n  smallest I_R after       {:.3f}\n  I_R "
-                     "as p'/p0 recovers    {}",
-                     l.simple_shear ? "|gamma| before it" : "strain before it", 100 * l.strain_before,
-                     to_text(l.at_onset), l.least_redundancy,
-                     l.n_recoveries > 0 ? fmt::format("{:.3f} (mean of {:.0f})", l.recovered, l.n_recoveries)
-                                        : "it does not recover");
+         fmt::format(
+             "\n  {:<25}{:.4f} %\n  I_R in the row before    {} at p'/p0' = {:.3f}\n  I_R at onset             {}"
+             "\n  smallest I_R after       {:.3f}\n  I_R as p'/p0 recovers    {}",
+             l.simple_shear ? "|gamma| before it" : "strain before it", 100 * l.strain_before, to_text(l.before),
+             l.ratio_before, to_text(l.at_onset), l.least_redundancy,
+             l.n_recoveries > 0 ? fmt::format("{:.3f} (mean of {:.0f})", l.recovered, l.n_recoveries)
+                                : "it does not recover");
 }
 
 std::string index_names(const std::vector<int> &constraints)
@@ -118,6 +119,8 @@ Json liquefaction_json(const LiquefactionRecord &l)
           {"ratio", l.ratio},
           {"cycle", l.reversals / 2},
           {"strain_before", l.strain_before},
+          {"p_ratio_before", l.ratio_before},
+          {"IR_before", l.before.index},
           {"IR_at_onset", l.at_onset.index},
           {"IR_min", l.least_redundancy},
           {"IR_recovered", l.n_recoveries > 0 ? Json(l.recovered) : Json()}};

@@ -16,7 +16,7 @@ SHOWN = {
         "cyclic_response.strain_min": "%", "cyclic_response.strain_max": "%",
         "gamma_max": "%", "tau_max": "kPa", "sigma_v0": "kPa", "stress_ratio_max": "-", "CSR": "-",
         "liquefaction.row": "-", "liquefaction.ratio": "-", "liquefaction.cycle": "-",
-        "liquefaction.strain_before": "%",
+        "liquefaction.strain_before": "%", "liquefaction.p_ratio_before": "-", "liquefaction.IR_before": "-",
         "liquefaction.IR_at_onset": "-", "liquefaction.IR_min": "-", "liquefaction.IR_recovered": "-"},
     "soil_column": {
         "dimension": "-", "height": "m", "mass_damping": "1/s", "viscosity": "ms",

@@ -41,6 +41,9 @@ struct ClosedContact
   const ContactHistory &history;
 };
 
+/// Below a limit by this share a force counts as having reached it: the round-off of the plastic return.
+constexpr double yield_round_off = 1e-9;
+
 /// Which limits a contact has reached.
 struct YieldState
 {
@@ -80,7 +83,8 @@ struct ContactLaw
   /// For the critical time step and the stiffness of packings; elastic, whether the contact yields or not. Springs that
   /// are switched off have none.
   virtual ContactStiffness stiffness(double r1, double r2, double overlap) const = 0;
-  virtual YieldState yield(const ClosedContact &contact) const = 0;
+  /// @param margin  share of a limit by which the force or moment may be below it [-], in [0, 1)
+  virtual YieldState yield(const ClosedContact &contact, double margin) const = 0;
   virtual ContactEnergy energy(const ClosedContact &contact) const = 0;
 
   /// kn/R of two equal grains of radius R in a packing under this pressure, Pa; of the order of its elastic moduli.

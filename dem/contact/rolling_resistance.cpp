@@ -7,8 +7,6 @@ namespace isostat
 {
 namespace
 {
-constexpr double yield_margin = 1 - 1e-9;
-
 /// First-order rotation of history with the contact, z1 = z - z x a ; z2 = z1 - z1 x s
 ///                                                       = z - z x (a + s) + a (s.z), because a.s = 0.
 /// The last term is kept for the twisting moment, which is along s; forces and moments normal to it have none.
@@ -52,12 +50,12 @@ ContactStiffness RollingResistance::stiffness(double r1, double r2, double overl
           on.twisting ? r1 * r2 * ks * twisting_stiffness : 0.0};
 }
 
-YieldState RollingResistance::yield(const ClosedContact &c) const
+YieldState RollingResistance::yield(const ClosedContact &c, double margin) const
 {
   const LawFeatures on = active();
   const double bending_limit = rolling_length(c.r1, c.r2);
-  return {on.friction && c.history.shear_force.norm() >= yield_margin * friction * c.normal_force,
-          on.rolling && c.history.bending_moment.norm() >= yield_margin * bending_limit * c.normal_force};
+  return {on.friction && c.history.shear_force.norm() >= (1 - margin) * friction * c.normal_force,
+          on.rolling && c.history.bending_moment.norm() >= (1 - margin) * bending_limit * c.normal_force};
 }
 
 ContactEnergy RollingResistance::energy(const ClosedContact &c) const

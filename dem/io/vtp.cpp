@@ -121,7 +121,7 @@ struct Chains
 
   void add(const Snapshot &s, const Contact &c)
   {
-    const YieldState yield = s.law->yield(s.closed(c));
+    const YieldState yield = s.law->yield(s.closed(c), yield_round_off);
     const Vec3 from = s.grains.centre(c.first), to = s.grains.centre(c.second), &normal = c.history.normal;
     const double first = s.grains.radius(c.first) - 0.5 * c.overlap,
                  second = s.grains.radius(c.second) - 0.5 * c.overlap;

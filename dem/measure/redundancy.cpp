@@ -8,12 +8,12 @@ namespace isostat
 {
 namespace
 {
-ContactClasses classify(const Snapshot &snapshot)
+ContactClasses classify(const Snapshot &snapshot, double yield_margin)
 {
   ContactClasses classes;
   for (const Contact &c : snapshot.contacts)
     {
-      const auto [slides, rolls] = snapshot.law->yield(snapshot.closed(c));
+      const auto [slides, rolls] = snapshot.law->yield(snapshot.closed(c), yield_margin);
       ++(slides ? (rolls ? classes.sr : classes.s) : (rolls ? classes.r : classes.nsr));
     }
   return classes;
@@ -81,8 +81,8 @@ double ContactNetwork::mechanical_coordination_number() const
 
 double ContactNetwork::fraction(std::size_t class_count) const { return quotient(class_count, classes.total()); }
 
-ContactNetwork contact_network(const Snapshot &snapshot)
+ContactNetwork contact_network(const Snapshot &snapshot, double yield_margin)
 {
-  return {classify(snapshot), count(snapshot), constraints_of(snapshot.law)};
+  return {classify(snapshot, yield_margin), count(snapshot), constraints_of(snapshot.law)};
 }
 } // namespace isostat

@@ -98,8 +98,9 @@ private:
 std::vector<std::uint32_t> contacts_of_grains(const Snapshot &snapshot, bool with_walls);
 
 /// Classes and counts of a snapshot; the contact law says what slides and rolls.
+/// @param yield_margin  share of its limit by which a force may be below it and still count as at it [-], in [0, 1)
 /// @pre the moments and forces are those after the plastic return     cost two norms per contact
 /// tested: tests/dem/measure/redundancy_test.cpp (each law, nothing yields, hand-made classes, bounds, no contacts,
 /// rattlers)
-ContactNetwork contact_network(const Snapshot &snapshot);
+ContactNetwork contact_network(const Snapshot &snapshot, double yield_margin = yield_round_off);
 } // namespace isostat

@@ -42,7 +42,7 @@ Element element(const Snapshot &snapshot, const Contact &c, Sliding sliding)
   ContactStiffness k = snapshot.law->stiffness(r1, r2, c.overlap);
   if (sliding == Sliding::released)
     {
-      const YieldState yield = snapshot.law->yield(snapshot.closed(c));
+      const YieldState yield = snapshot.law->yield(snapshot.closed(c), yield_round_off);
       if (yield.sliding)
         k.shear = 0;
       if (yield.rolling)

@@ -69,14 +69,14 @@ std::vector<double> Micromechanics::row() const
   return values;
 }
 
-Micromechanics micromechanics(const Snapshot &snapshot)
+Micromechanics micromechanics(const Snapshot &snapshot, double yield_margin)
 {
   Micromechanics m;
   m.contact = invariants(contact_stress(snapshot));
   m.wall = snapshot.cell ? m.contact : invariants(wall_stress(snapshot));
   if (const double solid = snapshot.grains.solid_volume(); solid > 0)
     m.void_ratio = void_ratio(snapshot.volume(), solid);
-  m.network = contact_network(snapshot);
+  m.network = contact_network(snapshot, yield_margin);
   m.n_wall_contacts = static_cast<double>(snapshot.wall_contacts.size());
   m.fabric = contact_fabric(snapshot);
   m.anisotropies = anisotropies(snapshot);

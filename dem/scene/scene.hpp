@@ -82,6 +82,7 @@ struct OutputSpec : RecordSpec
   bool paraview = true;
   bool energy = false; ///< energy balance (a loop with dissipation sums)
   double checkpoint_minutes = 5;
+  double yield_margin = 1e-9; ///< of I_R and shares of contacts in the history, ContactLaw::yield() [-]
 
   bool operator==(const OutputSpec &) const = default;
 };

@@ -181,6 +181,11 @@ constexpr Key output_keys[] = {
   {.path = "output.energy", .kind = Kind::boolean, .value = "false",
    .text = "Energy balance in the history; runs the loop that sums dissipation.",
    .field = [](Scene &s) -> Field { return &s.output.energy; }},
+  {.path = "output.yield_margin", .value = "1e-9", .range = {0, 1, false, true},
+   .reason = "because it is a share",
+   .text = "A contact counts as sliding or rolling in I_R and shares of the history where its force or moment is below the "
+           "limit by this share at most. In balance contacts have mostly come off their limits: theory, section 13.",
+   .field = [](Scene &s) -> Field { return &s.output.yield_margin; }},
   {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
    .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
    .field = [](Scene &s) -> Field { return &s.output.checkpoint_minutes; }},

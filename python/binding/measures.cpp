@@ -18,9 +18,9 @@ py::dict as_dict(const Fields &fields)
   return found;
 }
 
-py::dict network(const Snapshot &snapshot)
+py::dict network(const Snapshot &snapshot, double yield_margin)
 {
-  const ContactNetwork n = contact_network(snapshot);
+  const ContactNetwork n = contact_network(snapshot, yield_margin);
   py::dict found;
   found["redundancy_index"] = n.redundancy_index();
   found["redundancy_index_eq2"] = n.redundancy_index_eq2();
@@ -69,12 +69,12 @@ void bind_measures(py::module_ &module)
           "stress", [](const Snapshot &s) -> Mat3 { return contact_stress(s); },
           "Love-Weber stress of all contacts, (3, 3), Pa, tension positive.")
       .def("fabric", &contact_fabric, "Contact-normal fabric (1/N) sum n n, (3, 3), trace 1.")
-      .def("network", &network,
+      .def("network", &network, py::arg("yield_margin") = yield_round_off,
            "Redundancy index I_R of the packing's contact law, in which 1 is isostatic, with the constraints of a "
            "contact and\n"
            "the coordination number at which it is 1 if nothing yields; Eq. (2) of the paper and two other counts; "
            "coordination\n"
-           "numbers; shares of contacts that slide and roll.")
+           "numbers; shares of contacts that slide and roll: whose force is below its limit by this share at most.")
       .def("anisotropies", &fabric_anisotropies,
            "Second-order anisotropies of contacts, normal and tangential forces, (3, 3) each, and the mean normal "
            "force, N.")

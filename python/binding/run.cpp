@@ -63,7 +63,8 @@ public:
   void record(const Assembly &live, const DriveState &state, const Observation &seen, bool) override
   {
     if (keep_rows)
-      rows.push_back(history_row(*scene, live, state, seen, micromechanics(live.snapshot())));
+      rows.push_back(
+          history_row(*scene, live, state, seen, micromechanics(live.snapshot(), scene->output.yield_margin)));
     call(on_record, state, seen);
   }
   bool after_step(const Assembly &live, const DriveState &state, const Observation &seen) override

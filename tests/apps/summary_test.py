@@ -105,9 +105,21 @@ class Summary(AppTest):
         self.assertEqual(event["ratio"], 0.9)
         below = np.flatnonzero(self.history["p"] / self.numbers["p0"] < 0.9)
         self.assertEqual(event["row"], below[0])
+        before = below[0] - 1
+        self.assert_close(event["p_ratio_before"], self.history["p"][before] / self.numbers["p0"], 1e-8, "its digits")
+        self.assert_close(event["IR_before"], self.history["IR"][before], 1e-8, "digits of the history")
+        self.assertGreaterEqual(event["p_ratio_before"], 0.9)
         self.assertIsNone(self.line("cycles to liquefaction"), "it had none")
         report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
         self.assertIn("fell below 0.9 ", report)
+
+    def test_a_contact_counts_as_yielding_within_the_margin(self):
+        shares = []
+        for margin in ("1e-9", "0.5"):
+            self.leave(f"margin{margin}", SHEAR, "--no-figures", "--set", f"output.yield_margin={margin}")
+            shares.append(self.history["f_NSR"])
+        self.assertTrue((shares[1] <= shares[0]).all())
+        self.assertLess(shares[1][-1], shares[0][-1])
 
     def test_the_index_is_that_of_the_law(self):
         law = ("friction", "rolling", "twisting")

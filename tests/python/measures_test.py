@@ -44,6 +44,9 @@ class MeasuresTest(ToleranceTest):
         self.assertEqual(network["redundancy_index"], network["redundancy_index_sliding"])
         self.assertGreater(network["redundancy_index_eq2"], 1.9 * network["redundancy_index"], "moments count")
         self.assertEqual(self.packing.network()["redundancy_index"], self.packing.network()["redundancy_index_eq2"])
+        sticking = [self.packing.network(yield_margin=margin)["neither"] for margin in (1e-9, 0.1, 0.5)]
+        self.assertGreater(sticking[0], sticking[1])
+        self.assertGreater(sticking[1], sticking[2])
 
     def test_every_measure_has_its_unit(self):
         self.assertEqual(set(isostat.measure_units()), set(self.measures))

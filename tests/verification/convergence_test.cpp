@@ -315,7 +315,7 @@ void compare_ends(const Snapshot &start, const Snapshot &end, PackingSeries &ser
     {
       after.insert({c.first, c.second});
       series.closed += !before.contains({c.first, c.second});
-      series.sliding += end.law->yield(end.closed(c)).sliding;
+      series.sliding += end.law->yield(end.closed(c), yield_round_off).sliding;
     }
   for (const auto &pair : before)
     series.opened += !after.contains(pair);

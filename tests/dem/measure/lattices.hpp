@@ -157,7 +157,7 @@ inline Mat6 dense_stiffness(const Snapshot &s, Sliding sliding)
           const Vec3 v = q.segment<3>(6 * c.second) - q.segment<3>(6 * c.first) + l * eps * m -
                          (r1 / a * w1 + r2 / a * w2).cross(m);
           const ContactStiffness stiff = s.law->stiffness(r1, r2, c.overlap);
-          const auto [slides, rolls] = s.law->yield(s.closed(c));
+          const auto [slides, rolls] = s.law->yield(s.closed(c), yield_round_off);
           const double ks = sliding == Sliding::released && slides ? 0 : a * stiff.shear;
           const double kr = sliding == Sliding::released && rolls ? 0 : stiff.rolling;
           auto rows = j.col(column).segment<10>(10 * k);

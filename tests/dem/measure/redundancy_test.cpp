@@ -2,6 +2,7 @@
 #include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/measure/redundancy.hpp"
+#include "dem/measure/summary.hpp"
 #include "tests/support/near.hpp"
 
 #include <gtest/gtest.h>
@@ -56,6 +57,14 @@ TEST(Redundancy, HalfTheCoordinationNumberWhereNothingYields)
   EXPECT_EQ(network.redundancy_index(), z / 2);
   EXPECT_DOUBLE_EQ(network.redundancy_index_without_twist(), 5 * z / 12);
   EXPECT_DOUBLE_EQ(network.redundancy_index_sliding(), z / 4);
+}
+
+TEST(Redundancy, CountsContactsWithinAMarginOfTheirLimits)
+{
+  const Snapshot s = one_of_each_class(); // at 0.9 or 1 of their limits
+  EXPECT_EQ(contact_network(s, 0.09).classes.nsr, 1u);
+  EXPECT_EQ(contact_network(s, 0.11).classes.sr, 4u);
+  EXPECT_DOUBLE_EQ(micromechanics(s, 0.11).network.redundancy_index(), 4 * 2 / 30.0);
 }
 
 TEST(Redundancy, HandMadeClasses)

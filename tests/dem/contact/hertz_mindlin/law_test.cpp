@@ -142,7 +142,7 @@ TEST_P(LammpsPath, IsFollowedToRoundOff)
           largest[q] = std::max(largest[q], path.expected[i][q].norm());
         }
       const double fs = history.shear_force.norm(), limit = law.friction * f.normal_force;
-      rolling += law.yield({r1, r2, f.overlap, f.normal_force, history}).rolling;
+      rolling += law.yield({r1, r2, f.overlap, f.normal_force, history}, yield_round_off).rolling;
       opened += !f.touching, sliding += f.touching && fs >= 0.999999 * limit, sticking += fs > 0 && fs < 0.99 * limit;
     }
   std::printf("%s: %.1e %.1e %.1e; %zu steps slide, %zu stick, %zu are apart\n", GetParam(), error[0] / largest[0],

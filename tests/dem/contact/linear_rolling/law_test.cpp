@@ -250,7 +250,7 @@ TEST(ContactLaw, SlidingAndRollingAreReachedFromBelow)
     ContactHistory history;
     history.shear_force = Vec3(fs, 0, 0);
     history.bending_moment = Vec3(0, mb, 0);
-    return l.yield({r1, r2, 1e-6, fn, history});
+    return l.yield({r1, r2, 1e-6, fn, history}, yield_round_off);
   };
   EXPECT_TRUE(yield(law, law.friction * fn, 0).sliding);
   EXPECT_TRUE(yield(law, (1 - 0.9e-9) * law.friction * fn, 0).sliding);
@@ -278,7 +278,7 @@ TEST(ContactLaw, YieldedStateLiesOnTheSurface)
                       "round-off of a vector that is scaled to its limit");
   EXPECT_NEAR_BECAUSE(history.bending_moment.norm(), 0.5 * r2 * f.normal_force, 1e-15 * r2 * f.normal_force,
                       "round-off of a vector that is scaled to its limit");
-  const YieldState yield = law.yield({p.r1, p.r2, f.overlap, f.normal_force, history});
+  const YieldState yield = law.yield({p.r1, p.r2, f.overlap, f.normal_force, history}, yield_round_off);
   EXPECT_TRUE(yield.sliding && yield.rolling);
 }
 

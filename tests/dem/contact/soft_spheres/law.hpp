@@ -23,7 +23,7 @@ struct SoftSpheres final : ContactLaw
   {
     return {normal_stiffness(r1, r2), 0, 0, 0};
   }
-  YieldState yield(const ClosedContact &) const override { return {}; }
+  YieldState yield(const ClosedContact &, double) const override { return {}; }
   ContactEnergy energy(const ClosedContact &c) const override { return {.normal = 0.5 * c.normal_force * c.overlap}; }
   WallResponse wall(double r, double u) const override { return {normal_force(r, r, u), normal_stiffness(r, r)}; }
   double wall_energy(double, double u, double fn) const override { return 0.5 * fn * u; }
