@@ -1,35 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is run: settings of [motion], and the scenes of the tests."""
-import dataclasses
-
+from speed_error.plan import CYCLIC, DENSER, DOMAINS, GRAINS, HUNDREDTH, LOOSE, MANY, TENTH, of
 from speed_error import plan as speed_plan
 
-GRAINS, MANY = 2000, 10_000
-DOMAINS = ("rigid-box", "periodic-cell")
-LOOSE, DENSER = 10, 8  # preparation friction, degrees
 HELD_STEPS = 100_000
-
-
-@dataclasses.dataclass(frozen=True)
-class Setting:
-    """One way to run the tests. `motion` holds the keys that differ from the default of [motion]."""
-
-    label: str
-    motion: tuple = ()
-    steps: float = 2.5e4  # to the onset, for the estimate of time
-
-    @property
-    def name(self):
-        return "_".join(f"{key}={value}" for key, value in self.motion).replace('"', "") or "default"
-
-
-def of(label, steps=2.5e4, **motion):
-    return Setting(label, tuple(motion.items()), steps)
-
-
-DEFAULT = of("default")
-# both bounds on the rate divided by 10 and by 100
-TENTH, HUNDREDTH = {"inertial_number": 7e-5, "load_per_wave": 0.01}, {"inertial_number": 7e-6, "load_per_wave": 1e-3}
+DEFAULT = speed_plan.DYNAMIC
 SLOW = of("rate / 10", 2.5e5, **TENTH)
 SLOWEST = of("rate / 100", 2.5e6, **HUNDREDTH)
 # of first cycles only: four decades of the rate, and what the brake on free grains does at a slow one
@@ -57,56 +32,23 @@ LARGE = [*at_two_rates("local damping 0.02", damping=0.02), of("load_per_wave 0.
 DAMPING = {value: at_two_rates(f"local damping {value:g}", damping=value) for value in (0, 0.05, 0.2, 0.4)}
 
 
-@dataclasses.dataclass(frozen=True)
-class Run:
-    """One run, as runner.Campaign takes it."""
-
-    kind: str  # prepare, cyclic, early, monotonic, liquefied, hold, hold-late
-    seed: int
-    domain: str
-    setting: Setting = DEFAULT
-    grains: int = GRAINS
-    degrees: float = LOOSE
-
-    @property
-    def packing(self):
-        """Domain, and the preparation friction where it is not the usual one."""
-        return self.domain + (f" at {self.degrees:g} deg" if self.degrees != LOOSE else "")
-
-    @property
-    def name(self):
-        what = "specimen" if self.kind == "prepare" else f"{self.kind}_{self.setting.name}"
-        return f"{what}_{self.packing.replace(' ', '_')}_n{self.grains}_s{self.seed}"
-
-    @property
-    def specimen(self):
-        return self.packing, self.grains, self.seed
+class Run(speed_plan.Run):
+    """Further kinds: early, one cycle from rest; liquefied; hold and hold-late, which end in a stage at rest."""
 
     def scene(self):
-        text = speed_plan.SCENE.format(title=self.name, grains=self.grains, seed=self.seed,
-                                       edge=10 * (self.grains / 10000) ** (1 / 3), stage=self.stages(),
-                                       record_strain="1e-4",
-                                       motion="\n".join(f"{key} = {value}" for key, value in self.setting.motion))
-        text = text.replace("rigid-box", self.domain).replace('"10 deg"', f'"{self.degrees:g} deg"')
-        return text + "record_steps = 500\n" if self.kind.startswith("hold") else text
+        return super().scene() + ("record_steps = 500\n" if self.kind.startswith("hold") else "")
 
+    @property
     def stages(self):
-        cyclic = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "60 kPa"\nuntil = {{ {} }}\n'
         hold = f'[[stage]]\nkind = "hold"\nbalance = 1e-14\nmax_steps = {HELD_STEPS}\n'
         rest = hold.replace("1e-14", "1e-9")
-        return {"prepare": "",
-                "cyclic": cyclic.format("cycles = 100, reversals_after_liquefaction = 0"),
-                "early": rest + cyclic.format("cycles = 1"),
-                "liquefied": cyclic.format("cycles = 100, reversals_after_liquefaction = 6"),
-                "monotonic": '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.005\n',
-                "hold": cyclic.format("cycles = 5") + hold,
-                "hold-late": cyclic.format("cycles = 100, reversals_after_liquefaction = 3") + hold}[self.kind]
+        return super().stages | {
+            "early": rest + CYCLIC.format("cycles = 1"),
+            "liquefied": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 6"),
+            "hold": CYCLIC.format("cycles = 5") + hold,
+            "hold-late": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 3") + hold}
 
-    def estimated_seconds(self):
-        of_kind = {"prepare": 6e4, "cyclic": self.setting.steps, "monotonic": 0.4 * max(self.setting.steps, 2.5e5),
-                   "early": 0.02 * self.setting.steps,
-                   "liquefied": 18 * self.setting.steps, "hold": HELD_STEPS, "hold-late": 4e5}
-        return 1.1e-4 * of_kind[self.kind] * self.grains / GRAINS
+    share = speed_plan.Run.share | {"early": 0.02, "liquefied": 18, "hold": 4, "hold-late": 16}
 
 
 def runs(n_seeds):

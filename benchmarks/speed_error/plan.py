@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is run: settings, one factor at a time around the default, and the scene of each run."""
+"""What is run: the scene of a test, and the ways to run it whose errors are compared."""
 import dataclasses
-import re
 
-BASE_GRAINS = 2000
-QAMP = 60e3  # Pa
+import numpy as np
+
+GRAINS, MANY = 2000, 10_000
+DOMAINS = ("rigid-box", "periodic-cell")
+LOOSE, DENSER = 10, 8  # preparation friction, degrees
 
 CONTACT = """[contact]
 young = "10 GPa"
@@ -25,9 +27,9 @@ seed = {seed}
 """
 SCENE = GRADING + CONTACT + """
 [specimen]
-domain = "rigid-box"
+domain = "{domain}"
 pressure = "200 kPa"
-preparation_friction = "10 deg"
+preparation_friction = "{degrees:g} deg"
 
 [motion]
 {motion}
@@ -45,164 +47,116 @@ record_strain = {record_strain}
 class Setting:
     """One way to run the tests. `motion` holds the keys that differ from the default of [motion]."""
 
-    family: str  # default, inertia, step, damping, old, grains, reference
-    label: str  # in figures
+    label: str
     motion: tuple = ()
-    grains: int = BASE_GRAINS
-    reversals_after: int = 2  # the cyclic test ends so many reversals after the onset; 0: slow, for the onset only
-    monotonic: bool = True
-    most: int = 1000  # realisations at most
+    steps: float = 2.5e4  # to the onset, for the estimate of time
 
     @property
     def name(self):
-        return "_".join(f"{key}={value}" for key, value in self.motion) or "default"
-
-    @property
-    def slowness(self):
-        """Time steps over those of the default of cyclic tests, on the same path."""
-        keys = dict(self.motion)
-        return 7e-4 / float(keys.get("inertial_number", 7e-4)) * 0.8 / float(keys.get("time_step_safety", 0.8))
+        return "_".join(f"{key}={value}" for key, value in self.motion).replace('"', "") or "default"
 
 
-@dataclasses.dataclass(frozen=True)
-class Limits:
-    """Where tests end, and what the early path is."""
+def of(label, steps=2.5e4, **motion):
+    return Setting(label, tuple(motion.items()), steps)
 
-    strain: float = 0.005  # monotonic; beyond some 0.2 % single avalanches part the paths of one specimen
-    early_strain: float = 0.001
-    longer_strain: float = 0.002  # slow settings end here
-    cycles: int = 60  # cyclic, if it does not liquefy
-    cyclic_strain: float = 0.03  # ends the liquefied part, if it comes first
-    early_reversals: int = 3
-    longer_reversals: int = 10  # the second window; the reference runs end here
-    max_steps: int = 3_000_000  # of any run
+
+CYCLIC = """[[stage]]
+kind = "undrained-cyclic"
+deviator_amplitude = "60 kPa"
+until = {{ {} }}
+"""
 
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    kind: str  # prepare, cyclic, monotonic
-    setting: Setting
+    """One run, as runner.Campaign takes it."""
+
+    kind: str  # prepare; cyclic, to the onset; path, five cycles; monotonic
     seed: int
-    limits: Limits
+    domain: str
+    setting: Setting = of("dynamic")
+    grains: int = GRAINS
+    degrees: float = LOOSE
+
+    @property
+    def packing(self):
+        """Domain, and the preparation friction where it is not the usual one."""
+        return self.domain + (f" at {self.degrees:g} deg" if self.degrees != LOOSE else "")
 
     @property
     def name(self):
-        name = "specimen" if self.kind == "prepare" else f"{self.kind}_{self.setting.name}"
-        return f"{name}_n{self.setting.grains}_s{self.seed}"
+        what = "specimen" if self.kind == "prepare" else f"{self.kind}_{self.setting.name}"
+        return f"{what}_{self.packing.replace(' ', '_')}_n{self.grains}_s{self.seed}"
 
     @property
     def specimen(self):
-        return self.setting.grains, self.seed
-
-    def scene(self):
-        motion = "\n".join(f"{key} = {value}" for key, value in self.setting.motion) or "# all as by default"
-        return SCENE.format(title=self.name, grains=self.setting.grains, seed=self.seed, motion=motion,
-                            edge=10 * (self.setting.grains / 10000) ** (1 / 3), stage=self.stage(),
-                            record_strain="1e-5" if self.kind == "monotonic" else "1e-4")
+        return self.packing, self.grains, self.seed
 
     @property
-    def strain(self):
-        return self.limits.strain if self.setting.reversals_after else self.limits.longer_strain
+    def stages(self):
+        return {"prepare": "",
+                "cyclic": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 0"),
+                "path": CYCLIC.format("cycles = 5"),
+                "monotonic": '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.005\n'}
 
-    def stage(self):
-        limits, after, cycles = self.limits, self.setting.reversals_after, self.limits.cycles
-        if self.kind == "monotonic":
-            return (f'[[stage]]\nkind = "undrained-monotonic"\nstrain = {self.strain}\n'
-                    f"liquefaction_ratio = 1e-6\nmax_steps = {limits.max_steps}\n")
-        if self.kind == "cyclic":
-            if self.setting.family == "reference":  # for the path only
-                cycles = limits.longer_reversals // 2
-            return (f'[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "{QAMP / 1e3:g} kPa"\n'
-                    f"until = {{ cycles = {cycles}, reversals_after_liquefaction = {after}, "
-                    f"strain = {limits.cyclic_strain:g} }}\n"
-                    f"max_steps = {limits.max_steps}\n")
-        return ""
+    # time steps, or evaluations of forces, over those to the onset of a cyclic test
+    share = {"prepare": 2.4, "cyclic": 1, "path": 0.15, "monotonic": 0.4}
+
+    def scene(self):
+        return SCENE.format(title=self.name, grains=self.grains, seed=self.seed, domain=self.domain,
+                            degrees=self.degrees, edge=10 * (self.grains / 10000) ** (1 / 3),
+                            stage=self.stages[self.kind], record_strain="1e-4",
+                            motion="\n".join(f"{key} = {value}" for key, value in self.setting.motion))
 
     def estimated_seconds(self):
-        """CPU time from steps counted on one specimen; the runner scales it by what its own runs took."""
-        n = self.setting.grains
-        if self.kind == "prepare":
-            return 3 * (n / 2000) ** 1.35
-        onset, liquefied = (3e3, 0) if self.setting.family == "reference" else (3e4, 4e4 * self.setting.reversals_after)
-        steps = onset + liquefied if self.kind == "cyclic" else 1e4 * self.strain / 0.005
-        return 0.5 + 2.5e-8 * n * (1 + n / 15000) * min(self.setting.slowness * steps, self.limits.max_steps)
+        denser = 3 if self.degrees < LOOSE and self.kind == "cyclic" else 1
+        return 1.1e-4 * denser * self.share[self.kind] * self.setting.steps * self.grains / GRAINS
 
 
-def of(family, label, motion=(), **more):
-    return Setting(family, label, tuple(dict(motion).items()), **more)
+def static(increment, balance, steps):
+    short = [np.format_float_scientific(value, trim="-", exp_digits=1) for value in (increment, balance)]
+    return of(f"static, {short[0]}, balance {short[1]}", steps, drive='"static"', increment=increment, balance=balance)
 
 
-def inertia(number, **more):
-    return of("inertia", f"I = {number}", {"inertial_number": number}, **more)
+DYNAMIC = Run.setting
+TENTH, HUNDREDTH = {"inertial_number": 7e-5, "load_per_wave": 0.01}, {"inertial_number": 7e-6, "load_per_wave": 1e-3}
+SLOW = of("dynamic, rate / 10", 2.5e5, **TENTH)
+LOCAL = of("dynamic, rate / 10, local damping", 2.5e5, **TENTH, contact_damping=0, damping=0.2)
+SLOWEST = of("dynamic, rate / 100", 2.5e6, **HUNDREDTH)
+
+STATIC, TIGHT = static(5e-5, 0.01, 2e5), static(2.5e-5, 1e-3, 6e5)
+FINEST = static(1.25e-5, 1e-3, 6e5)  # of the path alone
+INCREMENTS = [static(1e-4, 0.01, 2e5), static(2.5e-5, 0.01, 3e5)]
+TOLERANCES = [static(5e-5, 1e-3, 3e5), static(5e-5, 1e-4, 6e5)]
+# of monotonic tests, which have a default of their own, I = 4e-5
+ONE_WAY = [DYNAMIC, STATIC, INCREMENTS[0], TIGHT, of("dynamic, rate / 10", 2.5e6, inertial_number=4e-6)]
 
 
-def safety(value, **more):
-    return of("step", f"step {value}", {"time_step_safety": value}, **more)
+def to_the_onset(seed, degrees):
+    """Settings that are run so far; the others end with the path."""
+    if degrees < LOOSE:
+        return [DYNAMIC, SLOW, STATIC] if seed == 1 else []
+    return [DYNAMIC, SLOW, STATIC, *((*INCREMENTS, TIGHT, LOCAL) if seed <= 4 else ())]
 
 
-def damping(value, **more):
-    return of("damping", f"damping {value}", {"damping": value}, **more)
+def to_reversal_10(seed, degrees):
+    return [*(TOLERANCES if seed <= 4 else TOLERANCES[:1]),
+            *(s for s in (DYNAMIC, SLOW, STATIC, *INCREMENTS, TIGHT, FINEST) if s not in to_the_onset(seed, degrees))]
 
 
-def default(grains=BASE_GRAINS, **more):
-    family = "default" if grains == BASE_GRAINS else "grains"
-    return of(family, "default" if grains == BASE_GRAINS else f"N = {grains:,}", grains=grains, **more)
-
-
-def reference(grains=BASE_GRAINS, number="1e-5", **more):
-    """The slowest rate at half the time step: what early paths are measured against.
-
-    A quarter of the step would take twice as long, I = 4e-6 two and a half times.
-    """
-    return of("reference", "reference", {"inertial_number": number, "time_step_safety": 0.4}, grains=grains,
-              reversals_after=0, **more)
-
-
-ALONE, PUSHED = {"free_grain_damping": 0}, {"carry_grains": "false"}  # off, as in versions before
-
-
-def full_settings():
-    """Slow settings end with the onset: the liquefied part takes more than twice the time up to it."""
-    return [
-        default(),
-        reference(),
-        inertia("1e-5", reversals_after=0),  # the slow limit of cycles
-        inertia("4e-5", reversals_after=0),
-        inertia("1e-4", reversals_after=0),
-        inertia("2e-4", reversals_after=0),
-        *map(inertia, ("1e-3", "2e-3")),
-        safety(0.4),
-        safety(0.2, reversals_after=0, most=4),
-        *map(damping, (0.01, 0.1, 0.4, 0.7)),
-        of("old", "free grains left alone", ALONE),
-        of("old", "walls push", PUSHED),
-        of("old", "left alone, walls push", {**ALONE, **PUSHED}),
-        default(500),
-        reference(500, monotonic=False),
-        default(1000),
-        reference(1000, monotonic=False),
-        default(5000, most=2),
-        reference(5000, most=1, monotonic=False),
-        default(10000, most=2),
-    ]
-
-
-def quick_settings():
-    some = [default(), reference(number="1e-4"), inertia("1e-4", reversals_after=0), inertia("1e-3"), safety(0.4)]
-    return [default(500), reference(500, "1e-4"), *(dataclasses.replace(s, grains=1000) for s in some)]
-
-
-def runs(settings, seeds, limits, only=""):
-    """All runs: seed by seed, so that a campaign cut short has every setting; the largest specimens last."""
+def runs(n_seeds):
+    """Seed by seed, so that a campaign cut short has every setting; what takes longest comes last."""
     result = []
-    for place, seed in enumerate(seeds):
-        some = [s for s in settings if place < s.most]
-        specimens = {s.grains: s for s in some}
-        block = [Run("prepare", s, seed, limits) for s in specimens.values()]
-        for setting in some:
-            block += [Run(kind, setting, seed, limits) for kind in ("cyclic", "monotonic")[:1 + setting.monotonic]]
-        block = [run for run in block if run.kind == "prepare" or re.search(only, run.name)]
-        needed = {run.specimen for run in block if run.kind != "prepare"}
-        block = [run for run in block if run.specimen in needed]
-        result += sorted(block, key=lambda run: (run.kind != "prepare", -run.estimated_seconds()))
-    return sorted(result, key=lambda run: run.setting.grains > BASE_GRAINS)
+    for seed in range(1, n_seeds + 1):
+        for degrees in (LOOSE, DENSER)[:2 if seed <= 4 else 1]:
+            for domain in DOMAINS:
+                result += [Run(kind, seed, domain, setting, degrees=degrees) for kind, settings in
+                           (("prepare", [DYNAMIC]), ("path", to_reversal_10(seed, degrees)),
+                            ("cyclic", to_the_onset(seed, degrees))) for setting in settings]
+        if seed <= 4:
+            result += [Run("monotonic", seed, "rigid-box", setting) for setting in ONE_WAY[:-1]]
+    result += [Run(kind, 1, "rigid-box", setting, MANY) for kind, setting in
+               (("prepare", DYNAMIC), ("path", FINEST), ("path", TIGHT), ("path", INCREMENTS[1]), ("cyclic", DYNAMIC),
+                ("cyclic", SLOW), ("cyclic", STATIC))]
+    result += [Run("monotonic", seed, "rigid-box", ONE_WAY[-1]) for seed in (1, 2)]
+    return result + [Run("cyclic", 1, domain, SLOWEST) for domain in DOMAINS]
