@@ -110,9 +110,11 @@ def liquefaction(results, run):
     if event:
         ratio = event.get("ratio", ratio)
         cycles = f"after {event['cycle']:g} cycles" if run.cyclic else "before its end"
-        yield "Liquefied:", (f"p'/p0' fell below {ratio:g} {cycles}; I_R at the onset {event['IR_at_onset']:.3f}, in "
-                             f"the row before {event['IR_before']:.3f} at p'/p0' = {event['p_ratio_before']:.3f}; "
-                             f"largest strain before it {100 * event['strain_before']:.3g} %."), "plain"
+        before = ""  # which summaries of older versions do not have
+        if "IR_before" in event:
+            before = f"in the row before {event['IR_before']:.3f} at p'/p0' = {event['p_ratio_before']:.3f}, "
+        yield "Liquefied:", (f"p'/p0' fell below {ratio:g} {cycles}; I_R at the onset {event['IR_at_onset']:.3f}, "
+                             f"{before}largest strain before it {100 * event['strain_before']:.3g} %."), "plain"
     else:
         yield "Not liquefied:", (f"p'/p0' never fell below {ratio:g}; its smallest value is "
                                  f"{np.nanmin(run.p_ratio):.3f}."), "plain"

@@ -36,13 +36,6 @@ class History:
         return [int(np.flatnonzero(self.reversals >= k)[0]) for k in range(1, int(self.reversals[-1]) + 1)]
 
 
-def build(folder):
-    """Version, compiler and instruction set a run was made with."""
-    lines = (folder / "provenance.txt").read_text().splitlines()
-    words = {line[:18].strip(): line[18:].strip() for line in lines}
-    return f"{words.get('version')}, GCC {words.get('compiler')}, {words.get('instruction set')}"
-
-
 def cyclic_path(history, n_reversals):
     """p'/p0' of the first half cycles at equal q and at the reversals, point by point; None if the test ended before.
 
@@ -81,21 +74,6 @@ def deviation(path, reference):
     difference = path - reference
     distance = np.abs(difference) if difference.ndim == 1 else np.hypot(*difference)
     return float(np.sqrt(np.mean(distance**2))), float(distance.max())
-
-
-def cyclic_figures(history):
-    """Cost and what happened in a cyclic test, as plain numbers."""
-    figures = {"steps": float(history.step[-1] - history.step[0])}
-    onset = history.onset
-    if onset is None:
-        return figures
-    figures.update(
-        cycles=history.reversals[onset] / 2, redundancy=history.IR[onset],
-        steps_before=float(history.step[onset] - history.step[0]),
-        steps_after=float(history.step[-1] - history.step[onset]),
-        strain_after=float(np.abs(np.diff(history.eps_y[onset:])).sum()),
-        reversals_after=float(history.reversals[-1] - history.reversals[onset]))
-    return figures
 
 
 def ensemble(values):

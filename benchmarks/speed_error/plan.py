@@ -100,7 +100,7 @@ class Run:
                 "monotonic": '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.005\n'}
 
     # time steps, or evaluations of forces, over those to the onset of a cyclic test
-    share = {"prepare": 2.4, "cyclic": 1, "path": 0.15, "monotonic": 0.4}
+    share = {"prepare": 2.4, "cyclic": 1, "path": 0.15, "monotonic": 1.3}
 
     def scene(self):
         return SCENE.format(title=self.name, grains=self.grains, seed=self.seed, domain=self.domain,
@@ -129,7 +129,7 @@ FINEST = static(1.25e-5, 1e-3, 6e5)  # of the path alone
 INCREMENTS = [static(1e-4, 0.01, 2e5), static(2.5e-5, 0.01, 3e5)]
 TOLERANCES = [static(5e-5, 1e-3, 3e5), static(5e-5, 1e-4, 6e5)]
 # of monotonic tests, which have a default of their own, I = 4e-5
-ONE_WAY = [DYNAMIC, STATIC, INCREMENTS[0], TIGHT, of("dynamic, rate / 10", 2.5e6, inertial_number=4e-6)]
+ONE_WAY = [of("dynamic", 8e4), STATIC, INCREMENTS[0], TIGHT, of("dynamic, rate / 10", 2.5e6, inertial_number=4e-6)]
 
 
 def to_the_onset(seed, degrees):

@@ -24,8 +24,10 @@ def half_cycles(history):
 
 
 def distance(path, reference):
-    """Largest difference in p'/p0' at equal q, at the rows of the path: a static one has few, with nothing between."""
-    return max(np.abs(p - np.interp(q, *other)).max() for (q, p), other in zip(path, reference))
+    """Largest difference in p'/p0' at equal q, at the rows of the one that has fewer: between its states in balance a
+    static test says nothing."""
+    pairs = [sorted(pair, key=lambda half: len(half[0])) for pair in zip(path, reference)]
+    return max(np.abs(p - np.interp(q, *finer)).max() for (q, p), finer in pairs)
 
 
 def one_way_distance(history, reference, strain):
@@ -39,7 +41,7 @@ def one_way_distance(history, reference, strain):
 class Cyclic:
     """What one cyclic test says. Steps are time steps, or evaluations of all forces where it is static."""
 
-    def __init__(self, history, cpu):
+    def __init__(self, history, cpu, to_the_onset):
         steps = history.step - history.step[0]
         self.path = half_cycles(history)
         self.path_steps = steps[history.reversal_rows[REVERSALS - 1]] if self.path is not None else np.nan
@@ -47,7 +49,7 @@ class Cyclic:
         self.cycles = self.steps = np.nan
         self.before, self.after = (np.nan, np.nan), (np.nan, np.nan)  # p'/p0' and I_R of the rows about the onset
         onset = history.onset
-        if onset is not None:
+        if to_the_onset and onset is not None:
             self.cycles, self.steps = history.reversals[onset] / 2, steps[onset]
             self.before, self.after = ((history.p[row] / history.p0, history.IR[row]) for row in (onset - 1, onset))
 
@@ -62,7 +64,7 @@ class Results:
             if run.kind == "monotonic":
                 self.monotonic[run.setting][run.seed] = history, cpu
             else:
-                self.cyclic[run.packing, run.grains, run.setting][run.seed] = Cyclic(history, cpu)
+                self.cyclic[run.packing, run.grains, run.setting][run.seed] = Cyclic(history, cpu, run.kind == "cyclic")
 
     def tables(self):
         return {"path": self.path_table(), "cycles": self.cycles_table(), "monotonic": self.monotonic_table(),

@@ -63,7 +63,7 @@ struct RollingResistance : ContactLaw
 
   HistoryLayout history() const override;
   ContactStiffness stiffness(double r1, double r2, double overlap) const override;
-  /// Slides at |fs| >= (1 - 1e-9) mu fn, rolls at |mb| >= (1 - 1e-9) rho_r fn after the return; false where off.
+  /// Slides at |fs| >= (1 - margin) mu fn, rolls at |mb| >= (1 - margin) rho_r fn after the return; false where off.
   YieldState yield(const ClosedContact &contact, double margin) const override;
   ContactEnergy energy(const ClosedContact &contact) const override;
 };

@@ -112,6 +112,14 @@ class Summary(AppTest):
         self.assertIsNone(self.line("cycles to liquefaction"), "it had none")
         report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
         self.assertIn("fell below 0.9 ", report)
+        self.assertIn("in the row before ", report)
+        for name in ("IR_before", "p_ratio_before"):  # as a version left it that did not have them
+            del self.numbers["liquefaction"][name]
+        (self.folder / "ratio/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
+        self.assert_done(self.run_app("isostat", "report", "ratio"))
+        report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
+        self.assertIn("fell below 0.9 ", report)
+        self.assertNotIn("in the row before ", report)
 
     def test_a_contact_counts_as_yielding_within_the_margin(self):
         shares = []
