@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gathers the runs that are done: one table for each question, written as CSV."""
-import csv
-
 import numpy as np
 
 from free_grains import plan
@@ -170,10 +168,3 @@ def liquefied(history):
 
     return [(history.step[-1] - history.step[onset]) / strain / 100, np.mean(least), mean(history.IR), mean(history.Z),
             mean(history.Zm), mean(history.f_S), mean(history.f_R), 100 * strain]
-
-
-def write_csv(path, header, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(header)
-        out.writerows([[f"{v:.4g}" if isinstance(v, float) else v for v in row] for row in rows])

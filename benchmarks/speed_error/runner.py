@@ -6,6 +6,8 @@
 
 A run is finished when its record says so for the very scene; an interrupted one goes on from its checkpoint.
 """
+import argparse
+import csv
 import hashlib
 import json
 import os
@@ -86,6 +88,36 @@ def run_campaign(options, runs):
         return store, None
     return store, Campaign(store, pathlib.Path(options.build) / "bin/element_test", runs, options.jobs).run_all(
         options.minutes)
+
+
+def run_study(name, description, runs_of, results_of, draw):
+    """The command of a study: runs what is missing, writes tables and figures to docs/results, or beside the runs while
+    some are missing. @return exit code"""
+    root = pathlib.Path(__file__).resolve().parents[2]
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_arguments(parser, root, name)
+    parser.add_argument("--seeds", type=int, default=20)
+    options = parser.parse_args()
+    runs = runs_of(options.seeds)
+    store, complete = run_campaign(options, runs)
+    if complete is None:
+        return 0
+    folder = root / "docs/results" / name if complete else store.work / "incomplete"
+    results = results_of(store, runs)
+    write_tables(folder, results.tables())
+    draw(results, folder)
+    return 0 if complete else 1
+
+
+def write_tables(folder, tables):
+    """Each table as CSV, for readers of data, and all of them as Markdown, for the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (header, rows) in tables.items():
+        rows = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row] for row in rows]
+        with open(folder / f"{name}.csv", "w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([header, *rows])
+        print(f"\n{name}\n\n| " + " | ".join(header) + " |\n|" + "---|" * len(header))
+        print("\n".join("| " + " | ".join(row) + " |" for row in rows))
 
 
 def speed(store, runs):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gathers the runs that are done: one row per setting and kind of specimen, its errors beside its cost."""
 import collections
-import csv
 import warnings
 
 import numpy as np
@@ -94,8 +93,8 @@ class Results:
             found = list(self.distances(key).values())
             tests = self.cyclic[key].values()
             if found and key[2] != plan.FINEST:
-                rows.append([key[0], key[1], key[2].label, len(found), np.median(found), np.mean(found),
-                             paths.ensemble(found)[2], np.max(found), np.nanmean([t.path_steps for t in tests]),
+                rows.append([key[0], key[1], key[2].label, len(found), np.median(found),
+                             *self.mean_and_error(found), np.max(found), np.nanmean([t.path_steps for t in tests]),
                              np.nanmean([t.path_steps * t.milliseconds / 1e3 for t in tests])])
         return ["specimens", "grains", "setting", "seeds", "median distance to the finest path (% of p0')", "mean",
                 "standard error", "largest", "steps to reversal 10", "CPU time to there (s)"], rows
@@ -141,17 +140,6 @@ class Results:
         rows = [[key[0], key[1], key[2].label, seed, far] for key in self.keys() if key[2] in
                 (plan.STATIC, plan.TIGHT) for seed, far in self.distances(key).items() if far > NOT_CONVERGED]
         return ["specimens", "grains", "setting", "seed", "distance to the finest path (% of p0')"], rows
-
-
-def write(folder, tables):
-    """Each table as CSV, for readers of data, and all of them as Markdown, for the page."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, (header, rows) in tables.items():
-        rows = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row] for row in rows]
-        with open(folder / f"{name}.csv", "w", newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows([header, *rows])
-        print(f"\n{name}\n\n| " + " | ".join(header) + " |\n|" + "---|" * len(header))
-        print("\n".join("| " + " | ".join(row) + " |" for row in rows))
 
 
 warnings.filterwarnings("ignore", "Mean of empty slice")  # of tests that ended before reversal 10
