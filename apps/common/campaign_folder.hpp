@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/liquefaction_resistance_test.py, tests/apps/calibrate_test.py
+// tested: tests/apps/resistance_test.py, tests/apps/calibrate_test.py
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What programs share that run element_test many times below one folder.
-// tested: tests/apps/liquefaction_resistance_test.py, tests/apps/calibrate_test.py
+// tested: tests/apps/resistance_test.py, tests/apps/calibrate_test.py
 #pragma once
 #include "apps/common/child_runs.hpp"
 #include "dem/scene/scene.hpp"

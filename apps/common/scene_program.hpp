@@ -59,7 +59,7 @@ private:
 };
 
 /// First line in which two texts differ, as it stands in the second.
-/// tested: tests/apps/command_line_test.py, tests/apps/liquefaction_resistance_test.py
+/// tested: tests/apps/command_line_test.py, tests/apps/resistance_test.py
 std::string first_difference(const std::string &one, const std::string &other);
 
 /// A run is resumed with the scene of its checkpoint only.   @throws InputError  the scenes differ

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/summary_test.py, tests/apps/liquefaction_resistance_test.py
+// tested: tests/apps/summary_test.py, tests/apps/resistance_test.py
 #pragma once
 #include "apps/common/drained_report.hpp"
 #include "apps/common/stage_report.hpp"

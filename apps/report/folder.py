@@ -10,7 +10,7 @@ NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxi
            "rve_replay": "summary.json", "liquefaction_resistance": "resistance.json",
            "calibrate": "calibrate.json", "micromechanics": "micromechanics.json",
            "column_ensemble": "ensemble.json"}
-
+TOLD_BY_FILE = ("micromechanics", "liquefaction_resistance", "calibrate", "column_ensemble")  # whatever was called
 
 IN_PYTHON = {"isostat.run()": "element_test", "isostat.column.run()": "soil_column"}  # whose files they leave
 
@@ -79,10 +79,9 @@ def find_results(path):
     """The results in a folder, of the program that its provenance names.   Raises NoResults"""
     if not path.is_dir():
         raise NoResults(f"{path}: there is no such folder. Give the results folder of a run.")
-    if (path / NUMBERS["micromechanics"]).is_file():
-        return Results(path, "micromechanics")
-    if (path / NUMBERS["column_ensemble"]).is_file():
-        return Results(path, "column_ensemble")
+    for program in TOLD_BY_FILE:
+        if (path / NUMBERS[program]).is_file():
+            return Results(path, program)
     words = read_provenance(text_of(path / "provenance.txt")).get("command", "").split()
     program = words[0].rpartition("/")[2] if words else ""
     program = IN_PYTHON.get(program, program)

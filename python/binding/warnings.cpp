@@ -19,10 +19,16 @@ constexpr std::pair<std::string_view, std::string_view> keywords[] = {{"--overwr
                                                                       {"--output", "output"},
                                                                       {"--set", "set"},
                                                                       {"--threads", "threads"}};
+
+bool speaks_as_command = false;
 } // namespace
+
+void speak_as_command() { speaks_as_command = true; }
 
 std::string in_python(std::string text)
 {
+  if (speaks_as_command)
+    return text;
   for (const auto &[option, keyword] : keywords)
     for (std::size_t at = text.find(option); at != std::string::npos; at = text.find(option, at + keyword.size()))
       text.replace(at, option.size(), keyword);

@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 from calibrate_test import LABORATORY, SCENE as DRAINED, plan_text
-from liquefaction_resistance_test import SHEAR
+from resistance_test import SHEAR
 from specimen_library_test import NARROW, SCENE as LIBRARY
 from support import TIME_LIMIT, AppTest, children, main, table, wait_until
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program liquefaction_resistance on a few grains: tables and fit, runs that are kept, that fail, that are
+"""isostat resistance on a few grains: tables and fit, runs that are kept, that fail, that are
 interrupted, and its refusals."""
 import csv
 import json
@@ -23,7 +23,7 @@ class LiquefactionResistance(AppTest):
         self.scene = self.write("shear.toml", SHEAR)
 
     def run_it(self, *arguments, scene=None):
-        return self.run_app("liquefaction_resistance", scene or self.scene, *arguments, "--cycles", "15")
+        return self.run_app("isostat", "resistance", scene or self.scene, *arguments, "--cycles", "15")
 
     def table(self, folder="out"):
         with open(self.folder / folder / "resistance.csv", newline="", encoding="utf-8") as file:
@@ -113,14 +113,14 @@ class LiquefactionResistance(AppTest):
     def test_interrupt(self):
         arguments = (self.scene, "--ratios", "0.1,0.15,0.25", "-n", "1", "--cycles", "15", "--no-figures", "-o")
         code, said = self.stop_when(lambda: "csr0.25_seed1" in self.finish_times(), "csr0.25_seed1", signal.SIGINT,
-                                    self.command("liquefaction_resistance", *arguments, "out"))
+                                    self.command("isostat", "resistance", *arguments, "out"))
         self.assertEqual(code, 130, said)
         self.assertEqual(self.table()[0]["status"], "liquefied")
         self.assertEqual(self.table()[-1]["status"], "missing")
         before = self.finish_times()
-        self.assert_done(self.run_app("liquefaction_resistance", *arguments, "out"))
+        self.assert_done(self.run_app("isostat", "resistance", *arguments, "out"))
         self.assertEqual({name: t for name, t in self.finish_times().items() if name in before}, before)
-        self.assert_done(self.run_app("liquefaction_resistance", *arguments, "at_once"))
+        self.assert_done(self.run_app("isostat", "resistance", *arguments, "at_once"))
         self.assertEqual(self.outcome(), self.outcome("at_once"))
 
     def test_a_run_killed_between_two_names_of_its_checkpoint(self):
@@ -129,10 +129,10 @@ class LiquefactionResistance(AppTest):
                      "--set", "output.checkpoint=1e-9 min")
         checkpoint = self.folder / "out/runs/csr0.1_seed1/checkpoint"
         code, said = self.stop_when((checkpoint / "previous.h5").exists, "two checkpoints", signal.SIGINT,
-                                    self.command("liquefaction_resistance", *arguments))
+                                    self.command("isostat", "resistance", *arguments))
         self.assertEqual(code, 130, said)
         (checkpoint / "last.h5").rename(checkpoint / "fresh.h5")
-        self.assert_done(self.run_app("liquefaction_resistance", *arguments))
+        self.assert_done(self.run_app("isostat", "resistance", *arguments))
         self.assertIn("--resume", (checkpoint.parent / "provenance.txt").read_text(encoding="utf-8"))
 
     def test_triaxial_ratio(self):

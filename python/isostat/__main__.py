@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""isostat: the one name to remember. Many runs, results, packings, and the programs that compute one run.
+
+    isostat resistance SCENE --ratios 0.1,0.15,0.2    tests at several amplitudes: a resistance curve
+    isostat compare results/one results/other         two runs side by side in compare.html
+    isostat element_test SCENE                        the program of this name, with everything that follows
+"""
+import importlib
+import os
+import sys
+import warnings
+
+from isostat import _core
+from isostat.campaign import command
+from isostat.campaign.runs import program
+
+CAMPAIGNS = {"resistance": "cyclic stress ratio against cycles to liquefaction, from many tests"}
+VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
+         "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
+PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
+PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
+            "void_ratio_limits": "loosest and densest packing of a grading",
+            "micromechanics": "forces, fabric and anisotropy of stored packings",
+            "soil_column": "layers of soil that are shaken or consolidate, with grains at the Gauss points if asked for",
+            "rve_replay": "one packing of a column again, alone",
+            "biaxial": "a block in plane strain: does a shear band form?"}
+
+
+def is_built(name):
+    try:
+        return bool(program(name))
+    except _core.InputError:
+        return False
+
+
+def help_text():
+    parts = (("many runs", CAMPAIGNS), ("results", VIEWS), ("packings", PACKINGS),
+             ("programs, which can also be called without `isostat`; each has --help",
+              {name: text for name, text in PROGRAMS.items() if is_built(name)}))
+    text = ("Isostat: liquefaction of sand, grain by grain, alone or as the soil of a deposit that is shaken\n\n"
+            "usage: isostat COMMAND ...\n")
+    for title, entries in parts:
+        text += f"\n{title}\n" + "".join(f"  {name:<25}{what}\n" for name, what in entries.items())
+    return text + f"\n  --version                version and revision\n  --help\n\nscenes to start from: {command.SCENES / 'scenes'}"
+
+
+def view(words):
+    """Becomes the program that draws and reports."""
+    os.environ["PYTHONPATH"] = os.path.dirname(__file__)
+    os.execv(sys.executable, [sys.executable, "-B", "-P", "-u", "-m", "report", *words])
+
+
+def refuse(name):
+    raise _core.InputError(f"{name}: is no command of isostat. See isostat --help.")
+
+
+def main(words=None):
+    _core._speak_as_command()
+    warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
+    name, *rest = sys.argv[1:] if words is None else words or ["--help"]
+    if name in CAMPAIGNS:
+        return importlib.import_module(f"isostat.campaign.{name}").main(rest)
+    if name in PACKINGS:
+        return importlib.import_module("isostat.convert_packing").main(rest)
+    if name in VIEWS:
+        return view([name, *rest])
+    if name in ("--help", "-h"):
+        print(help_text())
+    elif name == "--version":
+        print(f"isostat {_core.__version__}")
+    elif name in PROGRAMS and is_built(name):
+        os.execv(program(name), [program(name), *rest])
+    else:
+        return command.run(lambda: refuse(name))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The folder of a campaign, to which the same command comes back.   tested: tests/apps/resistance_test.py"""
+import contextlib
+import errno
+import fcntl
+import os
+import pathlib
+import shlex
+import shutil
+import sys
+import time
+
+from isostat import _core
+
+FIRST_FILES = (".lock", "provenance.txt", "scene.toml")  # of a call that was killed before its scene was there
+PATIENCE = 5  # s, for a program that is about to leave
+
+
+def write_replacing(path: pathlib.Path, text: str) -> None:
+    """Writes a file aside and renames it: whoever reads it finds all of it.   Raises RunFailure"""
+    aside = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        aside.write_text(text, encoding="utf-8")
+        os.replace(aside, path)
+    except OSError as error:
+        raise _core.RunFailure(f"{path}: cannot be written: {error.strerror}.") from error
+
+
+def is_first(name: str) -> bool:
+    return name in FIRST_FILES[:2] or (name.endswith(".tmp") and name.startswith((*FIRST_FILES, ".writable")))
+
+
+def first_difference(text: str, other: str) -> str:
+    """The first line of a text that another one has not at that place."""
+    lines, others = text.splitlines(), other.splitlines()
+    return next((line for line, twin in zip(lines, others) if line != twin), (lines[len(others):] or [""])[0])
+
+
+def refuse_other(path: pathlib.Path, text: str, owner: str) -> None:
+    """Raises InputError where a file holds another text: the folder is of another `owner`, "scene" or "calibration"."""
+    kept = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else text
+    if kept != text:
+        raise _core.InputError(f"{path}: belongs to another {owner}: it has `{first_difference(kept, text)}` where this "
+                               f"one has `{first_difference(text, kept)}`. Choose another --output, or --overwrite to "
+                               "start anew.")
+
+
+class CampaignFolder:
+    """Holds a folder for this process, until it ends, however it ends.
+
+    kept       {name of a file: text} of what makes the results, "scene.toml" among them
+    owner      who a folder with other texts belongs to
+    overwrite  what the folder holds is removed first; it must be that of a campaign
+
+    Raises InputError: a file, a folder of something else, of another scene, at work, or that cannot be written.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], kept: dict[str, str], *, owner: str = "scene",
+                 overwrite: bool = False, command: str | None = None):
+        self.path = pathlib.Path(path)
+        self.check(kept, owner, overwrite)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._lock = open(self.path / ".lock", "ab")  # pylint: disable=consider-using-with  (until the end)
+        except OSError as error:
+            raise _core.InputError(f"{self.path}: the output folder cannot be made or written to ({error.strerror}). "
+                                   "Give a path you may write to with --output.") from error
+        self._hold()
+        if overwrite:
+            self._empty()
+        calls = self.path / "provenance.txt"
+        before = calls.read_text(encoding="utf-8") + "\n" if calls.is_file() else ""
+        write_replacing(calls, before + provenance(command or shlex.join([os.path.basename(sys.argv[0]), *sys.argv[1:]])))
+        for name, text in sorted(kept.items(), key=lambda item: item[0] == "scene.toml"):  # last what tells whose it is
+            (self.path / name).parent.mkdir(exist_ok=True)
+            write_replacing(self.path / name, text)
+
+    def check(self, kept, owner, overwrite):
+        """Raises InputError where the folder is not one for these texts; leaves no trace."""
+        if self.path.exists() and not self.path.is_dir():
+            raise _core.InputError(f"{self.path}: is a file, not a folder. Choose another --output.")
+        if not self.path.is_dir() or all(is_first(entry.name) for entry in self.path.iterdir()):
+            return
+        for name in ("scene.toml", "provenance.txt"):  # a folder of one's own may hold a scene
+            if not (self.path / name).is_file():
+                raise _core.InputError(f"{self.path}: not overwritten, because it holds no {name} and may not be a "
+                                       "results folder. Choose another --output.")
+        for name, text in {} if overwrite else kept.items():
+            refuse_other(self.path / name, text, owner)
+
+    def _hold(self):
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                if time.monotonic() > end:
+                    raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
+                                           "--output.") from None
+                time.sleep(0.1)
+            except OSError as error:
+                if error.errno in (errno.ENOLCK, errno.ENOTSUP):
+                    return None  # a file system without locks: nobody is told
+                raise
+
+    def _empty(self):
+        names = [entry.name for entry in self.path.iterdir() if entry.name not in FIRST_FILES]
+        for name in [*names, "scene.toml", "provenance.txt"]:  # last what tells that these are results
+            path = self.path / name
+            try:
+                with contextlib.suppress(FileNotFoundError):
+                    shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+            except OSError as error:
+                raise _core.RunFailure(f"{path}: cannot be removed: {error.strerror}. Remove it by hand, or give "
+                                       "another --output.") from error
+
+
+def provenance(command: str) -> str:
+    started = time.strftime("%Y-%m-%d %H:%M:%S", time.gmtime())
+    return f"command           {command}\nversion           {_core.__version__}\nstarted           {started} UTC\n"

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""isostat convert: a packing from one format into another, checked on the way.   tested: tests/apps/convert_test.py"""
+import argparse
+import sys
+
+from isostat import _core
+from isostat.campaign import command
+
+
+def main(words: list[str]) -> int:
+    line = argparse.ArgumentParser(prog="isostat convert", description="A packing from one format into another, checked "
+                                   "on the way: units, overlaps, box")
+    line.add_argument("source", metavar="IN", help="specimen, snapshot (.h5) or library.h5#s0007 of Isostat; LAMMPS dump "
+                      "or data file (units si, atom_style sphere); text `x y z r` of YADE; CSV; VTP")
+    line.add_argument("target", metavar="OUT", help="the same packing in another format, by its ending: .h5 .dump .data "
+                      ".txt .csv .vtp")
+    line.add_argument("--to", default="", metavar="FORMAT", help="specimen, lammps-dump, lammps-data, yade, csv or vtp, "
+                      "where the ending is another")
+    unit = line.add_mutually_exclusive_group()
+    unit.add_argument("--scale", type=float, help="metres in a unit of length of IN, such as 1e-3")
+    unit.add_argument("--length-unit", metavar="UNIT", help="unit of length of IN: m, cm, mm or um")
+    line.add_argument("--density", help="of the grains, where IN does not say it; default 2650 kg/m3")
+    line.add_argument("--domain", choices=("rigid-box", "periodic-cell"), default="", help="where IN does not say it")
+    line.add_argument("--anyway", action="store_true", help="writes what the checks refuse")
+    line.add_argument("--overwrite", action="store_true", help="replaces OUT")
+    asked = line.parse_args(words)
+
+    def convert():
+        figures, notes = _core._convert_file(asked.source, asked.target, asked.to, asked.length_unit, asked.scale,
+                                             asked.density, asked.domain, asked.anyway, asked.overwrite)
+        print(f"{asked.target}\n{figures}", end="")
+        for note in notes:
+            print(f"warning: {note}", file=sys.stderr)
+    return command.run(convert)
