@@ -13,5 +13,5 @@ _isostat() {
   mapfile -t COMPREPLY < <(compgen -W "${options:-}" -- "$word")
   ((${#COMPREPLY[@]})) || compopt -o default
 }
-complete -F _isostat isostat element_test liquefaction_resistance calibrate specimen_library void_ratio_limits \
+complete -F _isostat isostat element_test calibrate specimen_library void_ratio_limits \
   micromechanics soil_column rve_replay biaxial

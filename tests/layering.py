@@ -90,8 +90,6 @@ INNER = {
         "deposit": {"common"},
         "calibrate": {"common"},
         "element_test": {"common"},
-        "isostat": {"common"},
-        "liquefaction_resistance": {"common"},
         "micromechanics": {"common"},
         "specimen_library": {"common"},
         "void_ratio_limits": {"common"},

@@ -33,11 +33,6 @@ class Failures(FailingRuns):
                         goes_on=FailingRuns.repeated, most=3, fewest=1,
                         harmless={"open": 1})  # a lock: two processes would prepare the same specimen
 
-    def test_liquefaction_resistance(self):
-        scene = self.write("scene.toml", SHORT_TEST)
-        self.every_call("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-n", 1, goes_on=FailingRuns.repeated,
-                        most=2, harmless=LAST_WORD)
-
     def test_calibrate(self):
         for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
             self.write(name, text)
@@ -95,11 +90,6 @@ class Failures(FailingRuns):
             result, _ = self.run_failing([*command, "--resume"], "flock", 1, code=reason)
             self.assert_done(result)
             self.assertEqual(results(self.folder / "out"), whole)
-        self.empty()
-        command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "-q")
-        result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
-        self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("cannot be locked: No locks available. Work on a file system that has locks", result.stderr)
 
 
 class Replays(FailingRuns, GrainColumnTest):

@@ -67,11 +67,12 @@ def written_since(path, begin):
 
 
 def children(process):
-    """Numbers of the processes that it has started; none once it has ended."""
-    with contextlib.suppress(FileNotFoundError, ProcessLookupError):
-        text = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
-        return [int(word) for word in text.split()]
-    return []
+    """Numbers of the processes that its threads have started; none once it has ended."""
+    found = []
+    for started in pathlib.Path(f"/proc/{process.pid}/task").glob("*/children"):
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            found += [int(word) for word in started.read_text(encoding="ascii").split()]
+    return found
 
 
 class ToleranceTest(unittest.TestCase):

@@ -99,9 +99,9 @@ class Kills(AppTest):
         self.kill("specimen_library", (scene, *FEW, "-n", 3, "-q"),
                   lambda parts: ["--append"] if parts.exists() else [], others=(("--jobs", (1, 2)),), ending=".h5")
 
-    def test_liquefaction_resistance(self):
+    def test_resistance(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
-        self.kill("liquefaction_resistance", (scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
+        self.kill("isostat", ("resistance", scene, "--ratios", "0.2,0.3", "-n", 2, *SAVED, "-q", "--no-figures"),
                   lambda parts: [], others=(("--jobs", (1, 2)),))
 
     def test_calibrate(self):

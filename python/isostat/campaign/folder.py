@@ -14,6 +14,7 @@ from isostat import _core
 
 FIRST_FILES = (".lock", "provenance.txt", "scene.toml")  # of a call that was killed before its scene was there
 PATIENCE = 5  # s, for a program that is about to leave
+_held = []  # files whose locks end with this process
 
 
 def write_replacing(path: pathlib.Path, text: str) -> None:
@@ -61,7 +62,7 @@ class CampaignFolder:
         self.check(kept, owner, overwrite)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            self._lock = open(self.path / ".lock", "ab")  # pylint: disable=consider-using-with  (until the end)
+            _held.append(open(self.path / ".lock", "ab"))  # pylint: disable=consider-using-with  (until the end)
         except OSError as error:
             raise _core.InputError(f"{self.path}: the output folder cannot be made or written to ({error.strerror}). "
                                    "Give a path you may write to with --output.") from error
@@ -92,7 +93,7 @@ class CampaignFolder:
         end = time.monotonic() + PATIENCE
         while True:
             try:
-                return fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return fcntl.flock(_held[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 if time.monotonic() > end:
                     raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
