@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat: the one name to remember. Many runs, results, packings, and the programs that compute one run.
 
+    isostat calibrate PLAN                            parameters of a scene from laboratory curves
     isostat resistance SCENE --ratios 0.1,0.15,0.2    tests at several amplitudes: a resistance curve
     isostat compare results/one results/other         two runs side by side in compare.html
     isostat element_test SCENE                        the program of this name, with everything that follows
@@ -14,7 +15,8 @@ from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.runs import program
 
-CAMPAIGNS = {"resistance": "cyclic stress ratio against cycles to liquefaction, from many tests"}
+CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
+             "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program calibrate on a few grains: what it leaves, calibrations that are killed, interrupted, and asked for more,
+"""isostat calibrate on a few grains: what it leaves, calibrations that are killed, interrupted, and asked for more,
 trials that fail, and its refusals."""
 import csv
 import json
@@ -68,7 +68,7 @@ class Calibrate(AppTest):
         self.plan = self.write("plan.toml", plan_text())
 
     def run_it(self, *arguments, plan=None):
-        return self.run_app("calibrate", plan or self.plan, "--jobs", "2", *arguments)
+        return self.run_app("isostat", "calibrate", plan or self.plan, "--jobs", "2", *arguments)
 
     def trials(self, folder="out"):
         with open(self.folder / folder / "trials.csv", newline="", encoding="utf-8") as file:
@@ -115,7 +115,7 @@ class Results(Calibrate):
             self.assert_done(self.run_test(self.folder / f"out/{name}.toml", "--validate"))
 
     def check_misfit(self, row):
-        """The equation of apps/calibrate/curve.hpp, by numpy, from the runs' histories."""
+        """The equation of isostat.campaign.calibrate.curve, by numpy, from the runs' histories."""
         laboratory = np.genfromtxt(LABORATORY.splitlines(), delimiter=",", skip_header=1).T
         strain = 0.02 * np.arange(1, 11) / 10
         curves = []
@@ -193,7 +193,7 @@ class Resume(Calibrate):
     def stop(self, happened, what, with_signal):
         """The exit code of a calibration that gets a signal."""
         return self.stop_when(happened, what, with_signal,
-                              self.command("calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"))[0]
+                              self.command("isostat", "calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"))[0]
 
     def test_sigkill(self):
         self.assert_done(self.run_it("-o", "whole", "--no-figures"))
@@ -234,7 +234,7 @@ class Refusals(Calibrate):
                                  "Did you mean curve.blind?")
         self.assert_plan_refused(plan_text(key="contact.friction", bounds='["30 deg", "95 deg"]'), "wrong.toml:15",
                                  "bounds[1] = 95 deg", "must be in [0 deg, 90 deg)")
-        self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "is no key of a scene",
+        self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "unknown key of a scene",
                                  "contact.friction")
         self.assert_plan_refused(plan_text(key="nothing.alike", bounds="[1, 2]"), "element_test --print-defaults")
         self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv", "is not there")
@@ -244,7 +244,7 @@ class Refusals(Calibrate):
                             (LABORATORY.replace("200,200", "0.2,0.2"), ("lab.csv:2", "sigma_r[kPa] = 0.2", "200 kPa"))):
             self.write("lab.csv", text)
             self.assert_plan_refused(plan_text(), *parts)
-        self.assert_refused(self.run_app("calibrate"), "no plan given", "quick_karlsruhe.toml")
+        self.assert_refused(self.run_app("isostat", "calibrate"), "no plan given", "quick_karlsruhe.toml")
 
     def test_density_that_no_trial_reaches(self):
         plan = self.write("dense.toml", plan_text(curve="relative_density = 1.0"))

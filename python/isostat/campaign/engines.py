@@ -13,12 +13,15 @@ ENGINE_TEXT = ("where runs are done: local, processes of this machine (default);
                "NAME.json")
 
 
-def library(name: str, package: str):
-    """A module that only some engines need.   Raises InputError with the package to install"""
+def library(name: str, package: str, user: str = "--engine"):
+    """A module that only some commands need.   user: which, for the message
+
+    Raises InputError with the package to install
+    """
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
-        raise _core.InputError(f"--engine: Python has no module {error.name}. Install it: apt-get install "
+        raise _core.InputError(f"{user}: Python has no module {error.name}. Install it: apt-get install "
                                f"{package}.") from error
 
 

@@ -52,14 +52,17 @@ class CampaignFolder:
     kept       {name of a file: text} of what makes the results, "scene.toml" among them
     owner      who a folder with other texts belongs to
     overwrite  what the folder holds is removed first; it must be that of a campaign
+    only_check the folder is not made, held or written to
 
     Raises InputError: a file, a folder of something else, of another scene, at work, or that cannot be written.
     """
 
     def __init__(self, path: str | os.PathLike[str], kept: dict[str, str], *, owner: str = "scene",
-                 overwrite: bool = False, command: str | None = None):
+                 overwrite: bool = False, command: str | None = None, only_check: bool = False):
         self.path = pathlib.Path(path)
         self.check(kept, owner, overwrite)
+        if only_check:
+            return
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             _held.append(open(self.path / ".lock", "ab"))  # pylint: disable=consider-using-with  (until the end)
