@@ -88,7 +88,6 @@ INNER = {
     "apps": {
         "common": set(),
         "deposit": {"common"},
-        "calibrate": {"common"},
         "element_test": {"common"},
         "micromechanics": {"common"},
         "specimen_library": {"common"},

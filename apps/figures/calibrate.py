@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what `calibrate` found.
+"""Draws what `isostat calibrate` found.
 
     python3 -m figures calibrate RESULTS
 

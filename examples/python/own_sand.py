@@ -4,7 +4,7 @@
 
 The grading is given as a table. Drained triaxial tests at several angles of friction between grains are compared with a
 drained test of the laboratory (Karlsruhe fine sand, medium dense, 200 kPa); the angle with the least misfit is taken.
-The program `calibrate` does this for several parameters and curves at once.
+`isostat calibrate` does this for several parameters and curves at once.
 
     python3 own_sand.py [--small] [--output FOLDER] [--laboratory CSV]
 """

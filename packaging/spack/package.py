@@ -28,7 +28,6 @@ class Isostat(CMakePackage):
     depends_on("hdf5@1.10:+mpi")
     depends_on("highway@1:")
     depends_on("nlohmann-json@3.10:")
-    depends_on("nlopt+cxx")
     depends_on("openmpi")
     depends_on("pugixml")
     depends_on("random123")
@@ -38,7 +37,7 @@ class Isostat(CMakePackage):
     depends_on("petsc+mpi", when="+fem")
     depends_on("python@3.11:", type=("build", "link", "run"), when="+python")
     depends_on("py-pybind11@2.10:", type="build", when="+python")
-    for package in ("py-numpy", "py-matplotlib", "py-h5py", "py-scipy"):
+    for package in ("py-numpy", "py-matplotlib", "py-h5py", "py-scipy", "nlopt+python"):
         depends_on(package, type="run", when="+python")
 
     @run_before("cmake")

@@ -192,8 +192,8 @@ class Results(Calibrate):
 class Resume(Calibrate):
     def stop(self, happened, what, with_signal):
         """The exit code of a calibration that gets a signal."""
-        return self.stop_when(happened, what, with_signal,
-                              self.command("isostat", "calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures"))[0]
+        command = self.command("isostat", "calibrate", self.plan, "--jobs", "2", "-o", "parts", "--no-figures")
+        return self.stop_when(happened, what, with_signal, command)[0]
 
     def test_sigkill(self):
         self.assert_done(self.run_it("-o", "whole", "--no-figures"))
@@ -234,7 +234,7 @@ class Refusals(Calibrate):
                                  "Did you mean curve.blind?")
         self.assert_plan_refused(plan_text(key="contact.friction", bounds='["30 deg", "95 deg"]'), "wrong.toml:15",
                                  "bounds[1] = 95 deg", "must be in [0 deg, 90 deg)")
-        self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "unknown key of a scene",
+        self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "unknown key",
                                  "contact.friction")
         self.assert_plan_refused(plan_text(key="nothing.alike", bounds="[1, 2]"), "element_test --print-defaults")
         self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv", "is not there")

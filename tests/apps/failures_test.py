@@ -8,13 +8,10 @@ import errno
 import signal
 
 from biaxial_test import CELL, FEW, FRICTION
-from calibrate_test import LABORATORY, SCENE, plan_text
 from failing_runs import COLUMN, EVERY, OUTPUT, SAVED, SHORT_TEST, FailingRuns
 from grain_column_test import GrainColumnTest
 from support import main, results, tiny_scene
 from void_ratio_limits_test import LIMITS, QUICK
-
-LAST_WORD = {"open": 1, "write": 1, "fsync": 2, "rename": 1}  # of a campaign, to processes that help: its lock is free
 
 
 class Failures(FailingRuns):
@@ -32,12 +29,6 @@ class Failures(FailingRuns):
         self.every_call("specimen_library", scene, *FEW, output=("-o", "out/library.h5", "-q"),
                         goes_on=FailingRuns.repeated, most=3, fewest=1,
                         harmless={"open": 1})  # a lock: two processes would prepare the same specimen
-
-    def test_calibrate(self):
-        for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
-            self.write(name, text)
-        self.every_call("calibrate", self.write("plan.toml", plan_text(trials=3)), "--jobs", 1,
-                        goes_on=FailingRuns.repeated, most=1, harmless=LAST_WORD)
 
     def test_void_ratio_limits(self):
         scene = self.write("limits.toml", LIMITS)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""calibrate finds known parameters again: drained tests at a known angle of friction, rolling limit and modulus, on
+"""isostat calibrate finds known parameters again: drained tests at a known friction, rolling limit and modulus, on
 specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, half an hour on two
 cores.
 
@@ -136,7 +136,7 @@ class Recovery(unittest.TestCase):
     def calibrate(self, name, start, bounds, sizes):
         plan, out = self.folder / f"{name}.toml", self.folder / name
         plan.write_text(plan_text(self.scene, start, bounds, sizes), encoding="utf-8")
-        subprocess.run([BINARIES / "calibrate", plan, "-j", str(CORES), "-o", out], check=True)
+        subprocess.run([BINARIES / "isostat", "calibrate", plan, "-j", str(CORES), "-o", out], check=True)
         result = json.loads((out / "calibrate.json").read_text(encoding="utf-8"))
         found = {p["key"]: float(p["best"].split()[0]) for p in result["parameters"]}
         print(name, {key: (found[key], TRUTH[key]) for key in TRUTH}, result["misfit_start"], result["misfit_best"])

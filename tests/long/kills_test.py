@@ -107,8 +107,8 @@ class Kills(AppTest):
     def test_calibrate(self):
         for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
             self.write(name, text)
-        self.kill("calibrate", (self.write("plan.toml", plan_text(trials=4)), "-q", "--no-figures"), lambda parts: [],
-                  others=(("--jobs", (1, 2)),))
+        self.kill("isostat", ("calibrate", self.write("plan.toml", plan_text(trials=4)), "-q", "--no-figures"),
+                  lambda parts: [], others=(("--jobs", (1, 2)),))
 
     def test_soil_column(self):
         scene = self.write("column.toml", COLUMN.replace("0.6 s", "6 s"))  # else most kills come before a checkpoint

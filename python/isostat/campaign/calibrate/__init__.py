@@ -18,6 +18,7 @@ tested: tests/apps/calibrate_test.py
 """
 import argparse
 import concurrent.futures
+import math
 import pathlib
 import re
 from typing import Any
@@ -25,8 +26,7 @@ from typing import Any
 from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.calibrate.keys import default_plan, plan_text
-from isostat.campaign.calibrate.laboratory import read_text
-from isostat.campaign.calibrate.plan import read_plan, seconds
+from isostat.campaign.calibrate.plan import read_plan, read_text
 from isostat.campaign.calibrate.report import Report, remarks
 from isostat.campaign.calibrate.scenes import SceneMaker
 from isostat.campaign.calibrate.search import BudgetUsed, nlopt, search, sobol_design
@@ -42,8 +42,8 @@ class Folder(CampaignFolder):
     def check(self, kept, owner, overwrite):
         plan = self.path / "plan.toml"
         if not overwrite and (self.path / "summary.txt").exists() and not plan.exists():
-            raise _core.InputError(f"{self.path}: holds results of another program, since there is no plan.toml in it. Choose "
-                                   "another --output.")
+            raise _core.InputError(f"{self.path}: holds results of another program, since there is no plan.toml in it. "
+                                   "Choose another --output.")
         budget = BUDGET.search(plan.read_text(encoding="utf-8", errors="replace")) if plan.is_file() else None
         text = BUDGET.sub(lambda _: budget[0], kept["plan.toml"]) if budget else kept["plan.toml"]
         super().check({**kept, "plan.toml": text}, owner, overwrite)
@@ -66,9 +66,10 @@ def check_first(trials: Trials) -> None:
         if all(failures):
             density = next((f" ({name} = {vars(curve)[name]:g})" for name in ("relative_density", "void_ratio")
                             if vars(curve)[name] is not None), "")
-            raise _core.InputError(f"{curve.where}: curve \"{curve.name}\"{density}: none of the first {len(failures)} trials "
-                                   f"could be run. The first, {failures[0]}\n  Correct the curve's density or pressure, the "
-                                   "bounds, or the number of grains; all runs are in the folder of trials.csv.")
+            raise _core.InputError(
+                f"{curve.where}: curve \"{curve.name}\"{density}: none of the first {len(failures)} trials could be "
+                f"run. The first, {failures[0]}\n  Correct the curve's density or pressure, the bounds, or the number "
+                "of grains; all runs are in the folder of trials.csv.")
 
 
 def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
@@ -76,12 +77,14 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
     trials.evaluate(first_points(plan, scenes))
     check_first(trials)
 
+    limit = 60 * float(plan.budget.time.split()[0]) if plan.budget.time else math.inf  # as scenes write it, in min
+
     def objective(shares):
         values = values_at(scenes, shares)
         if trials.find(values) is None:
             if len(trials.all) >= plan.budget.trials:
                 raise BudgetUsed(f"budget.trials = {plan.budget.trials} are used up")
-            if trials.seconds > seconds(plan.budget.time):
+            if trials.seconds > limit:
                 raise BudgetUsed("budget.time is used up; the same command goes on")
         trials.evaluate([values])
         return trials.all[trials.find(values)].misfit ** 2  # near the best a parabola, which the misfit itself is not
@@ -94,13 +97,15 @@ def dry_run(plan: Any, scenes: SceneMaker) -> str:
     for curve in plan.curve:
         scenes.trial(first_points(plan, scenes)[0], curve, plan.specimens.first_seed)
     sizes, fitted = plan.specimens, sum(not curve.blind for curve in plan.curve)
-    per_trial, blind = fitted * sizes.seeds, 2 * (len(plan.curve) - fitted) * sizes.seeds
+    runs, blind = fitted * sizes.seeds, 2 * (len(plan.curve) - fitted) * sizes.seeds
+    lines = [plan.title, f"runs per trial           {runs} ({fitted} curves, {sizes.seeds} seeds), each of "
+             f"{sizes.grains} grains",
+             f"runs in all              at most {runs * plan.budget.trials}, and {blind} for the blind curves of start "
+             "and best", "time                     unknown before the first trial; the progress lines report it"]
     width = max(len(p.label) for p in scenes.parameters)
-    return (f"{plan.title}\n  runs per trial           {per_trial} ({fitted} curves, {sizes.seeds} seeds), each of "
-            f"{sizes.grains} grains\n  runs in all              at most {per_trial * plan.budget.trials}, and {blind} for the "
-            "blind curves of start and best\n  time                     unknown before the first trial; the progress lines "
-            "report it\n" + "".join(f"  {p.label:<{width}} from {p.text(p.low)} to {p.text(p.high)}, start "
-                                    f"{p.text(p.value(p.start))}\n" for p in scenes.parameters) + remarks(scenes.parameters))
+    lines += [f"{p.label:<{width}} from {p.text(p.low)} to {p.text(p.high)}, start {p.text(p.value(p.start))}"
+              for p in scenes.parameters]
+    return "\n  ".join(lines) + "\n" + remarks(scenes.parameters)
 
 
 def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
@@ -112,7 +117,7 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
     scenes = SceneMaker(plan)
     trials = Trials(plan, scenes, folder, executor, options.quiet)
     kept = {"scene.toml": scenes.text, "plan.toml": plan_text(plan),
-            **{f"laboratory/{curve.name}.csv": read_text(curve.path) for curve in plan.curve}}
+            **{f"laboratory/{curve.name}.csv": read_text(curve.path, "a table") for curve in plan.curve}}
     if options.dry_run:
         text = dry_run(plan, scenes)
         Folder(folder, kept, owner="calibration", overwrite=options.overwrite, only_check=True)
@@ -130,12 +135,13 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat calibrate", description="Calibration: finds parameters of a scene from "
-                                   "laboratory curves with small element tests")
+    line = argparse.ArgumentParser(prog="isostat calibrate", description="Calibration: finds parameters of a scene "
+                                   "from laboratory curves with small element tests")
     line.add_argument("plan", metavar="PLAN", nargs="?", type=lambda name: command.shipped("scenes/calibrate", name),
-                      help="plan file (TOML); see apps/calibrate/README.md")
+                      help="plan file (TOML); see docs/campaigns/calibrate.md")
     line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it takes, and stop")
-    line.add_argument("--print-defaults", action="store_true", help="print a commented plan with all keys, units and ranges")
+    line.add_argument("--print-defaults", action="store_true",
+                      help="print a commented plan with all keys, units and ranges")
     command.add_campaign(line, "results/<plan name>")
     options = line.parse_args(words)
     if options.print_defaults:

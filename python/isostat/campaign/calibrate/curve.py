@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The curve of a test, measured or computed, and how far two of them are apart.
 
-tested: tests/apps/calibrate_units_test.py
+tested: tests/python/calibration_curves_test.py
 """
 import dataclasses
 import math
@@ -16,8 +16,8 @@ from isostat.results import read_table
 
 
 class Curve(NamedTuple):
-    """A monotonic test, row by row. Compression positive, as the files have it; but `strain` grows in the direction of the
-    test, in extension as in compression."""
+    """A monotonic test, row by row. Compression positive, as the files have it; but `strain` grows in the direction of
+    the test, in extension as in compression."""
 
     strain: np.ndarray  # axial, linear or logarithmic as the laboratory has it
     q: np.ndarray  # axial minus radial stress, Pa
@@ -64,13 +64,13 @@ def compared_strains(laboratory: Curve, plan: Any, settings: Any) -> np.ndarray:
 
 
 def compare(laboratory: Curve, models: list[Curve], plan: Any, settings: Any) -> Comparison:
-    """The distance of the mean of the model's curves to the laboratory's, with v the volumetric strain of a drained and p'
-    of an undrained test:
+    """The distance of the mean of the model's curves to the laboratory's, with v the volumetric strain of a drained and
+    p' of an undrained test:
 
         misfit^2 = 1/(2n) sum_i [ ((q_i - q_i^lab)/max|q^lab|)^2 + ((v_i - v_i^lab)/max|v^lab|)^2 ]
 
-    Maxima over the compared strains; between rows curves are straight. The scatter has the standard error of the mean in
-    place of the differences: a misfit of this size cannot be told from none.
+    Maxima over the compared strains; between rows curves are straight. The scatter has the standard error of the mean
+    in place of the differences: a misfit of this size cannot be told from none.
 
     Raises InputError: a laboratory curve that is zero throughout; a model curve that ends too early
     """
@@ -84,15 +84,16 @@ def compare(laboratory: Curve, models: list[Curve], plan: Any, settings: Any) ->
     for k, what in ((1, "q"), (2, "the volumetric strain" if plan.test == "drained" else "p'")):
         scale = np.abs(measured[k]).max()
         if scale == 0:
-            raise _core.InputError(f"{plan.path}: {what} is zero throughout ({plan.where}); must vary because misfits are "
-                                   "shares of its largest value. Give another curve.")
+            raise _core.InputError(f"{plan.path}: {what} is zero throughout ({plan.where}); must vary because misfits "
+                                   "are shares of its largest value. Give another curve.")
         rows = np.array([model[k] for model in there])
         means.append(running_sum(rows / n))
         deviations.append(np.sqrt(running_sum((rows - means[-1]) ** 2) / (n - 1)) if n > 1 else np.zeros(len(strains)))
         off += ((means[-1] - measured[k]) / scale) ** 2
         scatter += (deviations[-1] / scale) ** 2
     count = 2 * len(strains)
-    return Comparison(measured, Curve(strains, *means), Curve(strains, *deviations), math.sqrt(running_sum(off) / count),
+    return Comparison(measured, Curve(strains, *means), Curve(strains, *deviations),
+                      math.sqrt(running_sum(off) / count),
                       math.sqrt(running_sum(scatter) / count / n) if n > 1 else None)
 
 

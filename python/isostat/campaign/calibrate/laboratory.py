@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Curves of the laboratory, and what their files may have wrong.   tested: tests/apps/calibrate_units_test.py"""
+"""Curves of the laboratory, and what their files may have wrong.   tested: tests/python/calibration_curves_test.py"""
 import csv
-import gzip
 import math
-import pathlib
 import re
 from typing import Any
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from isostat import _core
 from isostat.campaign.calibrate.curve import Curve
+from isostat.campaign.calibrate.plan import read_text
 from isostat.campaign.calibrate.scenes import direction
 
 PRESSURE = 0.25  # of the lateral stress or p': wrong units and wrong tests are further off
@@ -24,16 +23,6 @@ LEAST_VOLUME = 0.006  # largest |eps_v| / strain_end
 STRAIN_UNITS, STRESS_UNITS = {"%": 0.01, "-": 1}, {"Pa": 1, "kPa": 1e3, "MPa": 1e6}
 
 
-def read_text(path: str) -> str:
-    """Of a file in UTF-8, which may be packed by gzip.   Raises InputError"""
-    try:
-        data = pathlib.Path(path).read_bytes()
-        return (gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data).decode("utf-8-sig")
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise _core.InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}. Give a table in UTF-8."
-                               ) from error
-
-
 def split_name(column: str) -> tuple[str, str]:
     """"sigma_r (kPa)" as ("sigma_r", "kPa"); no unit: ""."""
     found = re.fullmatch(r"(.*?) *[\[(]([^\[(]*)[\])]", column)
@@ -45,18 +34,19 @@ class Table:
 
     def __init__(self, plan: Any):
         self.plan = plan
-        lines = [(number, row) for number, row in enumerate(csv.reader(read_text(plan.path).splitlines(),
+        lines = [(number, row) for number, row in enumerate(csv.reader(read_text(plan.path, "a table").splitlines(),
                                                                        skipinitialspace=True), 1) if any(row)]
         header = [cell.strip() for cell in lines[0][1]] if lines else []
         if len(header) == 1 and re.search("[;\t]", header[0]):
-            raise self.problem(1, f"\"{header[0]}\": expected commas between columns, and decimal points in the numbers. Save "
-                               "the table in that form.")
+            raise self.problem(1, f"\"{header[0]}\": expected commas between columns, and decimal points in the "
+                               "numbers. Save the table in that form.")
         wanted = ("strain", "volume", "axial", "radial") if plan.test == "drained" else ("strain", "p", "q")
         self.names = [self.in_header(vars(plan)[f"columns.{name}"], header) for name in wanted]
         self.lines = [number for number, _ in lines[1:]]
         if len(self.lines) < 2:
             raise self.problem(1, "holds fewer than two rows; a curve needs more.")
-        self.cells = np.array([[self.cell(number, row, header, name) for name in self.names] for number, row in lines[1:]])
+        self.cells = np.array([[self.cell(number, row, header, name) for name in self.names]
+                               for number, row in lines[1:]])
         factors = [self.factor(name, k == 0 or wanted[k] == "volume") for k, name in enumerate(self.names)]
         self.values = (self.cells * factors).T
         for k in range(2 if plan.test == "drained" else 1, len(self.names)):
@@ -77,8 +67,8 @@ class Table:
         alike = [column for column in header if split_name(column)[0] == split_name(name)[0]]
         if name in header or len(alike) == 1:
             return name if name in header else alike[0]
-        raise self.problem(1, f"no column \"{name}\"; the file has {', '.join(header) or 'none'}. Correct the header, or "
-                           f"curve.columns in {self.plan.where}.")
+        raise self.problem(1, f"no column \"{name}\"; the file has {', '.join(header) or 'none'}. Correct the header, "
+                           f"or curve.columns in {self.plan.where}.")
 
     def cell(self, line: int, row: list[str], header: list[str], name: str) -> float:
         if len(row) != len(header):
@@ -96,17 +86,19 @@ class Table:
         units, unit = STRAIN_UNITS if is_strain else STRESS_UNITS, split_name(column)[1]
         if unit in units:
             return units[unit]
-        raise self.problem(1, f"column \"{column}\": {f'the unit is {unit}' if unit else 'no unit'}; a "
-                           f"{'strain' if is_strain else 'stress'} must be in one of {', '.join(f'[{u}]' for u in units)}, at "
-                           f"the end of the column's name. Correct the header, or curve.columns in {self.plan.where}.")
+        what, given = "strain" if is_strain else "stress", f"the unit is {unit}" if unit else "no unit"
+        names = ", ".join(f"[{name}]" for name in units)
+        raise self.problem(1, f"column \"{column}\": {given}; a {what} must be in one of {names}, at the end of the "
+                           f"column's name. Correct the header, or curve.columns in {self.plan.where}.")
 
 
 def check_strains(table: Table, strain: np.ndarray) -> None:
     plan, last = table.plan, np.arange(len(strain)) == len(strain) - 1
     table.check(np.abs(strain) >= 1, 0,
                 lambda _: "is no strain: 1 is 100 percent. Is it given in percent? Correct the unit in the header.")
-    table.check(np.diff(strain, prepend=-np.inf) <= 0, 0, lambda row: f"goes back from {table.cells[row - 1, 0]:g} in the row before; must advance from "
-                f"row to row in {plan.direction}. Remove unloading, or correct direction in {plan.where}.")
+    table.check(np.diff(strain, prepend=-np.inf) <= 0, 0, lambda row: f"goes back from {table.cells[row - 1, 0]:g} in "
+                f"the row before; must advance from row to row in {plan.direction}. Remove unloading, or correct "
+                f"direction in {plan.where}.")
     table.check(last & (strain < plan.strain_end * (1 - 1e-9)), 0, lambda row:
                 f"ends the curve at {100 * strain[row]:g} %, before strain_end = {plan.strain_end:g} "
                 f"({100 * plan.strain_end:g} %) of {plan.where}. Lower strain_end, or correct the unit in the header.")
@@ -121,12 +113,12 @@ def check_volumes(table: Table, strain: np.ndarray, volume: np.ndarray) -> None:
     first = (strain > 0) & (strain <= FIRST_STRAIN)
     table.check(first & (direction(plan) * volume < -0.1 * strain), 1, lambda row:
                 f"at an axial strain of {100 * strain[row]:g} %: a drained test "
-                f"{'contracts' if direction(plan) > 0 else 'expands'} at first, and compression is positive here. Is dilation "
-                "positive in this file? Then change the sign of the column.")
+                f"{'contracts' if direction(plan) > 0 else 'expands'} at first, and compression is positive here. Is "
+                "dilation positive in this file? Then change the sign of the column.")
     largest = np.arange(len(volume)) == np.argmax(np.abs(volume))
     table.check(largest & (np.abs(volume) < LEAST_VOLUME * plan.strain_end) & (plan.strain_end >= SHORT), 1, lambda _:
-                f"is the largest up to strain_end = {plan.strain_end:g} of {plan.where}: less than {LEAST_VOLUME:g} of it. Is "
-                "the column a fraction under a header in percent? Correct the unit.")
+                f"is the largest up to strain_end = {plan.strain_end:g} of {plan.where}: less than {LEAST_VOLUME:g} of "
+                "it. Is the column a fraction under a header in percent? Correct the unit.")
 
 
 def check_stresses(table: Table, q: np.ndarray, p: np.ndarray) -> None:
@@ -139,24 +131,24 @@ def check_stresses(table: Table, q: np.ndarray, p: np.ndarray) -> None:
                 f"makes q = {q[0] / 1e3:g} kPa at the start, with p' = {p[0] / 1e3:g} kPa; |q| must be within "
                 f"{100 * ISOTROPY:g} % of p' because the tests begin isotropic. {remedy}")
     table.check(~((ratio > 0) & (ratio <= GREATEST_RATIO)) & (p > 0.02 * p[0]), 2, lambda row:
-                f"makes q = {q[row] / 1e3:g} kPa with p' = {p[row] / 1e3:g} kPa, which no sand bears: a ratio of principal "
-                f"stresses above {GREATEST_RATIO:g}. {remedy}")
+                f"makes q = {q[row] / 1e3:g} kPa with p' = {p[row] / 1e3:g} kPa, which no sand bears: a ratio of "
+                f"principal stresses above {GREATEST_RATIO:g}. {remedy}")
     largest = np.arange(len(q)) == np.argmax(np.abs(q))
     table.check(largest & (sign * q < 0), 2, lambda row:
                 f"makes q = {q[row] / 1e3:g} kPa, the largest of the curve; must be {'> 0' if sign > 0 else '< 0'} in "
                 f"{plan.direction}. {remedy}")
     table.check(largest & (ratio < LEAST_RATIO) & (plan.strain_end >= SHORT), 2, lambda row:
-                f"makes q = {q[row] / 1e3:g} kPa, the largest of the curve, with p' = {p[row] / 1e3:g} kPa; principal stresses "
-                f"must come to a ratio of {LEAST_RATIO:g} because any sand does. {remedy}")
+                f"makes q = {q[row] / 1e3:g} kPa, the largest of the curve, with p' = {p[row] / 1e3:g} kPa; principal "
+                f"stresses must come to a ratio of {LEAST_RATIO:g} because any sand does. {remedy}")
 
 
 def read_laboratory(plan: Any, pressure: float) -> Curve:
     """Reads a laboratory file. A column is found by its name without the unit; the unit is that of the file's header.
 
-    Besides the numbers it checks what a test of this kind cannot do, so that swapped columns, wrong signs and wrong units
-    do not become parameters: it begins at the pressure and nearly isotropic, q has the sign of the direction, the ratio of
-    principal stresses stays possible and leaves 1, a drained test keeps its lateral stress and contracts at first in
-    compression (expands in extension), and its volume changes by more than nothing.
+    Besides the numbers it checks what a test of this kind cannot do, so that swapped columns, wrong signs and wrong
+    units do not become parameters: it begins at the pressure and nearly isotropic, q has the sign of the direction, the
+    ratio of principal stresses stays possible and leaves 1, a drained test keeps its lateral stress and contracts at
+    first in compression (expands in extension), and its volume changes by more than nothing.
 
     pressure  effective, before the test, Pa
     Raises InputError with file:line, value, what is possible, and remedy

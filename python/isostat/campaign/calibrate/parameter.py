@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A number of the scene that is varied between bounds.   tested: tests/apps/calibrate_units_test.py"""
-import difflib
+"""A number of the scene that is varied between bounds.   tested: tests/python/calibration_test.py"""
 import functools
 import math
 import re
 from typing import Any
 
 from isostat import _core
-from isostat.campaign.calibrate.keys import DENSITIES, number_text
+from isostat.campaign.calibrate.keys import DENSITIES, number_text, unknown_text
 from isostat.campaign.calibrate.plan import concerns
 from isostat.scene import Scene
 
@@ -39,14 +38,14 @@ def in_si(text: str) -> float:
 
 
 class Parameter:
-    """What a plan says of a parameter. The search sees a share of the way between the bounds, along the logarithm if the
-    plan says so; values are in SI units, degrees of an angle:
+    """What a plan says of a parameter. The search sees a share of the way between the bounds, along the logarithm if
+    the plan says so; values are in SI units, degrees of an angle:
 
         share = (x - low)/(high - low)     or     ln(x/low)/ln(high/low)
 
     scene  text of the scene, every key resolved
-    Raises InputError: a key that is none, that is no number, or that the curves or [specimens] set; bounds that the scene
-    refuses, or that leave nothing between them; a start outside of them.
+    Raises InputError: a key that is none, that is no number, or that the curves or [specimens] set; bounds that the
+    scene refuses, or that leave nothing between them; a start outside of them.
     """
 
     def __init__(self, plan: Any, given: Any, scene: str):
@@ -57,16 +56,17 @@ class Parameter:
         self.low, self.high = self.checked(low, "bounds[0]", scene), self.checked(high, "bounds[1]", scene)
         self.is_log = given.scale == "log"
         if not self.low < self.high:
-            raise self.refuse(f"bounds = [{shown(low)}, {shown(high)}] leave nothing between them. Give the lower one first.")
+            raise self.refuse(f"bounds = [{shown(low)}, {shown(high)}] leave nothing between them. Give the lower one "
+                              "first.")
         if self.is_log and self.low <= 0:
-            raise self.refuse(f"bounds[0] = {shown(low)}; must be > 0 because the scale is log. Raise it or take scale = "
-                              "\"linear\".")
+            raise self.refuse(f"bounds[0] = {shown(low)}; must be > 0 because the scale is log. Raise it or take scale "
+                              "= \"linear\".")
         first = self.value(0.5)
         if start is not None:
             first = self.checked(start, "start", scene)
             if not self.low <= first <= self.high:
-                raise self.refuse(f"start = {shown(start)}; must be within bounds = [{shown(low)}, {shown(high)}]. Move it or "
-                                  "widen the bounds.")
+                raise self.refuse(f"start = {shown(start)}; must be within bounds = [{shown(low)}, {shown(high)}]. "
+                                  "Move it or widen the bounds.")
         elif (there := self.of_scene(Scene(scene))) is not None:
             if self.low <= there <= self.high:
                 first = there
@@ -84,17 +84,15 @@ class Parameter:
         if owner:
             raise self.refuse(f"is set by {owner} of the plan. Give another key.")
         if self.key not in kinds():
-            near = difflib.get_close_matches(self.key, kinds(), 1)
-            raise self.refuse("unknown key of a scene. " + (f"Did you mean {near[0]}?" if near else
-                                                            "element_test --print-defaults lists them."))
+            raise self.refuse(unknown_text(self.key, kinds(), "element_test --print-defaults lists those of scenes."))
         if kinds()[self.key] not in NUMBERS:
             raise self.refuse("is not a number that can be varied. Give a key with a number or a quantity.")
         if self.key == "grading.d50":
             raise self.refuse("stays that of the scene, whatever the number of grains. Give another key.")
         for curve in plan.curve if self.key.removeprefix("specimen.") in DENSITIES else ():
             if concerns(self.given, curve) and any(vars(curve)[name] is not None for name in DENSITIES):
-                raise self.refuse(f"but curve \"{curve.name}\" ({curve.where}) says how dense its specimens are. Remove one "
-                                  "of them.")
+                raise self.refuse(f"but curve \"{curve.name}\" ({curve.where}) says how dense its specimens are. "
+                                  "Remove one of them.")
 
     def checked(self, value: float | str, what: str, scene: str) -> float:
         """A bound; the scene itself says whether it takes it."""

@@ -49,20 +49,21 @@ class Report:
                 "standard error of its mean over the seeds)\n")
         for curve, start, best in self.curves:
             error = scatter(best)
-            text += (f"  {curve.name:<24} {'blind' if curve.blind else format(curve.weight, 'g'):>7} {misfit_text(start):>10} "
-                     f"{misfit_text(best):>10} {'-' if error is None else format(error, '.4f'):>10}\n")
+            weight = "blind" if curve.blind else f"{curve.weight:g}"
+            text += (f"  {curve.name:<24} {weight:>7} {misfit_text(start):>10} {misfit_text(best):>10} "
+                     f"{'-' if error is None else format(error, '.4f'):>10}\n")
         text += f"  {'fitted, together':<24} {'':>7} {self.start.misfit:>10.4f} {self.best.misfit:>10.4f}\n"
         blind = [(curve.name, start, best) for curve, start, best in self.curves if curve.blind and start and best]
         worse = [name for name, start, best in blind if best.misfit > start.misfit + (best.scatter or 0)]
-        return text + (f"  {len(worse)} of {len(blind)} blind curves became WORSE: {', '.join(worse)}\n" if worse else "")
+        return text + (f"  {len(worse)} of {len(blind)} blind curves became WORSE: {', '.join(worse)}\n" * bool(worse))
 
     def summary(self) -> str:
         failures = "".join(f"  failed: trial {number}, {curve.name}, {outcome.failure}\n"
                            for number, trial in enumerate(self.trials.all, 1)
                            for curve, outcome in zip(self.plan.curve, trial.curves) if outcome and outcome.failure)
         sizes = self.plan.specimens
-        return (f"\n{self.plan.title}\n  {len(self.trials.all)} trials with {sizes.seeds} specimens of {sizes.grains} grains; "
-                f"best: trial {self.best_number + 1}\n  ended because {self.ending}\n{self.parameter_table()}"
+        return (f"\n{self.plan.title}\n  {len(self.trials.all)} trials with {sizes.seeds} specimens of {sizes.grains} "
+                f"grains; best: trial {self.best_number + 1}\n  ended because {self.ending}\n{self.parameter_table()}"
                 f"{self.curve_table()}{failures}\n  this call: {self.trials.runs_done} runs in "
                 f"{command.duration_text(self.trials.seconds)}\n")
 
@@ -86,8 +87,9 @@ class Report:
 
     def numbers(self) -> dict[str, Any]:
         """calibrate.json, read by apps/figures/calibrate.py."""
-        parameters = [{"label": p.label, "key": p.key, "curve": p.curve, "low": p.number(p.low), "high": p.number(p.high),
-                       "log": p.is_log, "start": p.text(start), "best": p.text(best), "bound": place_text(p.share(best))}
+        parameters = [{"label": p.label, "key": p.key, "curve": p.curve, "low": p.number(p.low),
+                       "high": p.number(p.high), "log": p.is_log, "start": p.text(start), "best": p.text(best),
+                       "bound": place_text(p.share(best))}
                       for p, start, best in zip(self.parameters, self.start.values, self.best.values)]
         curves = [{"name": curve.name, "test": curve.test, "blind": curve.blind, "weight": curve.weight,
                    "start": start and start.misfit, "best": best and best.misfit, "scatter": scatter(best),
@@ -107,6 +109,8 @@ class Report:
         write_replacing(folder / "calibrate.json", json.dumps(self.numbers(), indent=2, ensure_ascii=False) + "\n")
         command.leave(folder, self.summary(), "calibrate", figures)
         if self.trials.is_complete(self.best):
-            print(f"  best set ready to run: {folder / 'best_scene.toml'}; with the state of each curve: {folder / 'best'}")
+            print(f"  best set ready to run: {folder / 'best_scene.toml'}; with the state of each curve: "
+                  f"{folder / 'best'}")
         else:
-            print("  NO SET RAN: in every trial a run failed, and none can be recommended. Other bounds or densities may.")
+            print("  NO SET RAN: in every trial a run failed, and none can be recommended. Other bounds or densities "
+                  "may.")

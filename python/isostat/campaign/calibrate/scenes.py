@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a plan and values of its parameters to scenes of element_test.   tested: tests/apps/calibrate_units_test.py"""
+"""From a plan and values of its parameters to scenes of element_test.   tested: tests/python/calibration_test.py"""
 import math
 import pathlib
 from typing import Any
@@ -26,12 +26,12 @@ class SceneMaker:
         self.plan = plan
         scene = Scene(pathlib.Path(plan.scene_path)).to_dict()
         if scene["specimen"].get("file"):
-            raise _core.InputError(f"{plan.scene_path}: specimen.file = {scene['specimen']['file']}; must not be given because "
-                                   "each trial prepares specimens of its own. Give specimen.preparation_friction or "
-                                   "relative_density.")
+            raise _core.InputError(f"{plan.scene_path}: specimen.file = {scene['specimen']['file']}; must not be given "
+                                   "because each trial prepares specimens of its own. Give "
+                                   "specimen.preparation_friction or relative_density.")
         if scene["specimen"].get("consolidation", "isotropic") != "isotropic":
-            raise _core.InputError(f"{plan.scene_path}: specimen.consolidation = {scene['specimen']['consolidation']}; must be "
-                                   "isotropic, as the tests of the curves are.")
+            raise _core.InputError(f"{plan.scene_path}: specimen.consolidation = {scene['specimen']['consolidation']}; "
+                                   "must be isotropic, as the tests of the curves are.")
         scene["output"].pop("folder", None)
         self.grading, self.standard_pressure = scene["grading"], scene["specimen"]["pressure"]
         self.text = Scene(scene).text  # every key resolved
@@ -44,8 +44,8 @@ class SceneMaker:
     def keys(self, values: list[float], curve: Any, grains: int) -> dict[str, Any]:
         """Keys of a scene that differ from the plan's; without a curve, those of all.
 
-        The cloud's edge grows with the cube root of the number of grains, so that their size stays; where the scene gives
-        d50, it does so by itself.
+        The cloud's edge grows with the cube root of the number of grains, so that their size stays; where the scene
+        gives d50, it does so by itself.
         """
         keys: dict[str, Any] = {"grading.grains": grains}
         if "d50" not in self.grading:
@@ -61,7 +61,9 @@ class SceneMaker:
 
     def test(self, keys: dict[str, Any], curve: Any, title: str, output: dict[str, Any], **specimen: str) -> Scene:
         scene = Scene(self.text, set=keys).to_dict()
-        end = curve.strain_end if curve.strains == "logarithmic" else abs(math.log1p(-direction(curve) * curve.strain_end))
+        end = curve.strain_end
+        if curve.strains == "linear":
+            end = abs(math.log1p(-direction(curve) * end))  # stages end at logarithmic strains
         kind = "drained" if curve.test == "drained" else "undrained-monotonic"
         return Scene(scene | {"title": title, "stage": [{"kind": kind, "direction": curve.direction, "strain": end}],
                               "output": scene["output"] | output, "specimen": scene["specimen"] | specimen})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where to look for better parameters.   tested: tests/apps/calibrate_units_test.py"""
+"""Where to look for better parameters.   tested: tests/python/calibration_test.py"""
 from collections.abc import Callable
 from typing import Any
 
@@ -28,9 +28,9 @@ def sobol_design(dimensions: int, n: int) -> np.ndarray:
 
 
 def search(settings: Any, start: list[float], objective: Callable[[list[float]], float]) -> str:
-    """Looks for a smaller value from `start` on, in the unit cube, by NLopt: BOBYQA (Powell 2009), Sbplx (Rowan 1990) or
-    CRS2 with local mutation (Kaelo and Ali 2006). It always asks for the same points in the same order, so that it can be
-    repeated from known values. The best point is not returned: the objective knows what it has been asked.
+    """Looks for a smaller value from `start` on, in the unit cube, by NLopt: BOBYQA (Powell 2009), Sbplx (Rowan 1990)
+    or CRS2 with local mutation (Kaelo and Ali 2006). It always asks for the same points in the same order, so that it
+    can be repeated from known values. The best point is not returned: the objective knows what it has been asked.
 
     Returns why it ended.   Raises what the objective raises, but for BudgetUsed
     """

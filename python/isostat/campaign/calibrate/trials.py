@@ -46,11 +46,11 @@ def trial_id(parameters: list[Parameter], values: list[float]) -> str:
 
 
 class Trials:
-    """Runs trials, and answers those that have been run from what they left. A run that has finished, or failed by itself,
-    is never run again; one that was killed goes on from its checkpoint."""
+    """Runs trials, and answers those that have been run from what they left. A run that has finished, or failed by
+    itself, is never run again; one that was killed goes on from its checkpoint."""
 
-    def __init__(self, plan: Any, scenes: SceneMaker, folder: pathlib.Path, executor: concurrent.futures.Executor | None,
-                 quiet: bool = True):
+    def __init__(self, plan: Any, scenes: SceneMaker, folder: pathlib.Path, executor: concurrent.futures.Executor,
+                 quiet: bool):
         self.plan, self.scenes, self.folder, self.executor = plan, scenes, folder, executor
         self.laboratory = [read_laboratory(curve, scenes.pressure(curve)) for curve in plan.curve]
         self.all: list[Trial] = []
@@ -136,8 +136,8 @@ class Trials:
 
         complete(self.executor, trial_of, ended, self.progress.waiting)
         if crashed:
-            raise _core.RunFailure(f"{crashed}\n  It was stopped from outside or crashed. What has been run is kept, the same "
-                                   "command tries it again.")
+            raise _core.RunFailure(f"{crashed}\n  It was stopped from outside or crashed. What has been run is kept, "
+                                   "the same command tries it again.")
 
     def outcome(self, trial: int, number: int) -> Outcome:
         curve = self.plan.curve[number]
@@ -174,8 +174,9 @@ class Trials:
         if best is None:
             return f"  0 %  of at most {most} trials"
         trial = self.all[self.last]
-        text = (f"{100 * done / most:3.0f} %  trial {self.last + 1} of at most {most}: misfit {trial.misfit:.4f}"
-                f"{'' if self.is_complete(trial) else ' (a run FAILED)'}, best {self.all[best].misfit:.4f} in trial {best + 1}")
+        failed = "" if self.is_complete(trial) else " (a run FAILED)"
+        text = (f"{100 * done / most:3.0f} %  trial {self.last + 1} of at most {most}: "
+                f"misfit {trial.misfit:.4f}{failed}, best {self.all[best].misfit:.4f} in trial {best + 1}")
         if self.computed and done < most:
             text += f", ETA {command.duration_text((most - done) * self.seconds / self.computed)} at most"
         return text
