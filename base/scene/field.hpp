@@ -18,15 +18,6 @@ struct PercentPair
 {
   double *low, *high;
 };
-/// Values of a key of another scene as they stand in the file, text without its quotes.
-struct ValueText
-{
-  std::string *text;
-};
-struct ValuePair
-{
-  std::string *low, *high;
-};
 using SizeCurve = std::vector<std::pair<double, double>>;
 
 /// A pointer to an enumeration whose values 0, 1, ... are the words of the key in their order, or to a variant whose
@@ -63,9 +54,8 @@ private:
 };
 
 /// monostate: nowhere (a table that only holds others).
-using Field =
-    std::variant<std::monostate, double *, std::optional<double> *, std::uint64_t *, unsigned *, bool *, std::string *,
-                 EnumField, std::vector<double> *, PercentPair, SizeCurve *, ValueText, ValuePair>;
+using Field = std::variant<std::monostate, double *, std::optional<double> *, std::uint64_t *, unsigned *, bool *,
+                           std::string *, EnumField, std::vector<double> *, PercentPair, SizeCurve *>;
 
 namespace detail
 {

@@ -41,10 +41,6 @@ std::string kind_text(const Key &key)
       return "[percent, percent]";
     case Kind::size_curve:
       return "rows of [length, percent]";
-    case Kind::value:
-      return "number, or text with a unit";
-    case Kind::value_pair:
-      return "[low, high]";
     }
   return "";
 }

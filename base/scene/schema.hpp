@@ -24,9 +24,7 @@ enum class Kind
   table,         ///< { ... }; its being there may switch physics on
   quantity_list, ///< ["1 m", "2 m"]
   percent_pair,  ///< [low, high], percent
-  size_curve,    ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
-  value,         ///< of a key of another scene, in the form it has there: "18 deg" or 0.3; kept as text
-  value_pair     ///< two of these, [low, high]
+  size_curve     ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
 };
 
 enum class Presence
@@ -134,7 +132,6 @@ struct SceneSchema
 
 std::string heading(const Section &section);                   ///< "[motion]", "[[stage]]"
 std::string toml_text(std::string_view text);                  ///< in quotes, with what TOML needs escaped
-std::optional<double> plain_number(std::string_view text);     ///< all of it a number, and a finite one
 std::string file_text(const Key &key, std::string_view value); ///< with quotes where TOML needs them: "10 mm"
 std::string example(const Key &key);                           ///< file_text of its default or example
 std::string range_text(const Key &key);   ///< "in [0 deg, 90 deg)", "> 0 Pa", the words of a choice, or ""

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
@@ -159,14 +158,6 @@ std::string toml_text(std::string_view text)
         result += c;
     }
   return result + "\"";
-}
-
-std::optional<double> plain_number(std::string_view text)
-{
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return end == text.data() + text.size() && error == std::errc() && std::isfinite(number) ? std::optional(number)
-                                                                                           : std::nullopt;
 }
 
 std::string heading(const Section &section)

@@ -75,17 +75,6 @@ struct Reading
       refuse("must end at 100 percent, or the largest grains are unknown");
   }
 
-  void operator()(const ValueText &value) const { *value.text = plain(node); }
-
-  void operator()(const ValuePair &pair) const
-  {
-    const auto *array = node.as_array();
-    if (!array || array->size() != 2)
-      refuse("must be two values, [low, high]");
-    *pair.low = plain(*array->get(0));
-    *pair.high = plain(*array->get(1));
-  }
-
   [[noreturn]] void refuse(const std::string &must) const
   {
     document.refuse(path, *key.value ? fmt::format("{}. Give for example {}.", must, example(key)) : must + ".");
@@ -136,19 +125,6 @@ struct Reading
       refuse("must be a plain number without unit or quotes");
     check_range(number_of(node));
     return number_of(node);
-  }
-
-  /// A quantity or number of a key that is not of this scene: whoever knows that key reads it.
-  std::string plain(const toml::node &node) const
-  {
-    if (const auto *text = node.as_string(); text && !text->get().empty())
-      {
-        const auto number = plain_number(text->get());            // in quotes or without, it is the same
-        return number ? number_text(*number + 0.0) : text->get(); // -0 is 0
-      }
-    if (node.is_number() && std::isfinite(number_of(node)))
-      return number_text(number_of(node) + 0.0);
-    refuse("must be a finite number, or a quantity with its unit in quotes");
   }
 
   std::uint64_t integer() const

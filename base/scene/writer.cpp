@@ -63,16 +63,6 @@ struct WriteValue
   {
     return fmt::format("[{}, {}]", real_text(*pair.low), real_text(*pair.high));
   }
-  /// A number without quotes, all else with them.
-  static std::string plain(const std::string &text)
-  {
-    return text.empty() || plain_number(text) ? text : toml_text(text);
-  }
-  std::string operator()(const ValueText &value) const { return plain(*value.text); }
-  std::string operator()(const ValuePair &pair) const
-  {
-    return pair.low->empty() ? "" : fmt::format("[{}, {}]", plain(*pair.low), plain(*pair.high));
-  }
   std::string operator()(const SizeCurve *curve) const
   {
     std::string rows;

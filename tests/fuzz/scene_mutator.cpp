@@ -132,8 +132,6 @@ std::string SceneMutator::value(const Key &key)
       return list(2, [&] { return number(); });
     case Kind::size_curve:
       return list(below(5), [&] { return list(2, [&] { return below(2) == 0 ? quantity(key) : number(); }); });
-    case Kind::value_pair:
-      return list(2, [&] { return below(2) == 0 ? quantity(key) : number(); });
     default:
       return below(2) == 0 ? "\"a $text$ <with> \\\"all\\\" \\u00b5\"" : number();
     }

@@ -147,48 +147,5 @@ TEST(SceneFragment, OfAVariantBelongsToItsAlternative)
                                                    "[[shape]]\nkind = \"circle\"\nradius = 3\n");
   EXPECT_THROW(drawing("[[shape]]\nkind = \"circle\"\nedge = 9\n"), InputError);
 }
-/// What a plan says of a key of another scene.
-struct Bounds
-{
-  std::string low, high, start;
-};
-constexpr Section bound_sections[] = {{.name = "bounds", .text = "Of a key elsewhere."}};
-constexpr Key bound_keys[] = {{.path = "bounds.range",
-                               .kind = Kind::value_pair,
-                               .presence = Presence::required,
-                               .value = "[\"1 deg\", 2]",
-                               .field = [](Bounds &b) -> Field {
-                                 return ValuePair{&b.low, &b.high};
-                               }},
-                              {.path = "bounds.start",
-                               .kind = Kind::value,
-                               .presence = Presence::optional,
-                               .value = "0.5",
-                               .field = [](Bounds &b) -> Field { return ValueText{&b.start}; }}};
-constexpr SceneSchema bound_schema{.keys = bound_keys, .sections = bound_sections, .groups = {}, .dimensions = {}};
-
-Bounds bounds_of(const std::string &text)
-{
-  Bounds bounds;
-  fill_scene(SceneDocument(bound_schema, text, "bounds.toml", {}), &bounds);
-  return bounds;
-}
-
-TEST(SceneValues, OfAnotherSceneAreKeptAsText)
-{
-  const std::string text = "\n[bounds]\nrange = [\"10 deg\", 0.25]\nstart = 1e-5\n";
-  const Bounds bounds = bounds_of(text);
-  EXPECT_EQ(bounds.low, "10 deg");
-  EXPECT_EQ(bounds.high, "0.25");
-  EXPECT_EQ(bounds.start, "1e-5");
-  EXPECT_EQ(write_scene(bound_schema, &bounds), text);
-  EXPECT_EQ(bounds_of("[bounds]\nrange = [1, 2]\n").start, "");
-}
-
-TEST(SceneValues, AreNumbersOrQuantities)
-{
-  for (const char *wrong : {"range = 1", "range = [1, 2, 3]", "range = [1, true]", "range = [1, 2]\nstart = [1]"})
-    EXPECT_THROW(bounds_of(std::string("[bounds]\n") + wrong + "\n"), InputError) << wrong;
-}
 } // namespace
 } // namespace isostat

@@ -34,8 +34,11 @@ class Table:
 
     def __init__(self, plan: Any):
         self.plan = plan
-        lines = [(number, row) for number, row in enumerate(csv.reader(read_text(plan.path, "a table").splitlines(),
-                                                                       skipinitialspace=True), 1) if any(row)]
+        reader = csv.reader(read_text(plan.path, "a table").splitlines(), skipinitialspace=True)
+        try:
+            lines = [(reader.line_num, row) for row in reader if any(row)]
+        except csv.Error as error:
+            raise self.problem(reader.line_num, f"{error}; expected numbers between commas.") from error
         header = [cell.strip() for cell in lines[0][1]] if lines else []
         if len(header) == 1 and re.search("[;\t]", header[0]):
             raise self.problem(1, f"\"{header[0]}\": expected commas between columns, and decimal points in the "

@@ -20,11 +20,11 @@ def nlopt() -> Any:
     return library("nlopt", "python3-nlopt", "calibrate")
 
 
-def sobol_design(dimensions: int, n: int) -> np.ndarray:
+def sobol_design(dimensions: int, n: int) -> list[list[float]]:
     """n points of a design: a Sobol sequence in the unit cube (Sobol 1967), without the origin."""
     sequence = library("scipy.stats", "python3-scipy", "calibrate").qmc.Sobol(dimensions, scramble=False)
     sequence.fast_forward(1)
-    return np.array([sequence.random()[0] for _ in range(n)])
+    return sequence.random(n).tolist()
 
 
 def search(settings: Any, start: list[float], objective: Callable[[list[float]], float]) -> str:
@@ -53,12 +53,13 @@ def search(settings: Any, start: list[float], objective: Callable[[list[float]],
             return 0.0
 
     algorithm.set_min_objective(guarded)
+    ending = f"steps became smaller than {settings.tolerance:g} of the bounds"
     try:
         algorithm.optimize(start)
     except optimiser.ForcedStop:
-        if isinstance(raised[0], BudgetUsed):
-            return str(raised[0])
-        raise raised[0] from None
+        pass
     except optimiser.RoundoffLimited:
-        return "no step of the method makes the misfit smaller"
-    return f"steps became smaller than {settings.tolerance:g} of the bounds"
+        ending = "no step of the method makes the misfit smaller"
+    if raised and not isinstance(raised[0], BudgetUsed):
+        raise raised[0]
+    return str(raised[0]) if raised else ending
