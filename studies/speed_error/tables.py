@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from speed_error import paths, plan
+from studies.speed_error import paths, plan
 
 REVERSALS = 10  # up to here paths are compared
 STRAINS = (0.001, 0.002, 0.005)  # of monotonic tests
@@ -59,7 +59,7 @@ class Results:
         self.cyclic = collections.defaultdict(dict)  # by packing, grains and setting, then by seed
         self.monotonic = collections.defaultdict(dict)  # by setting, then by seed
         for run in done:
-            history, cpu = paths.History(store.folder(run)), store.record(run)["cpu"]
+            history, cpu = paths.History(store.folder(run)), store.cpu_seconds(run)
             if run.kind == "monotonic":
                 self.monotonic[run.setting][run.seed] = history, cpu
             else:

@@ -2,8 +2,8 @@
 """Gathers the runs that are done: one table for each question, written as CSV."""
 import numpy as np
 
-from free_grains import plan
-from speed_error import paths
+from studies.free_grains import plan
+from studies.speed_error import paths
 
 REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
 

@@ -6,8 +6,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
-from free_grains import plan  # noqa: E402
-from speed_error import paths  # noqa: E402
+from studies.free_grains import plan  # noqa: E402
+from studies.speed_error import paths  # noqa: E402
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False}

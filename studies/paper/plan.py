@@ -2,7 +2,7 @@
 """What is run: specimens by relative density or preparation friction, and the scene of each test."""
 import dataclasses
 
-from speed_error import plan as speed_plan
+from studies.speed_error import plan as speed_plan
 
 P0 = 200  # kPa, of the paper
 FRICTION = 18  # degrees

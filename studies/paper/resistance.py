@@ -2,7 +2,7 @@
 """Resistance curves CSR = a N^-b, what depth and density do to them, and the critical-state line."""
 import numpy as np
 
-from paper import plan
+from studies.paper import plan
 
 MONOTONIC = ("compression", "extension", "drained")
 REFERENCE = 15  # cycles: a magnitude 7.5 earthquake

@@ -3,10 +3,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from paper import lab, plan, states
-from paper.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
+from studies.paper import lab, plan, states
+from studies.paper.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
                            plain_logarithm)
-from paper.resistance import REFERENCE, fitted_ratios
+from studies.paper.resistance import REFERENCE, fitted_ratios
 
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
 PRIME = r"$p^\prime$"

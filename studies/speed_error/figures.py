@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib import ticker  # noqa: E402
 
-from speed_error import paths, plan  # noqa: E402
+from studies.speed_error import paths, plan  # noqa: E402
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
          "grid.color": "#e4e4e4", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False}

@@ -2,8 +2,8 @@
 """What hangs on how specimens are made, and on how fast they are tested: a row for each variant."""
 import numpy as np
 
-from paper import plan, states
-from speed_error import paths
+from studies.paper import plan, states
+from studies.speed_error import paths
 
 
 HALVES = {"I_R as p'/p0' first passes 0.01": "I_R as p'/p0' first passes 0.01",

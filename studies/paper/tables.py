@@ -4,8 +4,8 @@ import csv
 
 import numpy as np
 
-from paper import lab, plan, resistance, states, variants
-from speed_error import paths
+from studies.paper import lab, plan, resistance, states, variants
+from studies.speed_error import paths
 
 STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
 PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz")

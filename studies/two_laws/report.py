@@ -7,9 +7,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FixedLocator, NullFormatter
 
-from paper.drawing import BLUE, ORANGE, RED, STYLE, panels, plain_logarithm
-from speed_error import paths
-from two_laws import plan
+from studies.paper.drawing import BLUE, ORANGE, RED, STYLE, panels, plain_logarithm
+from studies.speed_error import paths
+from studies.two_laws import plan
 
 COLOURS = {"linear-rolling": ORANGE, "hertz-mindlin": BLUE}
 LABELS = {"linear-rolling": "linear", "hertz-mindlin": "Hertz-Mindlin"}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is run: settings of [motion], and the scenes of the tests."""
-from speed_error.plan import CYCLIC, DENSER, DOMAINS, GRAINS, HUNDREDTH, LOOSE, MANY, TENTH, of
-from speed_error import plan as speed_plan
+from studies.speed_error.plan import CYCLIC, DENSER, DOMAINS, GRAINS, HUNDREDTH, LOOSE, MANY, TENTH, of
+from studies.speed_error import plan as speed_plan
 
 HELD_STEPS = 100_000
 DEFAULT = speed_plan.DYNAMIC

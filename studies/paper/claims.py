@@ -5,8 +5,8 @@ import operator
 
 import numpy as np
 
-from paper import plan, states
-from speed_error import paths
+from studies.paper import plan, states
+from studies.speed_error import paths
 
 TABLES = ("undrained_states", "cyclic_tests", "half_cycles", "paces")  # that they are judged by
 MARGIN = 0.2  # of the number of the paper
