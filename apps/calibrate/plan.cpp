@@ -48,7 +48,7 @@ constexpr Section sections[] = {
 
 constexpr Key plan_keys[] = {
   {.path = "title", .kind = Kind::text, .text = "Heads tables and figures.", .field = [](Plan &p) -> Field { return &p.title; }},
-  {.path = "scene", .kind = Kind::text, .presence = Presence::required, .value = "quick_drained_dr64.toml",
+  {.path = "scene", .kind = Kind::text, .presence = Presence::required, .value = "drained_dr64.toml",
    .text = "Scene file that the trials vary: grading, contact law, specimen. Its stages give way to the tests of the curves.",
    .field = [](Plan &p) -> Field { return &p.scene; }},
 
