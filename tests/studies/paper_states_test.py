@@ -13,10 +13,10 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests/apps")]
-from support import BIN, ToleranceTest  # noqa: E402  (the folders come first)
+from support import BIN, ToleranceTest  # noqa: E402
 
 sys.path[:0] = [str(BIN.parent / "python")]
-from studies.paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402  (the folders come first)
+from studies.paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402
 
 
 def cyclic_history():
