@@ -14,8 +14,6 @@
 #   sanitizers  tests with address and undefined-behaviour sanitizers and library assertions: of the grains the unit and
 #               hard tests, of the whole tree all. Warnings are errors in scripts/test.sh only, as GCC's are wrong about
 #               what the sanitizers put in
-#   fuzz        each fuzz target (tests/fuzz) for a minute, on inputs that are drawn anew each time: those of the grains
-#               as the sanitizers have built them, all others of the release preset
 #   debian13    not of the grains: scripts/other_debian.sh, which needs the rights of root
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -31,7 +29,7 @@ if [[ "${1:-}" == --grains ]]; then
 fi
 gates=("$@")
 if ((${#gates[@]} == 0)); then
-  gates=(format docs tidy sanitizers fuzz)
+  gates=(format docs tidy sanitizers)
   [[ $preset == asan-grains ]] || gates+=(debian13)
 fi
 
@@ -63,19 +61,6 @@ tidy() {
 sanitizers() {
   cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$(nproc)" &&
     ctest --preset "$preset" --parallel "$(nproc)"
-}
-
-# An input on which a target breaks is left in build/.
-fuzz() {
-  local targets=(build/"$preset"/bin/fuzz_*) target name seed=$((SRANDOM % 1000000))
-  for target in build/release/bin/fuzz_*; do
-    [[ -x build/$preset/bin/${target##*/} ]] || targets+=("$target")
-  done
-  for target in "${targets[@]}"; do
-    name=${target##*/fuzz_}
-    printf '%s\0' "cd build && xargs ../$target --seconds 60 --seed $seed <../${target%/bin/*}/fuzz/$name.seeds 2>&1 |
-      tail -n 5 | sed 's/^/$name: /' && exit \${PIPESTATUS[0]}"
-  done | xargs -0 --max-procs="$(nproc)" -I{} bash -c {}
 }
 
 debian13() {

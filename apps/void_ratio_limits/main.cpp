@@ -9,9 +9,9 @@
 //     -------   without friction,     |OoO o|    (a box whatever specimen.domain says)
 //               then come to rest
 //
-//   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml
+//   void_ratio_limits apps/scenes/void_ratio_limits.toml --set grading.grains=2000
 //   void_ratio_limits apps/scenes/void_ratio_limits.toml --fall 2 --output results/limits_fall2
-//   void_ratio_limits apps/scenes/quick_void_ratio_limits.toml --set grading.seed=2 --output results/limits_seed2
+//   void_ratio_limits apps/scenes/void_ratio_limits.toml --set grading.seed=2 --output results/limits_seed2
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"

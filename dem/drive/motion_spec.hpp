@@ -7,6 +7,10 @@
 
 namespace isostat
 {
+/// Inertial numbers where the motion names none [-]: of tests that go one way, which depend more on their rate than
+/// those that turn (docs/results/free_grains.md), of these, and of packings whose strain answers their stress.
+constexpr double one_way_inertial_number = 4e-5, cyclic_inertial_number = 7e-4, controlled_inertial_number = 1e-4;
+
 /// How grains move and how fast they are driven. Scene keys are checked against the list of its fields, keys of caches
 /// are made from it.
 struct MotionSpec
@@ -44,7 +48,6 @@ SceneFragment<MotionSpec> motion_keys();
 /// The defaults of packings whose strain answers their stress, as in a column: with less local damping packing and
 /// column keep each other in motion (docs/results/free_grains.md, "Columns"), and at a higher rate they liquefy late
 /// (docs/results/column_error.md).
-constexpr double controlled_inertial_number = 1e-4;
 inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number = controlled_inertial_number}; }
 /// The keys of such packings: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();

@@ -9,8 +9,8 @@ namespace isostat
 /// What a stage says of its rate; by default what holds for a packing without stages, a representative volume element.
 struct StageRate
 {
-  std::optional<double> fixed = {}; ///< strain rate, 1/s; before that of the motion
-  double inertial_number = 5e-4;    ///< where the motion names none [-]
+  std::optional<double> fixed = {};                    ///< strain rate, 1/s; before that of the motion
+  double inertial_number = controlled_inertial_number; ///< where the motion names none [-]
 };
 
 /// What holds where motion and stage both may say it: the fixed rate of the stage, else of the motion; the inertial

@@ -129,7 +129,7 @@ std::vector<std::string> other_sizes(const Scene &scene, const Packing &grains)
     }
   if (!said.d50 && std::abs(said.solid_fraction * std::pow(said.cloud_edge, 3) / solid - 1) > 3 * unnoticed)
     {
-      if (is_said(scene, "grading.cloud_edge", said.cloud_edge == usual.cloud_edge))
+      if (is_said(scene, "grading.cloud_edge", said.cloud_edge == usual_cloud_edge(said.grains)))
         keys.push_back(fmt::format("grading.cloud_edge = {:g} mm", 1e3 * said.cloud_edge));
       if (is_said(scene, "grading.solid_fraction", said.solid_fraction == usual.solid_fraction))
         keys.push_back(fmt::format("grading.solid_fraction = {:g}", said.solid_fraction));

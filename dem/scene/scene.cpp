@@ -5,6 +5,7 @@
 #include "base/scene/writer.hpp"
 #include "dem/scene/schema.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -30,6 +31,8 @@ Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
       scene.written.paths.emplace_back(key.path);
   if (!document.find("contact.friction"))
     scene.contact->friction = 0;
+  if (!document.find("grading.cloud_edge"))
+    scene.grading.cloud_edge = usual_cloud_edge(scene.grading.grains);
   if (document.find("grading.table"))
     scene.grading.curve.clear();
   if (document.find("grading.table") || document.find("specimen.file"))
@@ -38,6 +41,12 @@ Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
   return scene;
 }
 } // namespace
+
+double usual_cloud_edge(std::uint64_t grains)
+{
+  const GradingSpec usual;
+  return usual.cloud_edge * std::cbrt(static_cast<double>(grains) / static_cast<double>(usual.grains));
+}
 
 SpecimenPlace specimen_place(const std::string &file)
 {

@@ -30,6 +30,9 @@ struct GradingSpec
   bool operator==(const GradingSpec &) const = default;
 };
 
+/// The edge of a cloud that a scene leaves out, m: so many grains are as large as 10,000 of them in 10 mm.
+double usual_cloud_edge(std::uint64_t grains);
+
 /// Densities of grains, kg/m3, that scenes and files of packings may have: 2.65 is meant in g/cm3, 2.65e6 in g/m3.
 /// Between them there is room for light models of grains, and for heavy ones that make the time step longer.
 inline constexpr double lightest_grains = 30, heaviest_grains = 1e6;

@@ -80,7 +80,8 @@ constexpr Key first_keys[] = {
    .field = [](Scene &s) -> Field { return &s.grading.grains; }},
   {.path = "grading.cloud_edge", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
    .value = "10 mm", .range = positive, .group = "grain_size",
-   .text = "Edge of the cube that holds the cloud; excludes `d50`.",
+   .text = "Edge of the cube that holds the cloud; excludes `d50`. Left out, that in which so many grains are as large as 10,000 "
+           "of them in 10 mm.",
    .field = [](Scene &s) -> Field { return &s.grading.cloud_edge; }},
   {.path = "grading.d50", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
    .presence = Presence::optional, .value = "0.45 mm", .range = positive, .group = "grain_size",

@@ -16,7 +16,8 @@ from isostat.campaign import command
 from isostat.campaign.runs import program
 
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
-             "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests"}
+             "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
+             "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}

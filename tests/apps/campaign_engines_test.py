@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Campaigns on every engine: processes of this machine, ranks of mpirun, a Dask cluster of two workers. Workers, runs and
-the leading process are killed, and the same command goes on; the tables are those of one process."""
+"""Campaigns on every engine: processes of this machine, ranks of mpirun, a Dask cluster of two workers. Workers, runs
+and the leading process are killed, and the same command goes on; the tables are those of one process."""
 import contextlib
 import importlib.util
 import os
@@ -72,7 +72,7 @@ class Engines(AppTest):
         self.assert_alone("out")
 
     def test_a_refusal_ends_all_ranks(self):
-        code, said = self.ended(self.start(["mpirun", "--oversubscribe", "-n", "2", *self.campaign("out"), "--cycles", "1",
+        code, said = self.ended(self.start(["mpirun", "--oversubscribe", "-n", "2", *self.campaign("out"),
                                             "--set", "motion.damping=7"]))
         self.assertEqual(code, 2, said)
         self.assertEqual(said.count("error: "), 1, said)
@@ -94,8 +94,8 @@ class Engines(AppTest):
         self.assert_alone("out")
 
     def test_no_scheduler(self):
-        self.assert_refused(self.run_command(self.campaign("out", "--engine", "pigeons")), "--engine pigeons", "local, ",
-                            "mpi, ", "Dask")
+        self.assert_refused(self.run_command(self.campaign("out", "--engine", "pigeons")), "--engine pigeons",
+                            "local, ", "mpi, ", "Dask")
         self.assertFalse((self.folder / "out").exists())
 
     def test_leader_ends(self):

@@ -153,7 +153,7 @@ class Mistakes(ColumnTest):
 
     def test_scene_of_another_program(self):
         for program, scene, right in (("element_test", SCENES / "terzaghi.toml", "soil_column"),
-                                      ("soil_column", SCENES.parent / "quick_drained_dr64.toml", "element_test")):
+                                      ("soil_column", SCENES.parent / "drained_dr64.toml", "element_test")):
             result = self.run_app(program, scene, "-o", "other")
             self.assert_refused(result, f"is a scene of {right}", f"Run it with: {right} {scene}")
             self.assertFalse((self.folder / "other").exists())

@@ -5,7 +5,6 @@
 //   EXPECT_NEAR_BECAUSE(stress, 1e5, 1e-9, "round-off of 1e4 additions");      |actual - expected| <= 1e-9
 //   EXPECT_CLOSE_BECAUSE(stress, 1e5, 1e-14, "round-off of 40 operations");    |actual - expected| <= 1e-14 |expected|
 //   EXPECT_BELOW_BECAUSE(error, 2e-3, "O(dt^2) with dt = 0.03");               error <= 2e-3
-//   EXPECT_THAT(forces, Each(near_because(0, {1e-12, "round-off of a force of 1 N"})));
 //
 // A tolerance that is used often gets a name once, and all forms take it instead of number and reason:
 //
@@ -66,11 +65,6 @@ inline testing::AssertionResult is_below(const char *error_text, const char *, d
     return testing::AssertionSuccess();
   return testing::AssertionFailure() << error_text << " = " << testing::PrintToString(error) << " is more than "
                                      << tolerance.value << ", the tolerance because of: " << tolerance.reason;
-}
-
-inline auto near_because(double expected, Tolerance tolerance)
-{
-  return testing::DoubleNear(expected, tolerance.value);
 }
 } // namespace isostat::test
 

@@ -64,7 +64,7 @@ public:
   double max_strain = 0.15; ///< driven, its amount [-]
 
   bool operator==(const CyclicConstantVolume &) const = default;
-  double inertial_number() const final { return 7e-4; }
+  double inertial_number() const final { return cyclic_inertial_number; }
   std::optional<double> fraction_done(const DriveState &state) const final;
   Conditions conditions(const StageFigures &reached) const final;
   /// With a bias alone: without one a specimen outside turns at once, as it always did.

@@ -101,7 +101,7 @@ public:
   bool operator==(const Path &) const = default;
   const char *kind() const override { return "path"; }
   const ShearMode &mode() const override;
-  double inertial_number() const override { return turns() ? 7e-4 : 4e-5; }
+  double inertial_number() const override { return turns() ? cyclic_inertial_number : one_way_inertial_number; }
   bool needs_cell() const override;
   bool shears() const override { return !consolidation; }
   bool drives() const override { return true; }

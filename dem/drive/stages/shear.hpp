@@ -39,9 +39,8 @@ public:
 
   bool operator==(const ShearStage &) const = default;
   virtual const ShearMode &mode() const { return triaxial_mode; }
-  /// Where the motion names none: a path that goes one way depends more on its rate than one that turns
-  /// (docs/results/free_grains.md) [-].
-  virtual double inertial_number() const { return 4e-5; }
+  /// Where the motion names none [-].
+  virtual double inertial_number() const { return one_way_inertial_number; }
   bool needs_cell() const override { return mode().needs_cell; }
   bool shears() const override { return true; }
   void begin(const StageContext &c) const override;

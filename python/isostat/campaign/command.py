@@ -82,12 +82,15 @@ def run(program: Callable[[], None]) -> int:
 
 def run_campaign(options: argparse.Namespace,
                  program: Callable[[concurrent.futures.Executor], None]) -> int:
-    """As run(), with the engine that the options name; ranks above 0 only help."""
-    def with_engine():
-        with engine(options.engine, options.jobs) as executor:
-            if executor is not None:
-                program(executor)
-    return run(with_engine)
+    """As run(), with the engine that the options name."""
+    return run(lambda: with_engine(options, program))
+
+
+def with_engine(options: argparse.Namespace, program: Callable[[concurrent.futures.Executor], None]) -> None:
+    """Calls the program with the engine that the options name; ranks above 0 only help."""
+    with engine(options.engine, options.jobs) as executor:
+        if executor is not None:
+            program(executor)
 
 
 class Progress:

@@ -36,7 +36,7 @@ def program(name: str) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """A scene that a program runs, and where: FOLDER/scenes/NAME.toml, FOLDER/runs/NAME/, FOLDER/logs/NAME.log."""
+    """A scene that a program runs, and where: FOLDER/scenes/NAME.toml, FOLDER/runs/NAME/, FOLDER/logs/NAME.log and .cpu."""
 
     name: str
     text: str  # of the scene, every key resolved
@@ -50,6 +50,8 @@ class Run:
     def below(cls, folder, name, scene, program="element_test", results="runs", threads=1):
         """The run of a Scene (or ColumnScene) in the usual places below the folder of a campaign."""
         folder = pathlib.Path(folder).absolute()
+        if not scene.folder:  # else the program would name one after the file, and the text not be its own
+            scene = scene.with_(**{"output.folder": results})
         return cls(name, scene.text, folder / "scenes" / f"{name}.toml", folder / results / name,
                    folder / "logs" / f"{name}.log", program, threads)
 
@@ -61,6 +63,13 @@ class Run:
                     and (self.results / "scene.toml").read_text(encoding="utf-8") == self.text)
         except OSError:
             return False
+
+    @property
+    def cpu_seconds(self) -> float:
+        """That its processes took; 0 if none has ended."""
+        with contextlib.suppress(OSError, ValueError):
+            return float(self.log.with_suffix(".cpu").read_text(encoding="ascii"))
+        return 0.0
 
     @property
     def last_line(self) -> str:
@@ -104,9 +113,12 @@ def execute(run: Run) -> tuple[int, float]:
                                    env=environment, process_group=0)
     _at_work.add(process)
     try:
-        code = process.wait()
+        _, status, usage = os.wait4(process.pid, 0)
     finally:
         _at_work.discard(process)
+    process.returncode = code = os.waitstatus_to_exitcode(status)
+    spent = usage.ru_utime + usage.ru_stime + (run.cpu_seconds if resumed else 0)
+    run.log.with_suffix(".cpu").write_text(f"{spent:.2f}\n", encoding="ascii")
     return (code if code >= 0 else 128 - code), time.monotonic() - start
 
 

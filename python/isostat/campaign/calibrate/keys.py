@@ -50,7 +50,7 @@ class Key:
 
 KEYS = (
     Key("title", "", "Heads tables and figures."),
-    Key("scene", "quick_drained_dr64.toml", "Scene file that the trials vary: grading, contact law, specimen. Its "
+    Key("scene", "drained_dr64.toml", "Scene file that the trials vary: grading, contact law, specimen. Its "
         "stages give way to the tests of the curves.", need="required"),
 
     Key("specimens.grains", 1000, "Grains of a trial's specimens; their size is that of the scene.", "in [50, 1000000]",

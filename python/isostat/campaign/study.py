@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""isostat study: the runs, tables and figures behind a page of results.
+
+A study is a package of the folder studies, with
+
+    runs(options) -> list        what is run: objects with name, specimen, kind ("prepare" for one that only makes it), scene(),
+                                 estimated_seconds(), and program if it is not element_test
+    report(store, runs, folder)  leaves tables and figures of what has been run
+    add_options(line)            options of its own, if it has any
+    DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
+
+or with do(options, executor) in place of the first two, where it runs other things than scenes.
+
+tested: tests/apps/study_test.py
+"""
+import argparse
+import concurrent.futures
+import importlib
+import pathlib
+import sys
+from typing import Any
+
+from isostat import _core
+from isostat.campaign import command
+from isostat.campaign.folder import CampaignFolder
+from isostat.campaign.runs import Run, complete
+from isostat.running import as_scene
+
+
+QUICK_SECONDS = 20  # of CPU by estimate: of runs that `--quick` leaves in
+
+
+def studies_folder() -> pathlib.Path:
+    """The one of the repository, or the installed one.   Raises InputError"""
+    package = pathlib.Path(__file__).parents[1]
+    for parent in (pathlib.Path.cwd(), *package.parents):
+        for folder in (parent / "studies", parent / "share/isostat/studies"):
+            if (folder / "__init__.py").is_file():
+                return folder
+    raise _core.InputError("the folder studies is not in this installation. Call isostat study in the repository.")
+
+
+class Store:
+    """What has been run in a folder, by the runs of a study."""
+
+    def __init__(self, folder: pathlib.Path, planned: list[Any]):
+        self._runs = {run.name: Run.below(folder, run.name, as_scene(run.scene()),
+                                          program=getattr(run, "program", "element_test")) for run in planned}
+
+    def run(self, planned: Any) -> Run:
+        return self._runs[planned.name]
+
+    def folder(self, planned: Any) -> pathlib.Path:
+        return self.run(planned).results
+
+    def is_done(self, planned: Any) -> bool:
+        return self.run(planned).is_finished
+
+    def cpu_seconds(self, planned: Any) -> float:
+        return self.run(planned).cpu_seconds
+
+
+def estimate(store: Store, planned: list[Any]) -> float:
+    """CPU seconds that are left: those estimated, at the speed of what has been run."""
+    done = [run for run in planned if store.is_done(run)]
+    estimated = sum(run.estimated_seconds() for run in done)
+    speed = sum(map(store.cpu_seconds, done)) / estimated if estimated else 1
+    return (speed or 1) * sum(run.estimated_seconds() for run in planned if not store.is_done(run))
+
+
+def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
+    planned = study.runs(options)
+    if options.quick:
+        planned = [run for run in planned if run.estimated_seconds() < QUICK_SECONDS]
+        prepared = {run.specimen for run in planned if run.kind == "prepare"}
+        planned = [run for run in planned if run.specimen in prepared]
+    store = Store(options.output, planned)
+    left = [run for run in planned if not store.is_done(run)]
+    print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
+    if options.dry_run:
+        return
+    CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
+                   overwrite=options.overwrite)
+    progress = command.Progress(
+        lambda: f"{sum(map(store.is_done, planned))} of {len(planned)} runs, ETA "
+        f"{command.duration_text(estimate(store, planned) / max(1, options.jobs))}", options.quiet)
+    failed = []
+
+    def ended(run, code, seconds):
+        progress.say(f"  {run.name}: {'done' if code == 0 else f'exit code {code}: {run.last_line}'}, {seconds:.0f} s")
+        if code not in (0, 130):
+            failed.append(run)
+
+    try:
+        for is_specimen in (True, False):
+            complete(executor, [store.run(run) for run in left if (run.kind == "prepare") == is_specimen], ended,
+                     progress.waiting)
+    finally:
+        folder = tables_folder(options, all(map(store.is_done, planned)))
+        folder.mkdir(parents=True, exist_ok=True)
+        study.report(store, planned, folder)
+        print(f"tables and figures in {folder}")
+    if failed:
+        raise _core.RunFailure(f"{len(failed)} of {len(planned)} runs failed, the first of them {failed[0].name}: "
+                               f"{failed[0].last_line}. The others are kept, the same command tries again.")
+
+
+def tables_folder(options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
+    """Where tables and figures go: into the page's folder only if they are those of the whole study."""
+    page = studies_folder().parent / "docs/results" / options.name
+    of_page = is_complete and not options.quick and page.is_dir()
+    return options.tables or (page if of_page else options.output / "tables")
+
+
+def load(name: str) -> Any:
+    folder = studies_folder()
+    known = sorted(path.parent.name for path in folder.glob("*/__init__.py"))
+    if name not in known:
+        raise _core.InputError(f"{name}: is no study. There are: {', '.join(known)}.")
+    sys.path[:0] = [str(folder.parent), str(pathlib.Path(__file__).parents[1])]  # studies, figures
+    return importlib.import_module(f"studies.{name}")
+
+
+def parse(words: list[str], name: str, study: Any) -> argparse.Namespace:
+    line = argparse.ArgumentParser(prog=f"isostat study {name}", description=study.__doc__,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    command.add_campaign(line, "results/studies/NAME, with --quick results/studies/NAME_quick")
+    line.add_argument("--seeds", type=command.count(1, 1000), help="specimens of each kind")
+    line.add_argument("--quick", action="store_true", help="a small part of it, in minutes")
+    line.add_argument("--dry-run", action="store_true", help="only say how many runs there are, and how long they take")
+    line.add_argument("--tables", type=pathlib.Path, help="folder of tables and figures (default: docs/results/NAME of the "
+                      "repository when all is done, else tables below the results)")
+    getattr(study, "add_options", lambda _: None)(line)
+    line.set_defaults(name=name, **study.DEFAULTS)
+    if "--quick" in words:
+        line.set_defaults(**study.QUICK)
+    options = line.parse_args(words)
+    options.output = (options.output or pathlib.Path("results/studies") / (name + "_quick" * options.quick)).absolute()
+    return options
+
+
+def main(words: list[str]) -> int:
+    def with_study():
+        if not words or words[0] in ("-h", "--help"):
+            print("usage: isostat study NAME ...\n\n  " + "\n  ".join(
+                f"{path.parent.name:<20}{(load(path.parent.name).__doc__ or '').strip().splitlines()[0]}"
+                for path in sorted(studies_folder().glob("*/__init__.py"))))
+            return
+        study = load(words[0])
+        options = parse(words[1:], words[0], study)
+        command.with_engine(options, lambda executor: getattr(study, "do", lambda *given: do_runs(study, *given))(
+            options, executor))
+    return command.run(with_study)

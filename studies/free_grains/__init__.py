@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The quasi-static limit of undrained tests: what free grains, walls that push, rate, time step and damping change.
+
+Every setting is run on the same specimens.
+"""
+from studies.free_grains import figures, plan, tables
+from studies.tables import write_tables
+
+DEFAULTS, QUICK = {"seeds": 20}, {"seeds": 1}
+
+
+def runs(options):
+    return plan.runs(options.seeds)
+
+
+def report(store, planned, folder):
+    results = tables.Results(store, planned)
+    write_tables(folder, results.tables())
+    figures.draw(results, folder)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws what the tables say."""
+import numpy as np
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+
+from studies.free_grains import plan  # noqa: E402
+from studies.speed_error import paths  # noqa: E402
+
+STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
+         "axes.spines.top": False, "axes.spines.right": False}
+SERIES = (  # label, colour, marker, settings
+    ("default, and other rates", "#0072b2", "o", (plan.NUMERICS[0], plan.DEFAULT, plan.SLOW, plan.SLOWEST)),
+    ("local damping 0.2 instead of dashpots", "#cc79a7", "v", plan.LOCAL_SETTINGS),
+    ("walls push", "#009e73", "^", plan.PUSHED),
+    ("free grains left alone", "#e69f00", "D", plan.ALONE_SETTINGS),
+    ("all three", "#d55e00", "s", plan.OLD_SETTINGS))
+
+RATES = ("default rate", "#0072b2", "o"), ("a tenth of it", "#d55e00", "s")
+
+
+def panels(n, **more):
+    figure, axes = plt.subplots(1, n, figsize=(4.4 * n, 3.5), squeeze=False, **more)
+    return figure, axes[0]
+
+
+def finish(figure, path):
+    figure.tight_layout()
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def draw(results, folder):
+    plt.rcParams.update(STYLE)
+    draw_cycles(results, folder / "cycles.png")
+    draw_damping(results, folder / "damping.png")
+    draw_hold(results, folder / "hold.png")
+
+
+def title(panel, letter, domain):
+    panel.set_title(f"({letter}) {domain.replace('-', ' ')}", loc="left")
+
+
+def draw_cycles(results, path):
+    """Cycles against the time steps of a test: mean of the default plus the mean of the paired differences."""
+    figure, axes = panels(len(plan.DOMAINS), sharey=True)
+    for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
+        reference = domain, plan.GRAINS, plan.DEFAULT
+        if reference not in results.cyclic:
+            continue
+        base = np.nanmean([t.cycles for t in results.cyclic[reference].values()])
+        for label, colour, marker, settings in SERIES:
+            keys = [(domain, plan.GRAINS, setting) for setting in settings]
+            keys = [key for key in keys if len(results.cyclic.get(key, {})) > 1]
+            steps = [np.mean([t.steps for t in results.cyclic[key].values()]) for key in keys]
+            found = [paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
+            if found and not (domain != "rigid-box" and "walls push" in label):
+                mean, half = np.array(found).T
+                panel.errorbar(steps, base + mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)
+        panel.set(xscale="log", xlabel="time steps to liquefaction [-]")
+        title(panel, letter, domain)
+    axes[0].set_ylim(bottom=0)
+    axes[0].set_ylabel("cycles to liquefaction [-]")
+    axes[0].legend(fontsize=7, loc="lower left")
+    finish(figure, path)
+
+
+def draw_damping(results, path):
+    """Cycles less those of the default on the same specimens (at least three) against local damping. Those of 0.1, of
+    which there are more, on the specimens of the other values."""
+    both = {**plan.DAMPING, 0.1: [plan.DEFAULT, plan.SLOW]}
+    figure, axes = panels(len(plan.DOMAINS), sharey=True)
+    for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
+        reference = domain, plan.GRAINS, plan.DEFAULT
+        for rate, (label, colour, marker) in enumerate(RATES):
+            keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
+            seeds = set(results.cyclic.get(keys[0.2], {}))
+            rows = [(damping, *paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles, seeds)))
+                    for damping, key in keys.items() if len(results.cyclic.get(key, {})) > 2]
+            if rows:
+                damping, mean, half = np.array(rows).T
+                panel.errorbar(damping, mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)
+        panel.axhline(0, color="#888888", lw=0.8)
+        panel.set(xlabel="local damping [-]")
+        title(panel, letter, domain)
+    axes[0].set_ylabel("cycles less those of the default [-]")
+    axes[0].legend()
+    finish(figure, path)
+
+
+def draw_hold(results, path):
+    figure, axes = panels(2)
+    looks = {plan.DEFAULT: ("#0072b2", "damped"), plan.ALONE_SETTINGS[0]: ("#d55e00", "left alone")}
+    runs = [run for run in results.of("hold") if run.seed == 1]
+    for run in runs:
+        steps, lost, energy, _, _ = results.held(run)
+        colour, what = looks[run.setting]
+        line = "-" if run.domain == "rigid-box" else "--"
+        label = f"{run.domain.replace('-', ' ')}, free grains {what}"
+        axes[0].plot(steps, lost, line, color=colour, label=label)
+        axes[1].plot(steps, energy, line, color=colour, label=label)
+    axes[0].set(xlabel="time steps since loading stopped [-]", ylabel="p' lost [kPa]")
+    axes[1].set(xlabel="time steps since loading stopped [-]", ylabel="kinetic energy [J]", yscale="log")
+    axes[1].legend(fontsize=7, loc="center right")
+    for panel, letter in zip(axes, "ab"):
+        panel.set_title(f"({letter})", loc="left")
+    finish(figure, path)

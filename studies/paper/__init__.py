@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
+drained tests beside the laboratory. And what they leave open: resistance curves, critical states, specimens made in
+other ways, slower tests and usual ones.
+
+    isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
+    isostat study paper --quick                                     smaller strains, fewer states: ten minutes on two cores
+    isostat study paper --parts resistance critical ways paces      what the figures leave open (170 CPU minutes)
+    isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
+    isostat study paper --figures docs/results/paper                figures and claims anew from tables
+
+Rows that a folder of tables has of other tests stay in it: delete the folder to begin anew.
+"""
+import pathlib
+import sys
+
+from isostat.campaign import study
+from studies.paper import claims, figures, plan, tables, variants
+
+DEFAULTS, QUICK = {"seeds": 3}, {}
+MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
+
+
+def add_options(line):
+    line.add_argument("--grains", type=int, default=2000)
+    line.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.FIGURES),
+                      help=f"default: {' '.join(plan.FIGURES)}")
+    line.add_argument("--figures", type=pathlib.Path, metavar="FOLDER",
+                      help="only figures and claims, from the tables in FOLDER")
+
+
+def runs(options):
+    return plan.runs_of(options.grains, options.seeds, not options.quick, options.parts)
+
+
+def do(options, executor):
+    if options.figures:
+        draw(options.figures)
+    else:
+        study.do_runs(sys.modules[__name__], options, executor)
+
+
+def report(store, planned, folder):
+    found = tables.Results(store, planned).tables()
+    write(folder, {name: tables.merged(folder / f"{name}.csv", rows) if name in tables.ADDED else rows
+                   for name, rows in found.items()})
+    draw(folder)
+
+
+def write(folder, found):
+    """The tables, and those that are read as texts."""
+    for name, rows in found.items():
+        if rows:
+            tables.write_csv(folder / f"{name}.csv", rows)
+        if rows and name in MARKDOWN:
+            (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
+
+
+def draw(folder):
+    """Figures and claims from the tables in a folder."""
+    needed = {name: tables.read_csv(folder / f"{name}.csv") for name in claims.TABLES}
+    if needed["undrained_states"] and needed["cyclic_tests"]:
+        write(folder, {"claims": claims.table(needed)})
+    figures.draw(folder)

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is run: specimens by relative density or preparation friction, and the scene of each test."""
+import dataclasses
+
+from studies.speed_error import plan as speed_plan
+
+P0 = 200  # kPa, of the paper
+FRICTION = 18  # degrees
+PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
+PAPER = (0.30, 0.64, 0.88)  # its relative densities
+# (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (docs/results/paper/limits.csv);
+# at the paper's limits no box of 2,000 grains is as dense as D_r = 0.88
+PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.632, 0.896)}
+CELL_LIMITS = (0.518, 0.802)  # of 2,000 grains, the loosest away from walls
+LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
+PREPARATIONS = range(5, 12)  # friction, degrees
+RATIOS = (0.10, 0.15, 0.20, 0.25)  # q_amp/(2 p0')
+RESISTANCE = (8, 9, 10)  # preparation friction, degrees
+PRESSURES = (50, 200, 400)  # kPa
+CRITICAL = (50, 200, 800)  # kPa: loose packings sheared to their critical state
+LOOSE = 11  # preparation friction of those, degrees
+AFTER_ONSET = 8  # reversals: four cycles
+LARGE = 5000  # grains
+# Preparation friction, degrees, of large boxes of the paper's densities, instead of a search, whose trials take half an
+# hour each: the loosest that stand when friction is set (those of D_r = 0.30 lose their pressure), nearly the densest
+LARGE_DEGREES = {0.30: FRICTION, 0.88: 0.5}
+
+SCENE = speed_plan.GRADING.replace("{seed}", "{seed}{sizes}") + speed_plan.CONTACT.replace(
+    "10 GPa", "{young:g} GPa").replace("18 deg", "{friction:g} deg") + """
+[specimen]
+{specimen}
+
+[motion]
+{motion}
+{stages}
+[output]
+snapshots = "none"
+paraview = false
+record_stress = "1 kPa"
+record_strain = {record_strain}
+"""
+# the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)
+FIRST_STRAIN, FAST = 0.005, 4e-4
+DENSITY_OF_GRAINS, D50 = 2650, 0.45e-3
+
+
+def strain_rate(inertial_number, pressure):
+    """I sqrt(p0'/rho)/d50, 1/s."""
+    return inertial_number * (pressure * 1e3 / DENSITY_OF_GRAINS) ** 0.5 / D50
+
+
+@dataclasses.dataclass(frozen=True)
+class Way:
+    """What differs as a specimen is made."""
+
+    specimen: str = ""  # a line of [specimen]
+    sizes: str = ""  # a line of [grading]
+    pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
+    cell: bool = False  # no walls
+    own_limits: bool = True  # of the cell; else those of boxes define its density
+    at_once: bool = False  # friction is raised as the test begins, without a new balance
+
+
+NO_WALLS = "periodic cell"
+WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
+        "compacted at 100/s": Way('compaction_rate = "100 1/s"'), "damping 0.05": Way("damping = 0.05"),
+        "damping 0.7": Way("damping = 0.7"), "friction raised at 20 kPa": Way(pressure=20),
+        "friction raised as the test begins": Way(at_once=True),
+        "sizes of 10 to 90 %": Way(sizes="truncate = [10, 90]"), "thin cloud": Way(sizes="solid_fraction = 0.2"),
+        NO_WALLS: Way(cell=True),
+        "periodic cell, void ratio of the boxes": Way(cell=True, own_limits=False)}
+
+
+@dataclasses.dataclass(frozen=True)
+class Pace:
+    """How fast a cyclic test is run."""
+
+    rates: str = ""  # lines of [motion]
+    damping: str = "damping = 0.1"
+    large: str = ""  # instead of both, with 10,000 grains
+
+
+LARGE_MOTION = "damping = 0.02\nload_per_wave = 0.02"  # docs/results/free_grains.md, other sizes
+# as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
+USUAL = "damping = 0.2\ncontact_damping = 0\nfree_grain_damping = 0\ncarry_grains = false"
+DEFAULT = "default"
+SLOW = "tenth"  # what happens after the onset needs it
+PACES = {DEFAULT: Pace(large=LARGE_MOTION),
+         SLOW: Pace("\ninertial_number = 7e-5\nload_per_wave = 0.01", large=f"{LARGE_MOTION}\ninertial_number = 7e-5"),
+         "hundredth": Pace("\ninertial_number = 7e-6\nload_per_wave = 0.001"),
+         "2/s": Pace('\nstrain_rate = "2 1/s"\n', damping=USUAL),
+         "10/s": Pace('\nstrain_rate = "10 1/s"\n', damping=USUAL)}
+PACE_DEGREES = 9  # preparation friction of their specimens
+
+
+@dataclasses.dataclass(frozen=True)
+class Packing:
+    """One specimen. Either density or friction says how dense it is."""
+
+    grains: int
+    seed: int
+    relative_density: float = 0
+    degrees: float = 0
+    pressure: float = P0
+    young: float = 10  # GPa
+    way: str = ""  # of WAYS
+
+    @property
+    def density(self):
+        return f"D_r {self.relative_density:.2f}" if self.relative_density else f"{self.degrees:g} deg"
+
+    @property
+    def limits(self):
+        """By which its relative density is meant."""
+        way = WAYS[self.way]
+        return CELL_LIMITS if way.cell and way.own_limits else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
+
+    @property
+    def label(self):
+        more = [self.density, f"{self.pressure:g} kPa"]
+        more += [f"E {self.young:g} GPa"] if self.young != 10 else []
+        more += [self.way] if self.way else []
+        return ", ".join(more)
+
+    def settings(self):
+        """Of the scene: how it is made."""
+        way = WAYS[self.way]
+        hard_to_find = self.grains >= LARGE and self.young == 10 and not way.cell
+        degrees = self.degrees or (hard_to_find and LARGE_DEGREES.get(self.relative_density))
+        lines = [f'domain = "{"periodic-cell" if way.cell else "rigid-box"}"',
+                 f'pressure = "{way.pressure or self.pressure:g} kPa"']
+        if degrees:
+            lines.append(f'preparation_friction = "{degrees:g} deg"')
+        else:
+            e_min, e_max = self.limits
+            # a search costs more than a test, and small boxes scatter; the loosest give way when friction is raised
+            tolerance = 0.01 if self.grains > 2000 else 0.03 if self.relative_density > 0.25 else 0.10
+            lines += [f"relative_density = {self.relative_density}", f"e_min = {e_min}", f"e_max = {e_max}",
+                      f"density_tolerance = {tolerance}"]
+        lines += ['compaction_rate = "10 1/s"'] if self.young < 1 else []  # at the default some soft packings explode
+        lines += [way.specimen] if way.specimen else []
+        return {"grains": self.grains, "edge": 10 * (self.grains / 10000) ** (1 / 3), "seed": self.seed,
+                "sizes": f"\n{way.sizes}" if way.sizes else "", "young": self.young,
+                "friction": self.degrees if way.at_once else FRICTION,
+                "specimen": "\n".join(lines)}
+
+    def stages(self):
+        """With which its making ends, as stages of a test."""
+        way = WAYS[self.way]
+        if way.at_once:
+            return [f'[[stage]]\nkind = "friction"\nfriction = "{FRICTION} deg"\n']
+        return [f'[[stage]]\nkind = "compress"\npressure = "{self.pressure:g} kPa"\n'] if way.pressure else []
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """One run, as runner.Campaign takes it."""
+
+    kind: str  # prepare, compression, extension, drained, cyclic
+    packing: Packing
+    strain: float = 0.05
+    ratio: float = PAPER_RATIO  # q_amp/(2 p0')
+    slow: bool = False
+    max_cycles: int = 100
+    pace: str = DEFAULT  # of PACES
+    after: int = AFTER_ONSET  # reversals, of tests that look behind the onset
+
+    @property
+    def seed(self):
+        return self.packing.seed
+
+    @property
+    def specimen(self):
+        return self.packing
+
+    @property
+    def name(self):
+        how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
+        how += f"_{100 * self.strain:g}%" if self.one_way else ""
+        how += "_slow" if self.slow else ""
+        how += f"_{self.pace}" if self.pace != DEFAULT else ""
+        p = self.packing
+        name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
+        return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
+
+    @property
+    def one_way(self):
+        return self.kind in ("compression", "extension", "drained")
+
+    @property
+    def looks_behind_onset(self):
+        """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others,
+        and of large packings at the default's rate, only the cycles to liquefaction are asked."""
+        paper = self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
+        return paper and (self.pace != DEFAULT or self.packing.grains < LARGE)
+
+    def scene(self):
+        p = self.packing
+        pace = PACES[self.pace]
+        large = pace.large if p.grains >= LARGE and self.kind == "cyclic" else ""
+        motion = large or pace.damping + pace.rates
+        return SCENE.format(title=self.name, **p.settings(), motion=motion,
+                            stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
+
+    def stages(self):
+        if self.kind == "prepare":
+            return ""
+        if self.kind == "cyclic":
+            amplitude = 2 * self.ratio * self.packing.pressure
+            after = self.after if self.looks_behind_onset else 0
+            until = f"cycles = {self.max_cycles}, reversals_after_liquefaction = {after}, strain = 0.15"
+            drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
+            return (f'{"".join(self.packing.stages())}[[stage]]\nkind = "undrained-cyclic"\n'
+                    f'deviator_amplitude = "{amplitude:g} kPa"\n'
+                    f"until = {{ {until} }}\n{drained}")
+        kind = "drained" if self.kind == "drained" else "undrained-monotonic"
+        direction = "extension" if self.kind == "extension" else "compression"
+        stage = f'[[stage]]\nkind = "{kind}"\ndirection = "{direction}"\n'
+        if self.slow or self.strain <= FIRST_STRAIN:
+            return stage + f"strain = {self.strain:g}\n"
+        rate = strain_rate(FAST, self.packing.pressure)
+        return (stage + f"strain = {FIRST_STRAIN:g}\n" + stage +
+                f'strain = {self.strain - FIRST_STRAIN:g}\nstrain_rate = "{rate:.3g} 1/s"\n')
+
+    def estimated_seconds(self):
+        first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN
+        fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01 * (10 if self.slow else 1)
+        search = 1.5e5 if self.packing.relative_density else 5e4
+        cyclic = 2.5e6 if self.pace == SLOW else 5e5 if self.looks_behind_onset else 8e4
+        steps = {"prepare": search, "cyclic": cyclic}.get(self.kind, first + max(0, fast))
+        return 1.2e-4 * steps * self.packing.grains / 2000
+
+
+def ends(whole):
+    """When cyclic tests end."""
+    return {"max_cycles": 100 if whole else 50, "after": AFTER_ONSET if whole else AFTER_ONSET // 2}
+
+
+def figure_1(grains, seeds, whole):
+    """Monotonic tests at the three densities of the paper; the dense one with softer contacts, too."""
+    runs = []
+    for seed in seeds:
+        for density in PAPER:
+            for kind in ("compression", "extension"):
+                strain = (0.20 if whole else 0.10) if density == PAPER[0] else (0.05 if whole else 0.03)
+                runs.append(Run(kind, Packing(grains, seed, density), strain))
+        if whole or seed == seeds[0]:
+            runs += [Run("compression", Packing(grains, seed, PAPER[2], young=young), 0.05 if whole else 0.03)
+                     for young in (1, 0.1)]
+    if whole:
+        runs += [Run("compression", Packing(grains, seeds[0], density), 0.03, slow=True) for density in PAPER]
+    return runs
+
+
+def drained(grains, seeds, whole):
+    return [Run("drained", Packing(grains, seed, density, pressure=pressure), 0.15 if whole else 0.10)
+            for seed in seeds for density in LABORATORY for pressure in ((100, 200) if whole else (P0,))]
+
+
+def cyclic(grains, seeds, whole):
+    """Figure 2: the density of the paper with two more seeds, and a row of preparations, in boxes."""
+    packings = [Packing(grains, seed, PAPER[1]) for seed in range(1, len(seeds) + 3)]
+    packings += [Packing(grains, seed, degrees=d) for seed in seeds for d in PREPARATIONS
+                 if whole or d % 2 or d == 10]
+    return [Run("cyclic", packing, **ends(whole)) for packing in packings]
+
+
+def onset(grains, seeds, whole):
+    """Figures 3 and 4: one of these preparations slowly, for what happens around and after the onset; and the same
+    specimens at the default's rate, for what the rate does to the number of cycles."""
+    seeds = range(1, len(seeds) + 3) if whole else seeds
+    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace, **ends(whole))
+            for pace in (SLOW, DEFAULT) for seed in seeds]
+
+
+def resistance(grains, seeds, whole):
+    """All densities at all pressures."""
+    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio, **ends(whole))
+            for seed in seeds for d in RESISTANCE for p in PRESSURES for ratio in RATIOS]
+
+
+def critical(grains, seeds, _):
+    """Loose packings at three pressures, with and without walls, and a looser and a denser one that have to end on the
+    same line."""
+    packings = [Packing(grains, seed, degrees=degrees, pressure=pressure, way=way) for seed in seeds
+                for pressure in CRITICAL for degrees, way in ((LOOSE, ""), (LOOSE, NO_WALLS), (FRICTION, NO_WALLS))]
+    packings += [Packing(grains, seed, PAPER[1], way=NO_WALLS) for seed in seeds]
+    return [Run("drained", packing, 0.30) for packing in packings]
+
+
+def ways(grains, seeds, whole):
+    """Specimens of the density of the paper, made in other ways."""
+    packings = [Packing(grains, seed, degrees=5, way=name) if way.at_once else
+                Packing(grains, seed, PAPER[1], way=name) for seed in seeds for name, way in WAYS.items()]
+    return [Run("cyclic", packing, **ends(whole)) for packing in packings]
+
+
+def paces(grains, seeds, whole):
+    """The test of the paper slower, and as it is usually run, on specimens that liquefy in some tens of cycles."""
+    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace,
+                **ends(whole) | ({"after": 3} if pace == "hundredth" else {})) for seed in seeds for pace in PACES]
+
+
+FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "onset": onset, "drained": drained}
+PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "paces": paces}
+
+
+def runs_of(grains, n_seeds, whole=False, parts=tuple(FIGURES)):
+    """All runs, each once, specimens first. Not the whole: fewer states, for half an hour."""
+    tests = list(dict.fromkeys(run for part in parts for run in PARTS[part](grains, range(1, n_seeds + 1), whole)))
+    packings = list(dict.fromkeys(run.packing for run in tests))
+    return [Run("prepare", packing) for packing in packings] + tests

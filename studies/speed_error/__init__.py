@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Speed against error: how far tests are from balance and convergence, static and dynamic, and what they cost.
+
+Every setting is run on the same specimens; differences are taken specimen by specimen.
+"""
+from studies.speed_error import figures, plan, tables
+from studies.tables import write_tables
+
+DEFAULTS, QUICK = {"seeds": 20}, {"seeds": 1}
+
+
+def runs(options):
+    return plan.runs(options.seeds)
+
+
+def report(store, planned, folder):
+    results = tables.Results(store, planned)
+    write_tables(folder, results.tables())
+    figures.draw(results, folder)
