@@ -13,7 +13,7 @@ PACKAGING = ROOT / "packaging"
 NAMES = {
     "Boost": ("boost", "libboost-headers"), "CLI11": ("cli11", "cli11"), "deal.II": ("dealii", None),
     "Eigen3": ("eigen", "eigen"), "fmt": ("fmt", "fmt"), "HDF5": ("hdf5", "hdf5"), "HWY": ("highway", "libhwy"),
-    "MPI": ("openmpi", "openmpi"), "nlohmann_json": ("nlohmann-json", "nlohmann_json"), "NLOPT": ("nlopt", "nlopt"),
+    "MPI": ("openmpi", "openmpi"), "nlohmann_json": ("nlohmann-json", "nlohmann_json"),
     "OMPI": ("openmpi", "openmpi"), "PETSC": ("petsc", None), "PUGIXML": ("pugixml", "pugixml"),
     "ZLIB": ("zlib-api", "zlib"),
 }
@@ -65,7 +65,7 @@ class Recipes(unittest.TestCase):
         text = (PACKAGING / "Containerfile").read_text(encoding="utf-8")
         for part in ("FROM debian:12", "scripts/setup.sh", "cmake --preset release", "cmake --install"):
             self.assertIn(part, text)
-        for python in ("python3-numpy", "python3-matplotlib", "python3-h5py", "python3-scipy"):
+        for python in ("python3-numpy", "python3-matplotlib", "python3-h5py", "python3-scipy", "python3-nlopt"):
             self.assertIn(python, text)
 
 

@@ -241,7 +241,7 @@ def results(path):
     left_out = TIMED | {"checkpoint", "queue", "logs"}
     return {name: table(path / name) if name.endswith("resistance.csv") else data
             for name, data in contents(path).items()
-            if not name.endswith(".log") and not left_out & set(pathlib.PurePath(name).parts)}
+            if not name.endswith((".log", ".cpu")) and not left_out & set(pathlib.PurePath(name).parts)}
 
 
 def main():
