@@ -245,6 +245,8 @@ class Refusals(Calibrate):
             self.write("lab.csv", text)
             self.assert_plan_refused(plan_text(), *parts)
         self.assert_refused(self.run_app("isostat", "calibrate"), "no plan given", "quick_karlsruhe.toml")
+        for path in ("nowhere.toml", "/dev/zero", "."):
+            self.assert_refused(self.run_it(plan=path), path, "is not there, or is no file")
 
     def test_density_that_no_trial_reaches(self):
         plan = self.write("dense.toml", plan_text(curve="relative_density = 1.0"))

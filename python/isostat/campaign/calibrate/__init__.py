@@ -76,7 +76,6 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
     """Start, design and search.   Returns why it ended"""
     trials.evaluate(first_points(plan, scenes))
     check_first(trials)
-
     limit = 60 * float(plan.budget.time.split()[0]) if plan.budget.time else math.inf  # as scenes write it, in min
 
     def objective(shares):
@@ -94,8 +93,9 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
 
 
 def dry_run(plan: Any, scenes: SceneMaker) -> str:
+    """What would be run; checks the scenes of the first trial.   Raises InputError"""
     for curve in plan.curve:
-        scenes.trial(first_points(plan, scenes)[0], curve, plan.specimens.first_seed)
+        scenes.trial(values_at(scenes, [p.start for p in scenes.parameters]), curve, plan.specimens.first_seed)
     sizes, fitted = plan.specimens, sum(not curve.blind for curve in plan.curve)
     runs, blind = fitted * sizes.seeds, 2 * (len(plan.curve) - fitted) * sizes.seeds
     lines = [plan.title, f"runs per trial           {runs} ({fitted} curves, {sizes.seeds} seeds), each of "

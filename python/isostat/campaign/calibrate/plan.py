@@ -215,6 +215,8 @@ def checked_plan(document: Document) -> SimpleNamespace:
 
 def read_text(path: str, what: str) -> str:
     """Of a file in UTF-8, which may be packed by gzip.   Raises InputError"""
+    if not os.path.isfile(path):  # a pipe or a device may have no end
+        raise _core.InputError(f"{path}: is not there, or is no file. Give {what}.")
     try:
         data = pathlib.Path(path).read_bytes()
         return (gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data).decode("utf-8-sig")
