@@ -8,11 +8,13 @@ import random
 import tomllib
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
 from package import FolderTest, isostat
-from isostat.campaign.calibrate import keys, plan as plans
+from isostat.campaign import folder
+from isostat.campaign.calibrate import Folder, keys, plan as plans
 from isostat.campaign.calibrate.scenes import SceneMaker
 from isostat.campaign.calibrate.search import ALGORITHMS, BudgetUsed, search, sobol_design
 
@@ -139,6 +141,34 @@ class Plans(CalibrationTest):
                                    (123456789, 0, "123456789"), (5e8, 9, "0.5"), (2.7e-3, -3, "2.7"),
                                    (0, 3, "0"), (-20, 0, "-20")):
             self.assertEqual(keys.number_text(value, shift), text)
+
+
+class Folders(CalibrationTest):
+    def test_a_call_that_was_killed_between_the_first_files(self):
+        """Whatever of them is there: the same command takes its folder again."""
+        kept = {"plan.toml": keys.plan_text(read(plan_text())), "laboratory/TMD3.csv": "1,2\n", "scene.toml": "\n"}
+        for n in range(4):
+            written, write = [], folder.write_replacing
+
+            def killed(path, text):
+                if len(written) == n:
+                    raise KeyboardInterrupt
+                written.append(path)
+                write(path, text)
+            out = self.folder / f"killed{n}"
+            with mock.patch.object(folder, "write_replacing", killed), self.assertRaises(KeyboardInterrupt):
+                Folder(out, kept, owner="calibration")
+            Folder(out, kept, owner="calibration", only_check=True)
+
+    def test_another_budget_is_no_other_calibration(self):
+        plan = read(plan_text())
+        kept = {"plan.toml": keys.plan_text(plan), "scene.toml": "title = ''\n"}
+        Folder(self.folder / "budget", kept, owner="calibration")
+        plan.budget.trials, plan.budget.time = 99, "5 min"
+        Folder(self.folder / "budget", kept | {"plan.toml": keys.plan_text(plan)}, owner="calibration", only_check=True)
+        plan.misfit.points = 41
+        self.refuse(("points = 40", "points = 41", "--overwrite"), lambda: Folder(
+            self.folder / "budget", kept | {"plan.toml": keys.plan_text(plan)}, owner="calibration", only_check=True))
 
 
 class Parameters(CalibrationTest):

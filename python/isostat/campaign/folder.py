@@ -75,7 +75,8 @@ class CampaignFolder:
         calls = self.path / "provenance.txt"
         before = calls.read_text(encoding="utf-8") + "\n" if calls.is_file() else ""
         write_replacing(calls, before + provenance(command or shlex.join([os.path.basename(sys.argv[0]), *sys.argv[1:]])))
-        for name, text in sorted(kept.items(), key=lambda item: item[0] != "scene.toml"):  # first what tells that it is one
+        # scene.toml first: a folder with other files but without it is refused, even by the command that made it
+        for name, text in sorted(kept.items(), key=lambda item: item[0] != "scene.toml"):
             (self.path / name).parent.mkdir(exist_ok=True)
             write_replacing(self.path / name, text)
 
