@@ -51,8 +51,7 @@ def check_kind(scene, n: int) -> None:
     for k, layer in enumerate(layers):
         if layer["material"] == "user":
             raise _core.InputError(f"layer.{k}.material = \"user\": members run in processes of their own, which do not have "
-                                   f"the material of layer \"{layer['name']}\". Run them with isostat.column.run(), seed by "
-                                   "seed.")
+                                   "materials of Python. Run them there with isostat.column.run(), seed by seed.")
     if n > 1 and not grains:
         raise _core.InputError(f"-n {n}: without a layer of grains, whose seeds differ, all members would be the same. "
                                "Leave it out and give --records, one motion for each member.")
