@@ -57,7 +57,7 @@ class SceneMistakes(AppTest):
 
     def test_jobs(self):
         """0 is as many as there are cores, in every program; then the scene is looked for."""
-        for program in ("soil_column", "specimen_library"):
+        for program in ("specimen_library",):
             if not (BIN / program).exists():
                 continue
             for n in (-1, 1025):

@@ -7,6 +7,7 @@ import concurrent.futures
 import contextlib
 import dataclasses
 import fcntl
+import json
 import os
 import pathlib
 import shutil
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from isostat import _core
 
@@ -78,6 +80,14 @@ class Run:
             lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
             return next((line for line in reversed(lines) if line.strip()), "")
         return ""
+
+
+def read_summary(results: pathlib.Path) -> dict[str, Any]:
+    """summary.json of a run that has finished.   Raises InputError (a damaged file)"""
+    try:
+        return json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise _core.InputError(f"{results / 'summary.json'}: is damaged ({error}).") from error
 
 
 def wait_until_free(folder: pathlib.Path) -> None:
