@@ -13,5 +13,5 @@ _isostat() {
   mapfile -t COMPREPLY < <(compgen -W "${options:-}" -- "$word")
   ((${#COMPREPLY[@]})) || compopt -o default
 }
-complete -F _isostat isostat element_test liquefaction_resistance calibrate specimen_library void_ratio_limits \
-  micromechanics soil_column rve_replay biaxial
+complete -F _isostat isostat element_test calibrate void_ratio_limits micromechanics \
+  soil_column rve_replay biaxial

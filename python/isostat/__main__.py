@@ -14,7 +14,8 @@ from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.runs import program
 
-CAMPAIGNS = {"resistance": "cyclic stress ratio against cycles to liquefaction, from many tests"}
+CAMPAIGNS = {"resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
+             "library": "periodic specimens at several pressures and densities, in one file"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}

@@ -9,7 +9,6 @@ import subprocess
 
 from calibrate_test import LABORATORY, SCENE as DRAINED, plan_text
 from resistance_test import SHEAR
-from specimen_library_test import NARROW, SCENE as LIBRARY
 from support import TIME_LIMIT, AppTest, children, main, table, wait_until
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
@@ -66,19 +65,6 @@ class CampaignRanks(AppTest):
             "calibrate", self.plan, "--no-figures", "-o", "two")]))
         self.assertEqual(code, 0, said)
         self.assertEqual(table(self.folder / "two/trials.csv"), table(self.folder / "one/trials.csv"))
-
-    def test_library(self):
-        """Each specimen is prepared once, by whichever rank is free."""
-        scene = self.write("rve.toml", LIBRARY)
-        make = self.command("specimen_library", scene, *NARROW, "-n", "6", "-o")
-        code, said = self.ended(self.start([*make, "one.h5", "--set", "specimen.cache=one"]))
-        self.assertEqual(code, 0, said)
-        code, said = self.ended(self.start(["mpirun", "--oversubscribe", "-n", "3", *make, "two.h5",
-                                            "--set", "specimen.cache=two"]))
-        self.assertEqual(code, 0, said)
-        self.assertEqual(said.count("cloud: 150 grains"), 6, said)
-        self.assertEqual(list((self.folder / "two").glob("*.lock")), [])
-        self.assert_same_h5(self.folder / "one.h5", self.folder / "two.h5")
 
     def test_killed_helpers(self):
         """Each is killed, with the run it does or without, as soon as it does one; its runs are done by others. The

@@ -7,11 +7,11 @@ import collections
 import errno
 import signal
 
-from biaxial_test import CELL, FEW, FRICTION
+from biaxial_test import FRICTION
 from calibrate_test import LABORATORY, SCENE, plan_text
 from failing_runs import COLUMN, EVERY, OUTPUT, SAVED, SHORT_TEST, FailingRuns
 from grain_column_test import GrainColumnTest
-from support import main, results, tiny_scene
+from support import main, results
 from void_ratio_limits_test import LIMITS, QUICK
 
 LAST_WORD = {"open": 1, "write": 1, "fsync": 2, "rename": 1}  # of a campaign, to processes that help: its lock is free
@@ -26,17 +26,6 @@ class Failures(FailingRuns):
 
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=3)
-
-    def test_specimen_library(self):
-        scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.every_call("specimen_library", scene, *FEW, output=("-o", "out/library.h5", "-q"),
-                        goes_on=FailingRuns.repeated, most=3, fewest=1,
-                        harmless={"open": 1})  # a lock: two processes would prepare the same specimen
-
-    def test_liquefaction_resistance(self):
-        scene = self.write("scene.toml", SHORT_TEST)
-        self.every_call("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-n", 1, goes_on=FailingRuns.repeated,
-                        most=2, harmless=LAST_WORD)
 
     def test_calibrate(self):
         for name, text in (("scene.toml", SCENE), ("lab.csv", LABORATORY)):
@@ -95,11 +84,6 @@ class Failures(FailingRuns):
             result, _ = self.run_failing([*command, "--resume"], "flock", 1, code=reason)
             self.assert_done(result)
             self.assertEqual(results(self.folder / "out"), whole)
-        self.empty()
-        command = self.command("liquefaction_resistance", scene, "--ratios", "0.2,0.3", "-o", "out", "-q")
-        result, _ = self.run_failing(command, "flock", 1, code=errno.ENOLCK)
-        self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("cannot be locked: No locks available. Work on a file system that has locks", result.stderr)
 
 
 class Replays(FailingRuns, GrainColumnTest):
