@@ -226,7 +226,7 @@ class Version(AppTest):
         apps = pathlib.Path(__file__).resolve().parents[2] / "apps"
         programs = [main.parent.name for main in apps.glob("*/main.cpp") if (BIN / main.parent.name).exists()]
         self.assertIn("element_test", programs)
-        for program in programs:
+        for program in [*programs, "isostat"]:
             result = self.run_app(program, "--version")
             self.assert_done(result)
             self.assertRegex(result.stdout, rf"^{program}( \(Isostat\))? \d+\.\d+\.\d+ ")
@@ -237,8 +237,10 @@ class Copied(AppTest):
         for program in ("isostat", "element_test"):
             (self.folder / "there").mkdir(exist_ok=True)
             shutil.copy(BIN / program, self.folder / "there" / program)
-        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "share/isostat/report",
+        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat is not there",
                             "copied", "built or installed")
+        (self.folder / "link").symlink_to(BIN / "isostat")
+        self.assert_done(self.run_app(self.folder / "link", "--version"))
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=600)))
         result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
         self.assert_done(result)

@@ -42,6 +42,14 @@ class Library(AppTest):
                       result.stderr)
         self.assertRegex(result.stderr, r"warning: s0001: D_r = -\d\.\d+: far looser than e_max\. Do e_min and e_max")
 
+    def test_unknown_limits_are_warned_of_whether_cached_or_not(self):
+        for use in ((), ("--overwrite",)):
+            result = self.make("-o", "other.h5", *use, "--set", "grading.solid_fraction=0.25",
+                               "--set", 'grading.table=[["0.3 mm", 0], ["0.4 mm", 100]]')
+            self.assert_done(result)
+            self.assertEqual("taken from" in result.stderr, bool(use), result.stderr)
+            self.assertIn("warning: seed 1, isotropic 50 kPa, prepared at 10 deg: D_r is unknown", result.stderr)
+
     def test_make_append_list(self):
         two = ("-n", "2", "-o", "library.h5", "--jobs", "2")
         result = self.make(*two)
