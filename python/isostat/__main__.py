@@ -58,7 +58,7 @@ def refuse(name):
 def main(words=None):
     _core._speak_as_command()
     warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
-    name, *rest = sys.argv[1:] if words is None else words or ["--help"]
+    name, *rest = (sys.argv[1:] if words is None else words) or ["--help"]
     if name in CAMPAIGNS:
         return importlib.import_module(f"isostat.campaign.{name}").main(rest)
     if name in PACKINGS:

@@ -232,6 +232,19 @@ class Version(AppTest):
             self.assertRegex(result.stdout, rf"^{program}( \(Isostat\))? \d+\.\d+\.\d+ ")
 
 
+class Bare(AppTest):
+    def test_isostat_alone_lists_its_commands(self):
+        for words in ((), ("--help",)):
+            result = self.run_app("isostat", *words)
+            self.assert_done(result)
+            self.assertRegex(result.stdout, "\n  library .*\n(?s:.*)\n  element_test ")
+        self.assert_refused(self.run_app("isostat", "librray"), "librray: is no command of isostat")
+
+    def test_a_scene_of_too_long_a_name(self):
+        for words in (("element_test",), ("isostat", "library"), ("isostat", "resistance", "--ratios", "0.2")):
+            self.assert_refused(self.run_app(*words, "x" * 300), "x" * 300)
+
+
 class Copied(AppTest):
     def test_a_copied_program_says_what_it_misses(self):
         for program in ("isostat", "element_test"):

@@ -21,8 +21,8 @@ SCENES = next((folder for parent in pathlib.Path(__file__).parents[2:7]
 
 def shipped(folder: str, name: str) -> str:
     """A file as it is named, or else the installed one of this name."""
-    installed = SCENES / folder / name
-    return str(installed) if not os.path.exists(name) and installed.is_file() else name
+    installed = str(SCENES / folder / name)
+    return installed if not os.path.exists(name) and os.path.isfile(installed) else name
 
 
 def add_scene(line: argparse.ArgumentParser, text: str, nargs: str | None = None) -> None:
