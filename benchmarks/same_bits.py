@@ -94,7 +94,7 @@ RUNS = {
     "cell, K0, cyclic simple shear": ("element_test", SCENES / "quick_k0_undrained_cyclic_simple_shear.toml", *FEW,
                                       "--set", "stage.0.until.cycles=2"),
     "imported packing": ("element_test", ROOT / "tests/regression/medium_cyclic.toml"),
-    "library": ("specimen_library", SCENES / "rve_library.toml", "--pressures", "20 kPa,50 kPa", "-n", "2", *TINY,
+    "library": ("isostat", "library", SCENES / "rve_library.toml", "--pressures", "20 kPa,50 kPa", "-n", "2", *TINY,
                 "--set", "contact.young=500 MPa", "--set", "specimen.density_tolerance=0.06"),
     "column, elastic": ("soil_column", SCENES / "column/uniform_layer.toml", "--set", "analysis.duration=2 s"),
     "column, compliant base": ("soil_column", SCENES / "column/two_layers_compliant.toml",
@@ -185,7 +185,7 @@ def run_all(binaries, work, chosen, keep):
         if program == "mpirun":
             launcher, program, arguments = ["mpirun", "--oversubscribe", "-n", 2], arguments[0], arguments[1:]
         output = ("--output", folder / "run", "-q", "--no-figures")
-        if program == "specimen_library":
+        if arguments[0] == "library":
             output = ("--output", folder / "library.h5")
         command = [*launcher, binaries / program, *arguments, *output]
         begin = time.time()

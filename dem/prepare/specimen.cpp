@@ -126,8 +126,6 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
                              cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
                              uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
-  if (!spec.has_limits())
-    warn("D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   PreparedDensity prepared;
   Specimen specimen;
   if (spec.preparation_friction)
@@ -218,6 +216,8 @@ void note_void_ratio(const Scene &scene, const Specimen &specimen)
 /// The default limits of the void ratio belong to the grains of the paper.
 void note_limits(const Scene &scene)
 {
+  if (!scene.specimen.has_limits())
+    warn("D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   if (const std::string other = has_default_limits(scene.specimen) ? foreign_to_default_limits(scene) : "";
       !other.empty())
     warn(
@@ -277,6 +277,11 @@ std::string specimen_recipe(const Scene &scene)
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
 }
 
+std::filesystem::path cached_specimen(const Scene &scene, const std::filesystem::path &cache)
+{
+  return cache / fmt::format("specimen-{:016x}.h5", Hash().text(specimen_recipe(scene)).value());
+}
+
 Specimen given_specimen(const Scene &scene, Specimen given)
 {
   note_differences(scene, given, "the specimen that is given");
@@ -294,9 +299,8 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
     return import(scene, observer);
   note_friction(scene);
   note_limits(scene);
-  const std::string recipe = specimen_recipe(scene);
-  const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
-  if (std::optional<Specimen> cached = from_cache(path, recipe, observer))
+  const std::filesystem::path path = cached_specimen(scene, cache);
+  if (std::optional<Specimen> cached = from_cache(path, specimen_recipe(scene), observer))
     {
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The work of `isostat convert`, in the words of its command line.   tested: tests/apps/convert_test.py
+#include "dem/prepare/convert.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
-#include "dem/prepare/convert.hpp"
 #include "dem/prepare/packing_check.hpp"
 #include "python/binding/binding.hpp"
 #include "python/binding/warnings.hpp"
@@ -30,12 +30,10 @@ double quantity(const char *option, const std::string &text, Dimension dimension
 }
 
 /// @return the figures of the packing as text, and what is to be said of it
-std::pair<std::string, std::vector<std::string>> convert_file(const std::string &in, const std::string &out,
-                                                              const std::string &named_format,
-                                                              const std::optional<std::string> &unit,
-                                                              const std::optional<double> &scale,
-                                                              const std::optional<std::string> &density,
-                                                              const std::string &domain, bool anyway, bool overwrite)
+std::pair<std::string, std::vector<std::string>>
+convert_file(const std::string &in, const std::string &out, const std::string &named_format,
+             const std::optional<std::string> &unit, const std::optional<double> &scale,
+             const std::optional<std::string> &density, const std::string &domain, bool anyway, bool overwrite)
 {
   const PackingFormat format = named_format.empty() ? format_of_file(out) : format_named(named_format);
   if (std::error_code ignored; !overwrite && fs::exists(out, ignored))

@@ -9,6 +9,7 @@
 #include "dem/io/vtp.hpp"
 #include "dem/prepare/convert.hpp"
 #include "dem/prepare/packing_check.hpp"
+#include "dem/prepare/relative_density.hpp"
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
 #include "python/binding/given.hpp"
@@ -120,6 +121,21 @@ std::map<std::string, std::map<std::string, double>> numbers_of_library(const Pa
   return entries;
 }
 
+/// For the command line: the table of a library, the recipes of its entries, and what to say of odd densities.
+py::tuple describe_library(const Path &path)
+{
+  const std::vector<LibraryEntry> entries = list_library(path.value);
+  std::vector<std::string> recipes, remarks;
+  for (const LibraryEntry &entry : entries)
+    {
+      recipes.push_back(entry.text("recipe"));
+      const double density = entry.number("relative_density");
+      if (const std::string remark = density_remark(density); !remark.empty())
+        remarks.push_back(fmt::format("{}: D_r = {:.3f}{}", entry.name, density, remark));
+    }
+  return py::make_tuple(library_table(entries), recipes, remarks);
+}
+
 /// Columns of history.h5 as arrays, with all their digits, and their units.   @throws InputError  damaged, or no history
 py::tuple read_series(const Path &path)
 {
@@ -215,12 +231,13 @@ void bind_files(py::module_ &module)
       [](const Path &path, Given<std::vector<Specimen>, "specimens"> specimens, Overwrite overwrite,
          Given<bool, "append"> append) { return write_library(path, specimens.value, overwrite, append); },
       py::arg("path"), py::arg("specimens"), py::kw_only(), py::arg("overwrite") = false, py::arg("append") = false,
-      "Writes periodic specimens into one file, as the program specimen_library does: a column takes its packings\n"
+      "Writes periodic specimens into one file, as `isostat library` does: a column takes its packings\n"
       "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
       "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
+  module.def("_describe_library", &describe_library);
   module.def("read_series", &read_series, py::arg("path"),
              "Columns of a history.h5, with all their digits, and their units.");
   module.def(

@@ -19,6 +19,7 @@ from isostat.campaign.runs import program
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
              "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
              "ensemble": "a soil column with many sets of packings or many records: bands of all",
+             "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}

@@ -89,7 +89,7 @@ class Ensemble(ColumnTest):
         self.scene = self.write("grains.toml", GRAINS.format(cache=self.cache))
         if not (self.cache / "library.h5").exists():
             self.assert_done(self.run_app(
-                "specimen_library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
+                "isostat", "library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
                 "-n", "6", *settings(grading__grains=120, grading__cloud_edge="2.289 mm",
                                      specimen__density_tolerance=0.05)))
 

@@ -32,6 +32,8 @@ def program(name: str) -> str:
     for folder in folders:
         if os.access(folder / name, os.X_OK) and (folder / name).is_file():
             return str((folder / name).absolute())
+    if found := shutil.which(name):  # of another installation: a wheel has no programs
+        return found
     raise _core.InputError(f"{name}: is not in this installation of Isostat. Build it: cmake --build --preset release "
                            f"--target {name}.")
 
