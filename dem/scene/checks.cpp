@@ -91,7 +91,7 @@ std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
 }
 
 /// Refuses loads that do not hold q = 0 and tau = 0, where these are known before the run.
-void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i, LeftOutLoads left_out)
+void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i)
 {
   const auto *shear = as<ShearStage>(scene.stages[i]);
   const std::optional<double> pressure = shear ? isotropic_before(scene, i) : std::nullopt;
@@ -101,16 +101,13 @@ void check_static_bias(const SceneDocument &document, const Scene &scene, std::s
   if (why.empty())
     return;
   const char *turn = shear->required_loads(*pressure)->low > 0 ? "turn.low" : "turn.high";
-  for (const auto &[amplitude, blamed] :
-       {std::pair{"deviator_amplitude", "deviator_average"}, {"stress_ratio", "static_stress_ratio"}, {turn, turn}})
-    if (const std::string path = fmt::format("stage.{}.{}", i, blamed);
-        document.find(path) &&
-        (left_out == LeftOutLoads::default_ones || document.find(fmt::format("stage.{}.{}", i, amplitude))))
+  for (const char *blamed : {"deviator_average", "static_stress_ratio", turn})
+    if (const std::string path = fmt::format("stage.{}.{}", i, blamed); document.find(path))
       document.refuse(
           path, fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3, why));
 }
 
-void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoads left_out)
+void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     {
@@ -123,7 +120,7 @@ void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoad
                         fmt::format("there are {} stages before this one. Give as many or fewer.", i));
       if (behaviour(scene.stages[i]).needs_cell())
         need_cell(document, scene.specimen, kind, "change the kind");
-      check_static_bias(document, scene, i, left_out);
+      check_static_bias(document, scene, i);
     }
 }
 
@@ -151,13 +148,13 @@ void check_drive(const SceneDocument &document, const Scene &scene)
 }
 } // namespace
 
-void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out)
+void check_scene(const SceneDocument &document, Scene &scene)
 {
   check_groups(document, &scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);
   check_drive(document, scene);
-  check_stages(document, scene, left_out);
+  check_stages(document, scene);
 }
 } // namespace isostat
