@@ -47,7 +47,6 @@ def version():
 
 setup(version=version(), package_dir={"isostat": "python/isostat", "isostat.figures": "apps/figures",
                                         "isostat.report": "apps/report"},
-      packages=["isostat", "isostat.figures", "isostat.report",
-                *(f"isostat.{name}" for name in find_packages(str(ROOT / "python/isostat")))],
+      packages=[*find_packages(ROOT / "python"), "isostat.figures", "isostat.report"],
       package_data={"isostat": ["py.typed", "*.pyi"]},
       ext_modules=[Extension("isostat._core", [])], cmdclass={"build_ext": CMakeBuild})

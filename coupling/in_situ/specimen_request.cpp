@@ -2,7 +2,7 @@
 #include "coupling/in_situ/specimen_request.hpp"
 
 #include "base/error.hpp"
-#include "dem/io/packing_files.hpp"
+#include "dem/io/stored_packing.hpp"
 
 #include <algorithm>
 #include <cmath>

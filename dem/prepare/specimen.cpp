@@ -5,13 +5,12 @@
 #include "base/files/hash.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/tell.hpp"
-#include "dem/io/packing_files.hpp"
+#include "dem/io/stored_packing.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/packing_check.hpp"
 #include "dem/prepare/relative_density.hpp"
-#include "dem/prepare/space_filling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -156,34 +155,13 @@ void note_differences(const Scene &scene, const Specimen &given, const std::stri
     warn(warning);
 }
 
-Specimen import(const Scene &scene, RunObserver &observer)
+Specimen import(const Scene &scene)
 {
   const SpecimenPlace place = specimen_place(scene.specimen.file);
-  const std::filesystem::path path = place.path;
-  if (path.extension() == ".h5")
-    {
-      Specimen specimen = read_stored_packing(path, place.entry);
-      note_differences(scene, specimen, scene.specimen.file);
-      specimen.state.law = scene.contact;
-      describe(scene, specimen);
-      return specimen;
-    }
-  ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density, 1, scene.specimen.domain});
-  const auto remedy = [&path](const std::string &unit) {
-    return fmt::format("convert it once: isostat convert {} {} --length-unit {}, and give that file", path.string(),
-                       std::filesystem::path(path).replace_extension(".h5").filename().string(), unit);
-  };
-  for (const std::string &warning : check_packing(read.state, path.string(), remedy))
-    read.notes.push_back(warning);
-  for (const std::string &note : read.notes)
-    warn(fmt::format("{}: {}", path.string(), note));
-  Specimen specimen;
-  specimen.state = sorted_along_curve(read.state);
+  Specimen specimen = read_stored_packing(place.path, place.entry);
   note_differences(scene, specimen, scene.specimen.file);
-  specimen.provenance["title"] = scene.title;
-  specimen.provenance["recipe"] = "imported from " + path.string();
+  specimen.state.law = scene.contact;
   describe(scene, specimen);
-  observer.event("imported:\n" + figures_text(packing_figures(specimen.state), specimen.state));
   return specimen;
 }
 
@@ -296,7 +274,7 @@ Specimen given_specimen(const Scene &scene, Specimen given)
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)
 {
   if (!scene.specimen.file.empty())
-    return import(scene, observer);
+    return import(scene);
   note_friction(scene);
   note_limits(scene);
   const std::filesystem::path path = cached_specimen(scene, cache);

@@ -9,7 +9,7 @@
 
 namespace isostat
 {
-/// The specimen that a scene asks for: read from a file or folder of tables, taken from the cache, or prepared
+/// The specimen that a scene asks for: read from a file, taken from the cache, or prepared
 /// (cloud -> compression at a preparation friction -> friction of shearing -> rebalance) and put into the cache.
 /// A library entry, "library.h5#s0007", is a file, too. May be called from several threads, each with an observer of
 /// its own, for different recipes.

@@ -49,6 +49,12 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
   check_limits(document, specimen);
   if (document.find("specimen.file") && specimen.file.empty())
     document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
+  if (!specimen.file.empty() && !specimen_place(specimen.file).path.ends_with(".h5"))
+    document.refuse(
+        "specimen.file",
+        fmt::format("must be a file of Isostat (.h5), or an entry of a library (\"library.h5#s0007\"). Convert a "
+                    "packing of another program once: isostat convert {} packing.h5",
+                    specimen.file));
 }
 
 void check_contact(const SceneDocument &document, const Scene &scene)

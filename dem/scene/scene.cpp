@@ -66,7 +66,7 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
   Scene scene = checked_scene(document);
   if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
     scene.specimen.file =
-        found_file(document, "specimen.file", path, place.path, true) + (place.entry.empty() ? "" : "#" + place.entry);
+        found_file(document, "specimen.file", path, place.path) + (place.entry.empty() ? "" : "#" + place.entry);
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     if (auto *stage = as<Path>(scene.stages[i]); stage && !stage->file.empty())
       {

@@ -44,7 +44,7 @@ struct SpecimenSpec : ServoSpec
   std::string consolidation = "isotropic"; ///< or "k0": vertical stress `pressure`, no lateral strain; cell only
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
-  std::string file;                           ///< a specimen (.h5), "library.h5#entry", or a folder of text tables
+  std::string file;                           ///< a specimen or snapshot (.h5), or "library.h5#entry"
   /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
   /// of one's own, and a packing from a file, have none unless they are given.
   std::optional<double> e_min = 0.568, e_max = 0.841;
@@ -61,7 +61,7 @@ inline constexpr const char *no_limits =
     "needs e_min and e_max of this grading; those of Karlsruhe fine sand hold for no other. Find them with "
     "void_ratio_limits and give specimen.e_min and specimen.e_max, or give void_ratio or preparation_friction instead.";
 
-/// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file or folder.
+/// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file.
 struct SpecimenPlace
 {
   std::string path, entry; ///< no entry: empty
