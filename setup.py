@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 
-from setuptools import Extension, setup
+from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parent
@@ -47,5 +47,6 @@ def version():
 
 setup(version=version(), package_dir={"isostat": "python/isostat", "isostat.figures": "apps/figures",
                                         "isostat.report": "apps/report"},
-      packages=["isostat", "isostat.figures", "isostat.report"], package_data={"isostat": ["py.typed", "*.pyi"]},
+      packages=[*find_packages(ROOT / "python"), "isostat.figures", "isostat.report"],
+      package_data={"isostat": ["py.typed", "*.pyi"]},
       ext_modules=[Extension("isostat._core", [])], cmdclass={"build_ext": CMakeBuild})

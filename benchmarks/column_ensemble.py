@@ -5,7 +5,7 @@
     column_ensemble.py BIN FOLDER run [--only WORD ...] [--minutes 60] [--dry-run]
     column_ensemble.py BIN FOLDER report [--docs docs]
 
-BIN     folder of soil_column and specimen_library
+BIN     folder of soil_column and isostat
 FOLDER  specimens and runs; what has finished is not done again, what was interrupted goes on
 report  tables on standard output as Markdown, figures in DOCS/results/ensemble
 
@@ -45,7 +45,7 @@ def library(arguments, grains):
     path = file_of(arguments, "library", grains)
     if not path.exists():
         seeds = plan.SEEDS if grains == plan.GRAINS else plan.LARGE_SEEDS
-        done = execute([arguments.bin / "specimen_library", SCENES / "rve_library.toml", "-o", path, "-j", 1, "-q",
+        done = execute([arguments.bin / "isostat", "library", SCENES / "rve_library.toml", "-o", path, "-j", 1, "-q",
                         "--pressures", "20 kPa", "-n", seeds,
                         *overrides({"contact.young": "1 GPa", "grading.grains": grains,
                                     "grading.cloud_edge": f"{3.107 * (grains / 300) ** (1 / 3):.3f} mm"})])

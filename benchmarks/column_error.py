@@ -4,7 +4,7 @@
 
     column_error.py BIN FOLDER [--only weak|moderate|strong] [--minutes 60] [--dry-run] [--report-only] [--docs docs]
 
-BIN        folder of soil_column and specimen_library
+BIN        folder of soil_column and isostat
 FOLDER     specimens, runs and runs.csv; what is there already is not made again
 --dry-run  prints the command of every run and starts none
 --docs     where figures/column_error.png goes (default: FOLDER); the tables go to standard output as Markdown
@@ -113,7 +113,7 @@ def library(arguments, grains):
     path = arguments.folder / f"library_{grains}.h5"
     if not path.exists() and not arguments.dry_run:
         edge = 4.641588833612779 * (grains / 1000) ** (1 / 3)
-        done = execute([arguments.bin / "specimen_library", SCENES / "rve_library.toml", "-o", path, "-j", 1, "-q",
+        done = execute([arguments.bin / "isostat", "library", SCENES / "rve_library.toml", "-o", path, "-j", 1, "-q",
                         "--pressures", "20 kPa,100 kPa", "-n", SEEDS[grains], "--set", "contact.young=1 GPa",
                         "--set", f"grading.grains={grains}", "--set", f"grading.cloud_edge={edge:.9f} mm",
                         "--set", f"specimen.density_tolerance={DENSITY_TOLERANCE.get(grains, 0.01)}"])

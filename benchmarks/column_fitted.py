@@ -75,7 +75,7 @@ class Runs:
     def library(self):
         if not (self.folder / "library.h5").exists():
             sizes = [part for key, value in SIZE.items() for part in ("--set", f"{key}={value}")]
-            self.call("specimen_library", LIBRARY, "-o", "library.h5", "--pressures", "100 kPa", *sizes)
+            self.call("isostat", "library", LIBRARY, "-o", "library.h5", "--pressures", "100 kPa", *sizes)
 
     def curve(self, pressure):
         """(gamma, tau) of undrained simple shear from an isotropic pressure."""

@@ -93,8 +93,9 @@ RUNS = {
                            "--set", "specimen.preparation_friction=8 deg", "--set", "stage.0.strain=0.01"),
     "cell, K0, cyclic simple shear": ("element_test", SCENES / "quick_k0_undrained_cyclic_simple_shear.toml", *FEW,
                                       "--set", "stage.0.until.cycles=2"),
-    "imported packing": ("element_test", ROOT / "tests/regression/medium_cyclic.toml"),
-    "library": ("specimen_library", SCENES / "rve_library.toml", "--pressures", "20 kPa,50 kPa", "-n", "2", *TINY,
+    "imported packing": ("element_test", ROOT / "tests/regression/medium_cyclic.toml",
+                         "--set", "specimen.file={work}/medium.h5"),
+    "library": ("isostat", "library", SCENES / "rve_library.toml", "--pressures", "20 kPa,50 kPa", "-n", "2", *TINY,
                 "--set", "contact.young=500 MPa", "--set", "specimen.density_tolerance=0.06"),
     "column, elastic": ("soil_column", SCENES / "column/uniform_layer.toml", "--set", "analysis.duration=2 s"),
     "column, compliant base": ("soil_column", SCENES / "column/two_layers_compliant.toml",
@@ -174,6 +175,8 @@ def run_all(binaries, work, chosen, keep):
     (work / "box.toml").write_text(OTHER_STAGES.replace("DOMAIN", "rigid-box"))
     (work / "cell.toml").write_text(OTHER_STAGES.replace("DOMAIN", "periodic-cell"))
     (work / "block.toml").write_text(BLOCK.format(columns=COLUMNS))
+    subprocess.run([binaries / "isostat", "convert", ROOT / "tests/reference/n1000/medium", work / "medium.h5"],
+                   check=True, stdout=subprocess.DEVNULL)
     digests = {}
     for name, (program, *arguments) in RUNS.items():
         if name not in chosen:
@@ -185,7 +188,7 @@ def run_all(binaries, work, chosen, keep):
         if program == "mpirun":
             launcher, program, arguments = ["mpirun", "--oversubscribe", "-n", 2], arguments[0], arguments[1:]
         output = ("--output", folder / "run", "-q", "--no-figures")
-        if program == "specimen_library":
+        if arguments[0] == "library":
             output = ("--output", folder / "library.h5")
         command = [*launcher, binaries / program, *arguments, *output]
         begin = time.time()

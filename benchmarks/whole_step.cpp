@@ -3,11 +3,13 @@
 // list upkeep, wall stress and the driver's strain path.
 //
 //   whole_step results/specimens/specimen-....h5 --rate 5 --time-step 4.8e-8 --steps 1500
-//   whole_step packing.txt                       spheres as lines x y z r, box in a comment; see dem/io/text_tables.hpp
+//   whole_step packing.txt                       spheres as lines x y z r, box in a comment, as --export writes them
+//   whole_step tests/reference/n1000/medium      a folder of tables with contact history
 //   whole_step specimen.h5 --export packing.txt  writes such a file, for other codes to run the same packing
 //   whole_step specimen.h5 --copies 10           ten copies in a row in one box
 //   whole_step specimen.h5 --times times.json    the figures as a list, one object for each repeat, for scripts
 #include "apps/common/command_line.hpp"
+#include "base/files/csv_table.hpp"
 #include "base/files/json.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/instruction_set.hpp"
@@ -38,6 +40,35 @@ struct Options
   int steps = 1500, warm_up = 500, repeats = 1, threads = 1;
 };
 
+/// What export_text() writes.
+Snapshot read_exported(const fs::path &path, const Law &law)
+{
+  const std::string text = read_text(path);
+  const std::vector<std::string_view> lines = split_lines(text);
+  Snapshot s;
+  s.law = law;
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    {
+      std::vector<double> v;
+      for (const std::string_view word : split_words(lines[l]))
+        if (word != "#" && word != "box")
+          v.push_back(finite_number(path, l + 1, word));
+      if (v.size() != (l == 0 ? 6 : 4))
+        reject(path, l + 1, "expected # box xlo xhi ylo yhi zlo zhi in the first line, x y z r in the others");
+      if (l == 0)
+        s.box = {Vec3(v[0], v[2], v[4]), Vec3(v[1], v[3], v[5])};
+      else
+        {
+          centres.emplace_back(v[0], v[1], v[2]);
+          radii.push_back(v[3]);
+        }
+    }
+  s.grains = make_packing(centres, radii, 2650);
+  return s;
+}
+
 Snapshot load(const Options &options)
 {
   LinearRolling law;
@@ -50,7 +81,7 @@ Snapshot load(const Options &options)
       state.law = law;
       return state;
     }
-  return sorted_along_curve(import_tables(path, law, 2650));
+  return sorted_along_curve(fs::is_directory(path) ? import_tables(path, law, 2650) : read_exported(path, law));
 }
 
 void export_text(const Snapshot &s, const std::string &path)

@@ -20,9 +20,11 @@ inside sh -c 'apt-get update -q && apt-get install -q -y --no-install-recommends
 start=$SECONDS
 inside sh -c 'cd /root && python3 /packages/drained.py'
 echo "drained test run and drawn: $((SECONDS - start)) s"
-for program in isostat element_test soil_column specimen_library micromechanics; do
+for program in isostat element_test soil_column micromechanics void_ratio_limits biaxial; do
   inside "$program" --version
   [[ -s $root/usr/share/man/man1/$program.1.gz || -n "${NO_MANUALS:-}" ]]
 done
+inside sh -c 'cd /root && isostat library rve_library.toml -q -o library.h5 --set grading.grains=300 \
+  --set grading.cloud_edge="3.107 mm" --set contact.young="1 GPa" && isostat resistance --help >/dev/null'
 inside sh -c 'cd /root && cmake -S /usr/share/doc/isostat/examples -B examples -DCMAKE_BUILD_TYPE=Release >cmake.log &&
   cmake --build examples >>cmake.log && ls examples'

@@ -9,7 +9,7 @@ results=results/demo
 scripts/setup.sh
 cmake --preset release
 # All programs: the commands that the README names next are there, too.
-cmake --build --preset release --parallel "$(nproc)" --target element_test specimen_library soil_column isostat \
+cmake --build --preset release --parallel "$(nproc)" --target element_test soil_column isostat \
   micromechanics rve_replay void_ratio_limits biaxial
 build/release/bin/element_test apps/scenes/quick_cyclic_liquefies.toml --output "$results" --overwrite
 
@@ -22,7 +22,7 @@ for figure in fig_stress_path fig_redundancy fig_contact_fractions fig_fabric; d
 done
 
 # Specimens of 300 grains, then the column that is made of them; the scene looks for them in results/.
-build/release/bin/specimen_library apps/scenes/rve_library.toml --output results/quick_library.h5 --append \
+build/release/bin/isostat library apps/scenes/rve_library.toml --output results/quick_library.h5 --append \
   --pressures "20 kPa,100 kPa" --set contact.young="1 GPa" --set grading.grains=300 --set grading.cloud_edge="3.107 mm"
 build/release/bin/soil_column apps/scenes/column/quick_grains_10m.toml --output results/demo_column --overwrite
 

@@ -4,7 +4,7 @@
 # (tests/fuzz/*.cpp). What it has learnt stays in build/fuzz/corpus, and the next call goes on from there; what breaks a
 # target is left in build/fuzz/found. A found input belongs, with a word on what it was, into tests/fuzz/corpus/TARGET.
 #
-#   scripts/fuzz.sh HOURS [TARGET...]    scripts/fuzz.sh 0.1; scripts/fuzz.sh 8 scene packing
+#   scripts/fuzz.sh HOURS [TARGET...]    scripts/fuzz.sh 0.1; scripts/fuzz.sh 8 scene plan
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -16,7 +16,7 @@ packages=(
   libeigen3-dev libhdf5-openmpi-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev librandom123-dev
   libpugixml-dev libboost-dev libgtest-dev libgmock-dev libbenchmark-dev zlib1g-dev
   libdeal.ii-dev libpetsc-real-dev openmpi-bin
-  python3 python3-matplotlib python3-numpy python3-h5py python3-scipy python3-nlopt
+  python3 python3-matplotlib python3-numpy python3-h5py python3-scipy python3-nlopt python3-mpi4py python3-distributed
   python3-dev pybind11-dev python3-pip python3-setuptools python3-wheel
 )
 clang=19

@@ -90,7 +90,6 @@ INNER = {
         "deposit": {"common"},
         "element_test": {"common"},
         "micromechanics": {"common"},
-        "specimen_library": {"common"},
         "void_ratio_limits": {"common"},
         "soil_column": {"common", "deposit"},
         "rve_replay": {"common", "deposit"},

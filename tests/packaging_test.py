@@ -4,11 +4,14 @@
 import ast
 import pathlib
 import re
+import subprocess
 import sys
+import tomllib
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PACKAGING = ROOT / "packaging"
+BIN = pathlib.Path(sys.argv[1]).resolve()
 # what CMake looks for in base, dem, fem, coupling, apps: names in Spack and conda-forge (none: not part of that recipe)
 NAMES = {
     "Boost": ("boost", "libboost-headers"), "CLI11": ("cli11", "cli11"), "deal.II": ("dealii", None),
@@ -65,8 +68,33 @@ class Recipes(unittest.TestCase):
         text = (PACKAGING / "Containerfile").read_text(encoding="utf-8")
         for part in ("FROM debian:12", "scripts/setup.sh", "cmake --preset release", "cmake --install"):
             self.assertIn(part, text)
-        for python in ("python3-numpy", "python3-matplotlib", "python3-h5py", "python3-scipy", "python3-nlopt"):
-            self.assertIn(python, text)
+        setup = (ROOT / "scripts/setup.sh").read_text(encoding="utf-8")
+        debian = (PACKAGING / "CMakeLists.txt").read_text(encoding="utf-8")
+        for name in ("numpy", "matplotlib", "h5py", "scipy", "nlopt", "mpi4py", "distributed"):
+            for part in (text, setup, debian):
+                self.assertIn(f"python3-{name}", part)
+
+    def test_the_command_is_in_every_package(self):
+        """And nothing is named that is not built."""
+        project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+        self.assertEqual(project["project"]["scripts"], {"isostat": "isostat.__main__:main"})
+        check = (PACKAGING / "check.sh").read_text(encoding="utf-8")
+        named = re.search(r"for program in (.*); do", check)[1].split()
+        built = re.findall(r"isostat_app\((\w+)", (ROOT / "apps/CMakeLists.txt").read_text(encoding="utf-8"))
+        self.assertLessEqual(set(named), {*built, "isostat"})
+        completed = re.search(r"complete -F _isostat ((?:.*\\\n)*.*)",
+                              (PACKAGING / "completion.bash").read_text(encoding="utf-8"))[1].replace("\\", "").split()
+        self.assertEqual(set(completed), {*built, "isostat"})
+
+    def test_completion(self):
+        """Of commands of isostat, and of the options of each."""
+        for words, expected in ((("isostat", "lib"), "library"), (("isostat", "library", "--"), "--pressures"),
+                                (("element_test", "--"), "--resume")):
+            words = (str(BIN / words[0]), *words[1:])
+            call = (f"source {PACKAGING / 'completion.bash'}; COMP_WORDS=({' '.join(words)}); "
+                    f"COMP_CWORD={len(words) - 1}; _isostat {words[0]}; echo ${{COMPREPLY[@]}}")
+            done = subprocess.run(["bash", "-c", call], capture_output=True, text=True, check=False)
+            self.assertIn(expected, done.stdout.split(), done.stderr)
 
 
 if __name__ == "__main__":

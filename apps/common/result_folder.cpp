@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/result_folder.hpp"
 
-#include "apps/common/child_process.hpp"
 #include "apps/common/interrupt.hpp"
+#include "apps/common/run_program.hpp"
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
 #include "base/files/replace_file.hpp"

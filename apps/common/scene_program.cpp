@@ -85,8 +85,6 @@ int SceneProgram::parse_and_run(int argc, char **argv) const
   options.threads = threads;
   options.command_line = command_text(argc, argv);
   add_options(line, options, *this);
-  if (more_options)
-    more_options(line);
   bool ready = false; // not after --help
   const int code = run_command(line, argc, argv, [&] { ready = print_something(*this, options); });
   return ready ? guard([&] { run(options); }) : code;

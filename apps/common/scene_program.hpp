@@ -49,7 +49,6 @@ struct SceneProgram
   std::string (*resolved)(const std::string &scene, const std::vector<std::string> &overrides);
   void (*run)(const SceneOptions &options);
   int (*guard)(const std::function<void()> &program) = guarded; ///< runs it; not called for what only prints
-  void (*more_options)(CLI::App &line) = nullptr;               ///< of this program alone
 
   /// From the command line to the exit code.
   int main(int argc, char **argv) const;

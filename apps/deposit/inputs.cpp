@@ -8,11 +8,10 @@ namespace isostat
 namespace
 {
 /// Who needs the seeds: the keys, with their values.
-std::string needed_by(const ColumnScene &scene, std::size_t k, std::size_t members)
+std::string needed_by(const ColumnScene &scene, std::size_t k)
 {
   const SpecimenRequest &request = scene.layers[k].grains;
-  std::string text = members > 1 && request.mixed == 1 ? fmt::format("--ensemble {}: ", members) : "";
-  text += fmt::format("layer.{}.realisation = {}", k, request.realisation);
+  const std::string text = fmt::format("layer.{}.realisation = {}", k, request.realisation);
   if (request.mixed > 1)
     return text + fmt::format(", layer.{}.mixed_realisations = {}", k, request.mixed);
   return text + (scene.grains.realisations > 1 ? fmt::format(", grains.realisations = {}", scene.grains.realisations)
@@ -20,12 +19,12 @@ std::string needed_by(const ColumnScene &scene, std::size_t k, std::size_t membe
 }
 } // namespace
 
-void check_libraries(const ColumnScene &scene, std::size_t members)
+void check_libraries(const ColumnScene &scene)
 {
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     if (const SpecimenRequest &request = scene.layers[k].grains; scene.layers[k].material == LayerMaterial::grains)
       check_seeds(request.library.empty() ? scene.grains.library : request.library, request,
-                  request.n_seeds(members * scene.grains.realisations), needed_by(scene, k, members));
+                  request.n_seeds(scene.grains.realisations), needed_by(scene, k));
 }
 
 void check_inputs(const ColumnScene &scene)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the bands of an ensemble of soil columns from what `soil_column --ensemble` left.
+"""Draws the bands of an ensemble of soil columns from what `isostat ensemble` left.
 
     python3 -m figures column_ensemble RESULTS
 

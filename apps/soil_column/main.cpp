@@ -11,42 +11,25 @@
 //   soil_column apps/scenes/column/uniform_layer.toml
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
-//   soil_column apps/scenes/column/quick_ensemble.toml --ensemble 8 --jobs 2     as often with other packings: bands
+//   isostat ensemble apps/scenes/column/quick_ensemble.toml -n 8 -j 2            as often with other packings: bands
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
-#include "apps/soil_column/ensemble.hpp"
 #include "apps/soil_column/run.hpp"
-#include "base/error.hpp"
 
 namespace
 {
 using namespace isostat;
 
-EnsemblePlan ensemble; ///< as the command line says
-
-void check_share()
-{
-  if (!ensemble.asked() && (ensemble.share.helper || ensemble.share.jobs > 1))
-    throw InputError("--jobs and --helper are of an ensemble. Give --ensemble or --records, or leave them out; ranks "
-                     "and --threads share the packings of one run.");
-}
-
-/// For --validate: the scene with every key, and what members of an ensemble there are. Libraries and records are read.
+/// For --validate: the scene with every key. Libraries and records are read.
 std::string validated(const std::string &file, const std::vector<std::string> &overrides)
 {
-  check_share();
   const ColumnScene scene = read_column_scene(file, overrides);
-  if (ensemble.asked())
-    return validated_ensemble(scene, ensemble);
   check_inputs(scene);
   return to_toml(scene);
 }
 
 void run_scene(const SceneOptions &options)
 {
-  check_share();
-  if (ensemble.asked())
-    return run_ensemble(options, ensemble);
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
     {
@@ -74,11 +57,7 @@ constexpr SceneProgram soil_column{
     .manual = column_scene_manual,
     .resolved = validated,
     .run = run_scene,
-    .guard =
-        [](const std::function<void()> &program) {
-          return ensemble.asked() ? guarded(program) : guarded_on_ranks(program); // the members are what MPI is for
-        },
-    .more_options = [](CLI::App &line) { ensemble.add_options(line); }};
+    .guard = guarded_on_ranks};
 } // namespace
 
 int main(int argc, char **argv) { return soil_column.main(argc, argv); }

@@ -40,8 +40,8 @@ bool parse(std::string_view field, double &value);
 /// The finite number that a field spells out.   @throws InputError  that begins with file:line
 double finite_number(const std::filesystem::path &file, std::size_t line, std::string_view field);
 
-/// Whether a number of a file counts something: whole, from 0, below `end`.   tested: tests/dem/io/lammps_test.cpp,
-/// tests/apps/soil_column_resume_test.py
+/// Whether a number of a file counts something: whole, from 0, below `end`.
+/// tested: tests/apps/soil_column_resume_test.py
 bool is_count(double value, double end = 0x1p32);
 
 /// Chosen columns of a comma separated table, as numbers. The first line of the file names the columns.

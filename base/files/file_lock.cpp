@@ -19,14 +19,12 @@ FileLock::~FileLock()
     close(file_);
 }
 
-FileLock FileLock::attempt(const std::filesystem::path &file, MissingFile missing)
+FileLock FileLock::attempt(const std::filesystem::path &file)
 {
-  const int flags = missing == MissingFile::create ? O_CREAT : 0;
-  FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0644));
-  const bool is_missing = errno == ENOENT || errno == ENOTDIR || errno == ESTALE; // ESTALE: on another machine
-  if (!lock && (missing == MissingFile::create || !is_missing))
+  FileLock lock(open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_CREAT, 0644));
+  if (!lock)
     fail(file, "opened for writing", std::strerror(errno));
-  if (!lock || flock(lock.file_, LOCK_EX | LOCK_NB) == 0)
+  if (flock(lock.file_, LOCK_EX | LOCK_NB) == 0)
     return lock;
   if (errno != EWOULDBLOCK)
     throw NoLocks(fmt::format("{}: cannot be locked: {}. Work on a file system that has locks (flock).", file.string(),
@@ -41,10 +39,5 @@ bool within_patience(const std::function<bool()> &condition)
   for (int k = 0; k < patience && !met; ++k, met = condition())
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   return met;
-}
-
-bool is_unlocked(const std::filesystem::path &file)
-{
-  return static_cast<bool>(FileLock::attempt(file, FileLock::MissingFile::no_lock));
 }
 } // namespace isostat

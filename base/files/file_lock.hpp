@@ -21,12 +21,6 @@ public:
 class FileLock
 {
 public:
-  enum class MissingFile
-  {
-    create,
-    no_lock
-  };
-
   FileLock() = default;
   FileLock(FileLock &&other) noexcept : file_(std::exchange(other.file_, -1)) {}
   FileLock &operator=(FileLock &&other) noexcept
@@ -36,14 +30,12 @@ public:
   }
   ~FileLock();
 
-  /// The lock, or none if another holder has it, or (no_lock) the file is not there. Children that become another
-  /// program do not inherit it.   @throws RunFailure  the file cannot be opened for writing, or made (create)
+  /// The lock, or none if another holder has it; a file that is not there is made. Children that become another
+  /// program do not inherit it.   @throws RunFailure  the file cannot be opened for writing, or made
   /// @throws NoLocks  nobody can lock it
-  static FileLock attempt(const std::filesystem::path &file, MissingFile missing = MissingFile::create);
+  static FileLock attempt(const std::filesystem::path &file);
 
   explicit operator bool() const { return file_ >= 0; }
-  /// Of the open file: who keeps it open, keeps the lock.
-  int descriptor() const { return file_; }
 
 private:
   explicit FileLock(int file) : file_(file) {}
@@ -52,7 +44,4 @@ private:
 
 /// Whether the condition is met within five seconds: what dying processes still hold becomes free.
 bool within_patience(const std::function<bool()> &condition);
-
-/// Whether the file is there and nobody has its lock.   @throws RunFailure  it is there and cannot be opened
-bool is_unlocked(const std::filesystem::path &file);
 } // namespace isostat

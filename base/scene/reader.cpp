@@ -195,7 +195,7 @@ std::string read_scene_text(const std::string &path)
 }
 
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
-                       const std::string &file, bool or_folder)
+                       const std::string &file)
 {
   namespace fs = std::filesystem;
   if (file.empty())
@@ -204,7 +204,7 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
   const auto absolute = [&](const fs::path &path) { return fs::absolute(path, ignored).lexically_normal(); };
   const fs::path beside_scene = absolute(fs::path(scene_path).parent_path() / file), here = absolute(file);
   for (const fs::path &path : {beside_scene, here})
-    if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored)))
+    if (fs::is_regular_file(path, ignored))
       return path.string();
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_directory(path, ignored))

@@ -12,7 +12,7 @@ std::string read_scene_text(const std::string &path);
 /// from the working directory.
 /// @throws InputError  tested: tests/apps/deposit/scene_error_test.cpp
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
-                       const std::string &file, bool or_folder = false);
+                       const std::string &file);
 
 /// Where a run goes whose scene does not say it: results/<scene file name without ending>.
 std::string results_folder(const std::string &scene_path);

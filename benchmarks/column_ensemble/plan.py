@@ -37,7 +37,7 @@ class Run:
 
     @property
     def settings(self):
-        """Those of `soil_column --ensemble`: a member has other seeds, or another lot of the same ones."""
+        """Those of `isostat ensemble`: a member has other seeds, or another lot of the same ones."""
         keys = {"layer.0.cells": self.points // 2, "grains.realisations": self.realisations,
                 "analysis.viscosity": f"{self.viscosity:g} ms"}
         if self.mixed:

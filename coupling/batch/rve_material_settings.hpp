@@ -13,7 +13,7 @@ namespace isostat
 /// tested: tests/coupling/batch/rve_material_test.cpp
 struct RveMaterialSettings
 {
-  std::string library; ///< specimens of the sand, made by the program specimen_library; points may have others
+  std::string library; ///< specimens of the sand, made by isostat library; points may have others
   std::string cache;   ///< in-situ states, kept for the next start; empty: none are kept
   InSituSettings in_situ;
   MotionSpec motion = controlled_motion();

@@ -40,7 +40,7 @@ void go(Rve &rve, const MixedIncrement &step, const Mat3 &from, const Mat3 &targ
     throw RunFailure(fmt::format(
         "{}: not reached from a specimen at {}; it came to {} ({}). K0 or the slope may be beyond what the packing can "
         "carry, or "
-        "the stress too far from the library's: add specimens at a nearer stress with specimen_library.",
+        "the stress too far from the library's: add specimens at a nearer stress with isostat library.",
         described(target), described(from), described(response.stress), response.reason));
 }
 

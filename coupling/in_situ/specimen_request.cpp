@@ -2,7 +2,7 @@
 #include "coupling/in_situ/specimen_request.hpp"
 
 #include "base/error.hpp"
-#include "dem/io/packing_files.hpp"
+#include "dem/io/stored_packing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
   seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
   if (request.realisation >= seeds.size())
     throw InputError(fmt::format(
-        "the library has {} realisations {}, the soil needs {}. Add some with specimen_library --append, or in Python "
+        "the library has {} realisations {}, the soil needs {}. Add some with isostat library --append, or in Python "
         "with isostat.write_library(). It has:\n{}",
         seeds.size(), any ? "" : fmt::format("of D_r within {:g} of {:g}", density_reach, *request.relative_density),
         request.realisation + 1, library_table(entries, lines_in_message)));

@@ -14,7 +14,7 @@ constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
 // clang-format off
 constexpr Key packings[] = {
   {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
-   .text = "Specimens, made by the program `specimen_library`; counts from the folder of the scene file or else from the "
+   .text = "Specimens, made by `isostat library`; counts from the folder of the scene file or else from the "
            "working directory. Needed by soil of grains.",
    .field = [](RveMaterialSettings &s) -> Field { return &s.library; }},
   {.path = "cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
@@ -81,6 +81,6 @@ void check_packings(const SceneDocument &document, const std::string &section, c
 {
   if (packings.library.empty())
     document.refuse(section + ".library", "is missing; soil of grains is made of its specimens. Give library = "
-                                          "\"library.h5\", made by specimen_library.");
+                                          "\"library.h5\", made by isostat library.");
 }
 } // namespace isostat

@@ -19,7 +19,7 @@ constexpr std::size_t most_in_message = 40;
 
 void check_header(const hdf5::Group &root)
 {
-  expect_specimens(root, library_format, library_schema_version, "a library made by specimen_library");
+  expect_specimens(root, library_format, library_schema_version, "a library made by isostat library");
 }
 
 std::vector<LibraryEntry> entries_of(const hdf5::Group &root)

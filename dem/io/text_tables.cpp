@@ -3,8 +3,6 @@
 
 #include "base/error.hpp"
 #include "base/files/csv_table.hpp"
-#include "dem/io/sphere_table.hpp"
-#include "dem/io/sphere_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,6 +44,20 @@ RigidBox read_box(const fs::path &path)
     throw InputError(fmt::format("{}: edges {} x {} x {} m; expected pos of the + walls above that of the - walls",
                                  path.string(), box.edges().x(), box.edges().y(), box.edges().z()));
   return box;
+}
+
+/// What is wrong with a sphere, as text; empty if nothing.
+std::string sphere_fault(const Vec3 &centre, double radius)
+{
+  constexpr double smallest = 1e-9, largest = 1e6, farthest = 1e9; // m
+  if (!(radius >= smallest && radius <= largest))
+    return fmt::format("radius r = {} m; expected {} to {} (m)", radius, smallest, largest);
+  for (int k = 0; k < 3; ++k)
+    if (!(std::abs(centre[k]) <= farthest && centre[k] - radius < centre[k] && centre[k] < centre[k] + radius))
+      return fmt::format("centre {} = {} m; expected a number within {} (m), near enough to 0 that the radius is not "
+                         "lost in its rounding",
+                         "xyz"[k], centre[k], farthest);
+  return "";
 }
 
 void check_inside(const fs::path &path, std::size_t line, const Vec3 &centre, const RigidBox &box)
@@ -161,25 +173,18 @@ void read_contacts(const fs::path &path, const IndexOfId &index_of_id, Snapshot 
     throw InputError(fmt::format("{}: a contact is listed twice; expected each once", path.string()));
 }
 
-void read_tables(const fs::path &folder, double density, Snapshot &snapshot)
+} // namespace
+
+Snapshot import_tables(const fs::path &folder, const Law &law, double density)
 {
+  if (!(density > 0 && std::isfinite(density)))
+    throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
+  Snapshot snapshot;
+  snapshot.law = law;
   snapshot.box = read_box(find_table(folder, "walls"));
   IndexOfId index_of_id;
   snapshot.grains = read_particles(find_table(folder, "particles"), snapshot.box, density, index_of_id);
   read_contacts(find_table(folder, "contacts"), index_of_id, snapshot);
-}
-} // namespace
-
-Snapshot import_tables(const fs::path &path, const Law &law, double density)
-{
-  if (!(density > 0 && std::isfinite(density)))
-    throw InputError(fmt::format("grain density = {} kg/m3; expected > 0, such as 2650 for quartz", density));
-  std::error_code ignored;
-  if (!fs::is_directory(path, ignored))
-    return read_sphere_text(path, {law, density}).state;
-  Snapshot snapshot;
-  snapshot.law = law;
-  read_tables(path, density, snapshot);
   return snapshot;
 }
 } // namespace isostat

@@ -6,8 +6,8 @@
 
 namespace isostat
 {
-/// A packing from text. A folder holds one with contact history, in three tables of comma separated columns named in
-/// the first line, each plain or gzipped (.csv or .csv.gz):
+/// A packing with contact history from a folder of three tables of comma separated columns named in the first line,
+/// each plain or gzipped (.csv or .csv.gz):
 ///
 ///     comp_particles_step0   id,x,y,z,r,vx,vy,vz,wx,wy,wz
 ///     comp_contacts_step0    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2
@@ -20,12 +20,8 @@ namespace isostat
 /// Such tables hold the state *after* a move: forces and history belong to the positions one step before those in the
 /// table. A run starts from them with a force evaluation at the new positions. Time, step and strain are 0.
 /// Stiffnesses follow from `law`; the columns are not compared with it.
-///
-/// A file holds resting spheres without contacts as lines `x y z r` (m; separated by blanks, tabs or commas), plain or
-/// gzipped. Lines that begin with # are comments; the first other line may be a header of words. The box is that of a
-/// comment `# box xlo xhi ylo yhi zlo zhi`, otherwise the bounding box of the spheres.
 /// @param law  friction and stiffness are the caller's   @param density  grain density, kg/m3
 /// Every mistake is an InputError that begins with file:line.
 /// tested: tests/dem/io/text_tables_test.cpp
-Snapshot import_tables(const std::filesystem::path &path, const Law &law, double density);
+Snapshot import_tables(const std::filesystem::path &folder, const Law &law, double density);
 } // namespace isostat

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/io/sphere_text.hpp"
 #include "dem/state/snapshot.hpp"
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace isostat
@@ -21,13 +19,6 @@ std::vector<double> grain_pressure(const Snapshot &snapshot);
 /// RunFailure.
 /// tested: tests/dem/io/vtp_test.cpp
 void write_grains_vtp(const std::filesystem::path &path, const Snapshot &snapshot);
-
-/// Grains from such a file, or from one of another program with points, point data `radius` (m) and, if they are there,
-/// id, velocity, spin, density, mass and the field data; ascii, or base64 without compression, in one piece. Brings
-/// back every bit of what is named above; contacts, law and density are not in a file of Isostat.
-/// @throws InputError
-/// tested: tests/dem/io/packing_files_test.cpp
-ForeignPacking read_grains_vtp(const std::filesystem::path &path, const ReadOptions &options);
 
 /// Writes the force chains: one line between the centres of each touching pair, with point data normal_force and
 /// shear_force (N, magnitudes), sliding and rolling (0 or 1), the same at both ends, so that the filter "Tube" can vary

@@ -5,13 +5,12 @@
 #include "base/files/hash.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/tell.hpp"
-#include "dem/io/packing_files.hpp"
+#include "dem/io/stored_packing.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/given_packing.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/packing_check.hpp"
 #include "dem/prepare/relative_density.hpp"
-#include "dem/prepare/space_filling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,8 +125,6 @@ Specimen prepare(const Scene &scene, RunObserver &observer, int threads)
                              cloud.packing.n_grains(), 1e3 * cloud.packing.d50(), cloud.upscaling,
                              uniformity_coefficient(grading_curve(scene.grading)),
                              cloud.packing.max_radius() / cloud.packing.min_radius()));
-  if (!spec.has_limits())
-    warn("D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   PreparedDensity prepared;
   Specimen specimen;
   if (spec.preparation_friction)
@@ -158,34 +155,13 @@ void note_differences(const Scene &scene, const Specimen &given, const std::stri
     warn(warning);
 }
 
-Specimen import(const Scene &scene, RunObserver &observer)
+Specimen import(const Scene &scene)
 {
   const SpecimenPlace place = specimen_place(scene.specimen.file);
-  const std::filesystem::path path = place.path;
-  if (path.extension() == ".h5")
-    {
-      Specimen specimen = read_stored_packing(path, place.entry);
-      note_differences(scene, specimen, scene.specimen.file);
-      specimen.state.law = scene.contact;
-      describe(scene, specimen);
-      return specimen;
-    }
-  ForeignPacking read = read_foreign_packing(path, {scene.contact, scene.grading.density, 1, scene.specimen.domain});
-  const auto remedy = [&path](const std::string &unit) {
-    return fmt::format("convert it once: isostat convert {} {} --length-unit {}, and give that file", path.string(),
-                       std::filesystem::path(path).replace_extension(".h5").filename().string(), unit);
-  };
-  for (const std::string &warning : check_packing(read.state, path.string(), remedy))
-    read.notes.push_back(warning);
-  for (const std::string &note : read.notes)
-    warn(fmt::format("{}: {}", path.string(), note));
-  Specimen specimen;
-  specimen.state = sorted_along_curve(read.state);
+  Specimen specimen = read_stored_packing(place.path, place.entry);
   note_differences(scene, specimen, scene.specimen.file);
-  specimen.provenance["title"] = scene.title;
-  specimen.provenance["recipe"] = "imported from " + path.string();
+  specimen.state.law = scene.contact;
   describe(scene, specimen);
-  observer.event("imported:\n" + figures_text(packing_figures(specimen.state), specimen.state));
   return specimen;
 }
 
@@ -218,6 +194,8 @@ void note_void_ratio(const Scene &scene, const Specimen &specimen)
 /// The default limits of the void ratio belong to the grains of the paper.
 void note_limits(const Scene &scene)
 {
+  if (!scene.specimen.has_limits())
+    warn("D_r is unknown: e_min and e_max of this grading are not given (void_ratio_limits finds them)");
   if (const std::string other = has_default_limits(scene.specimen) ? foreign_to_default_limits(scene) : "";
       !other.empty())
     warn(
@@ -277,6 +255,11 @@ std::string specimen_recipe(const Scene &scene)
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
 }
 
+std::filesystem::path cached_specimen(const Scene &scene, const std::filesystem::path &cache)
+{
+  return cache / fmt::format("specimen-{:016x}.h5", Hash().text(specimen_recipe(scene)).value());
+}
+
 Specimen given_specimen(const Scene &scene, Specimen given)
 {
   note_differences(scene, given, "the specimen that is given");
@@ -291,12 +274,11 @@ Specimen given_specimen(const Scene &scene, Specimen given)
 Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache, RunObserver &observer, int threads)
 {
   if (!scene.specimen.file.empty())
-    return import(scene, observer);
+    return import(scene);
   note_friction(scene);
   note_limits(scene);
-  const std::string recipe = specimen_recipe(scene);
-  const std::filesystem::path path = cache / fmt::format("specimen-{:016x}.h5", Hash().text(recipe).value());
-  if (std::optional<Specimen> cached = from_cache(path, recipe, observer))
+  const std::filesystem::path path = cached_specimen(scene, cache);
+  if (std::optional<Specimen> cached = from_cache(path, specimen_recipe(scene), observer))
     {
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;

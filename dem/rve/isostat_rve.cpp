@@ -3,7 +3,7 @@
 #include "dem/rve/isostat_rve.h"
 
 #include "base/error.hpp"
-#include "dem/io/packing_files.hpp"
+#include "dem/io/stored_packing.hpp"
 #include "dem/rve/rve.hpp"
 #include "dem/scene/scene.hpp"
 

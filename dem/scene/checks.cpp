@@ -49,6 +49,12 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
   check_limits(document, specimen);
   if (document.find("specimen.file") && specimen.file.empty())
     document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
+  if (!specimen.file.empty() && !specimen_place(specimen.file).path.ends_with(".h5"))
+    document.refuse(
+        "specimen.file",
+        fmt::format("must be a file of Isostat (.h5), or an entry of a library (\"library.h5#s0007\"). Convert a "
+                    "packing of another program once: isostat convert {} packing.h5",
+                    specimen.file));
 }
 
 void check_contact(const SceneDocument &document, const Scene &scene)
@@ -91,7 +97,7 @@ std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
 }
 
 /// Refuses loads that do not hold q = 0 and tau = 0, where these are known before the run.
-void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i, LeftOutLoads left_out)
+void check_static_bias(const SceneDocument &document, const Scene &scene, std::size_t i)
 {
   const auto *shear = as<ShearStage>(scene.stages[i]);
   const std::optional<double> pressure = shear ? isotropic_before(scene, i) : std::nullopt;
@@ -101,16 +107,13 @@ void check_static_bias(const SceneDocument &document, const Scene &scene, std::s
   if (why.empty())
     return;
   const char *turn = shear->required_loads(*pressure)->low > 0 ? "turn.low" : "turn.high";
-  for (const auto &[amplitude, blamed] :
-       {std::pair{"deviator_amplitude", "deviator_average"}, {"stress_ratio", "static_stress_ratio"}, {turn, turn}})
-    if (const std::string path = fmt::format("stage.{}.{}", i, blamed);
-        document.find(path) &&
-        (left_out == LeftOutLoads::default_ones || document.find(fmt::format("stage.{}.{}", i, amplitude))))
+  for (const char *blamed : {"deviator_average", "static_stress_ratio", turn})
+    if (const std::string path = fmt::format("stage.{}.{}", i, blamed); document.find(path))
       document.refuse(
           path, fmt::format("cannot be held after isotropic consolidation to {:g} kPa: {}", *pressure / 1e3, why));
 }
 
-void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoads left_out)
+void check_stages(const SceneDocument &document, const Scene &scene)
 {
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     {
@@ -123,7 +126,7 @@ void check_stages(const SceneDocument &document, const Scene &scene, LeftOutLoad
                         fmt::format("there are {} stages before this one. Give as many or fewer.", i));
       if (behaviour(scene.stages[i]).needs_cell())
         need_cell(document, scene.specimen, kind, "change the kind");
-      check_static_bias(document, scene, i, left_out);
+      check_static_bias(document, scene, i);
     }
 }
 
@@ -151,13 +154,13 @@ void check_drive(const SceneDocument &document, const Scene &scene)
 }
 } // namespace
 
-void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out)
+void check_scene(const SceneDocument &document, Scene &scene)
 {
   check_groups(document, &scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);
   check_drive(document, scene);
-  check_stages(document, scene, left_out);
+  check_stages(document, scene);
 }
 } // namespace isostat

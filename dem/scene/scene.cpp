@@ -22,7 +22,7 @@ void forget_default_limits(const SceneDocument &document, SpecimenSpec &specimen
     specimen.e_max.reset();
 }
 
-Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
+Scene checked_scene(const SceneDocument &document)
 {
   Scene scene;
   fill_scene(document, &scene);
@@ -37,7 +37,7 @@ Scene checked_scene(const SceneDocument &document, LeftOutLoads left_out)
     scene.grading.curve.clear();
   if (document.find("grading.table") || document.find("specimen.file"))
     forget_default_limits(document, scene.specimen);
-  check_scene(document, scene, left_out);
+  check_scene(document, scene);
   return scene;
 }
 } // namespace
@@ -57,16 +57,16 @@ SpecimenPlace specimen_place(const std::string &file)
 
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)
 {
-  return checked_scene(SceneDocument(scene_schema(), text, name, overrides), LeftOutLoads::default_ones);
+  return checked_scene(SceneDocument(scene_schema(), text, name, overrides));
 }
 
-Scene read_scene(const std::string &path, const std::vector<std::string> &overrides, LeftOutLoads left_out)
+Scene read_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
   const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
-  Scene scene = checked_scene(document, left_out);
+  Scene scene = checked_scene(document);
   if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
     scene.specimen.file =
-        found_file(document, "specimen.file", path, place.path, true) + (place.entry.empty() ? "" : "#" + place.entry);
+        found_file(document, "specimen.file", path, place.path) + (place.entry.empty() ? "" : "#" + place.entry);
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     if (auto *stage = as<Path>(scene.stages[i]); stage && !stage->file.empty())
       {

@@ -44,7 +44,7 @@ struct SpecimenSpec : ServoSpec
   std::string consolidation = "isotropic"; ///< or "k0": vertical stress `pressure`, no lateral strain; cell only
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
-  std::string file;                           ///< a specimen (.h5), "library.h5#entry", or a folder of text tables
+  std::string file;                           ///< a specimen or snapshot (.h5), or "library.h5#entry"
   /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
   /// of one's own, and a packing from a file, have none unless they are given.
   std::optional<double> e_min = 0.568, e_max = 0.841;
@@ -61,7 +61,7 @@ inline constexpr const char *no_limits =
     "needs e_min and e_max of this grading; those of Karlsruhe fine sand hold for no other. Find them with "
     "void_ratio_limits and give specimen.e_min and specimen.e_max, or give void_ratio or preparation_friction instead.";
 
-/// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file or folder.
+/// What specimen.file points to: "library.h5#s0007" is an entry of a library, all else a file.
 struct SpecimenPlace
 {
   std::string path, entry; ///< no entry: empty
@@ -109,13 +109,6 @@ struct Scene
   bool operator==(const Scene &) const = default; ///< bit for bit, every field
 };
 
-/// Loads of a cyclic stage that a scene leaves out are the default ones, or a campaign gives them to each of its runs.
-enum class LeftOutLoads
-{
-  default_ones,
-  given_later
-};
-
 /// Reads and checks a scene file. Angles of friction become their tangents here and nowhere else; an output folder left
 /// out becomes results/<scene file name without ending>; a relative specimen.file becomes absolute.
 /// It counts from the folder of the scene file or else from the working directory (found_file()).
@@ -123,12 +116,10 @@ enum class LeftOutLoads
 ///        c is a TOML value, or else plain text (`specimen.pressure=200 kPa`, `=200kPa`). An override of one of several
 ///        keys that exclude each other (specimen.void_ratio, motion.strain_rate, grading.table ...) takes the place of
 ///        the one in the file; two such overrides are an error.
-/// @param left_out   a static bias is not held against loads that are given later
 /// @throws InputError with file:line (or `--set a.b`), value, allowed range and remedy for an unknown key, a wrong unit
 ///         or type, a value out of range, a missing required key, keys that exclude each other, a missing file
 /// tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
-Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {},
-                 LeftOutLoads left_out = LeftOutLoads::default_ones);
+Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
 /// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Does not touch the disk:
 /// specimen.file is not looked for, and an output folder left out stays empty.

@@ -129,8 +129,8 @@ constexpr Key specimen_keys[] = {
    .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out.",
    .field = [](Scene &s) -> Field { return &s.specimen.preparation_friction; }},
   {.path = "specimen.file", .kind = Kind::text, .presence = Presence::optional, .value = "specimens/dr64.h5",
-   .group = "preparation", .text = "A prepared specimen (.h5), one of a library of them (\"library.h5#s0007\"), or text tables; "
-   "counts from the folder of the scene file or else from the working directory.",
+   .group = "preparation", .text = "A prepared specimen or a snapshot (.h5), or one of a library of specimens (\"library.h5#s0007\"); packings of "
+   "other programs: `isostat convert FILE packing.h5`. Counts from the folder of the scene file or else from the working directory.",
    .field = [](Scene &s) -> Field { return &s.specimen.file; }},
   {.path = "specimen.e_min", .value = "0.568", .range = positive,
    .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
@@ -226,7 +226,7 @@ A scene is one TOML file that says all about a run. This page is generated from 
 
 /// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
 /// controlled. Not writing them keeps the recipes of specimens that are in caches. A packing from a file has grains and
-/// a stress of its own, against which only what was written is held; only files of other programs may lack the density.
+/// a stress of its own, against which only what was written is held.
 bool is_implied(const Key &key, const void *scene)
 {
   const Scene &s = *static_cast<const Scene *>(scene);
@@ -234,8 +234,7 @@ bool is_implied(const Key &key, const void *scene)
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
          (path == "contact.law" && is_default(s.contact)) ||
          (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
-         (path.starts_with("grading.") && !s.specimen.file.empty() && !s.written.has(path) &&
-          (path != "grading.density" || specimen_place(s.specimen.file).path.ends_with(".h5"))) ||
+         (path.starts_with("grading.") && !s.specimen.file.empty() && !s.written.has(path)) ||
          (path == "specimen.pressure" && !takes_pressure(s) && !s.written.has(path) &&
           s.specimen.pressure == SpecimenSpec{}.pressure) ||
          (s.drive.on ? path == "motion.load_per_wave"

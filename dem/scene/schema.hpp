@@ -14,5 +14,5 @@ bool takes_pressure(const Scene &scene);
 
 /// Rules that bind several keys: those that exclude each other, limits in order, what needs the periodic cell.
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
-void check_scene(const SceneDocument &document, Scene &scene, LeftOutLoads left_out);
+void check_scene(const SceneDocument &document, Scene &scene);
 } // namespace isostat

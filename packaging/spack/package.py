@@ -6,7 +6,7 @@ Not tried with Spack itself: the build looks for the pkg-config modules `hdf5-op
 recipe writes files of these names that point to Spack's HDF5 and Open MPI."""
 import pathlib
 
-from spack.package import CMakePackage, depends_on, license, run_before, variant, version
+from spack.package import CMakePackage, depends_on, extends, license, run_before, variant, version
 
 
 class Isostat(CMakePackage):
@@ -37,7 +37,8 @@ class Isostat(CMakePackage):
     depends_on("petsc+mpi", when="+fem")
     depends_on("python@3.11:", type=("build", "link", "run"), when="+python")
     depends_on("py-pybind11@2.10:", type="build", when="+python")
-    for package in ("py-numpy", "py-matplotlib", "py-h5py", "py-scipy", "nlopt+python"):
+    extends("python", when="+python")
+    for package in ("py-numpy", "py-matplotlib", "py-h5py", "py-scipy", "py-mpi4py", "nlopt+python"):
         depends_on(package, type="run", when="+python")
 
     @run_before("cmake")
@@ -54,5 +55,10 @@ class Isostat(CMakePackage):
         env.prepend_path("PKG_CONFIG_PATH", str(pathlib.Path(self.stage.path) / "pkgconfig"))
 
     def cmake_args(self):
-        return [self.define_from_variant("ISOSTAT_FEM", "fem"), self.define_from_variant("ISOSTAT_PYTHON", "python"),
+        args = [self.define_from_variant("ISOSTAT_FEM", "fem"), self.define_from_variant("ISOSTAT_PYTHON", "python"),
                 self.define("ISOSTAT_TESTS", False), self.define("ISOSTAT_BENCHMARKS", False)]
+        if "+python" in self.spec:
+            python = self.spec["python"]
+            args += [self.define("Python_EXECUTABLE", python.command.path),
+                     self.define("ISOSTAT_PYTHON_FOLDER", f"lib/python{python.version.up_to(2)}/site-packages")]
+        return args

@@ -11,7 +11,7 @@ void bind_errors(py::module_ &module);
 void bind_scene(py::module_ &module);
 void bind_snapshot(py::module_ &module);
 void bind_measures(py::module_ &module);
-void bind_convert(py::module_ &module);
+void bind_packings(py::module_ &module);
 void bind_files(py::module_ &module);
 void bind_run(py::module_ &module);
 void bind_rve(py::module_ &module);

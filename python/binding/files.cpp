@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packings in and out.   tested: tests/python/snapshot_test.py
+// HDF5 files and ParaView files of packings.   tested: tests/python/snapshot_test.py, tests/python/library_test.py
 #include "base/error.hpp"
-#include "base/units.hpp"
-#include "dem/io/packing_files.hpp"
 #include "dem/io/snapshot_file.hpp"
 #include "dem/io/specimen_library.hpp"
-#include "dem/io/text_tables.hpp"
+#include "dem/io/stored_packing.hpp"
 #include "dem/io/vtp.hpp"
-#include "dem/prepare/convert.hpp"
-#include "dem/prepare/packing_check.hpp"
+#include "dem/prepare/relative_density.hpp"
 #include "dem/scene/scene.hpp"
 #include "python/binding/binding.hpp"
 #include "python/binding/given.hpp"
@@ -23,13 +20,7 @@ namespace
 using fs_path = std::filesystem::path;
 
 using Path = Given<fs_path, "path">;
-using LengthUnit = Given<std::string, "length_unit">;
-using Density = Given<double, "density">;
-using Domain = Given<std::string, "domain">;
-using Format = Given<std::string, "format">;
 using Overwrite = Given<bool, "overwrite">;
-using Anyway = Given<bool, "anyway">;
-using AnyLaw = Given<const Law *, "law">;
 
 /// As the command line does.
 void check_new(const fs_path &path, bool overwrite)
@@ -47,29 +38,6 @@ auto to_new_file(void (*write)(const fs_path &, const What &))
     check_new(path, overwrite);
     write(path, *what);
   };
-}
-
-/// Of a unit of length, m.   @throws InputError
-double scale_of(const std::string &unit)
-{
-  try
-    {
-      return parse_quantity("1 " + unit, Dimension::length).value;
-    }
-  catch (const InputError &error)
-    {
-      throw InputError(fmt::format("length_unit: {}", error.what()));
-    }
-}
-
-Specimen read_packing(const fs_path &path, const std::string &length_unit, double density, const std::string &domain,
-                      const Law &law, bool anyway)
-{
-  const double scale = scale_of(length_unit);
-  const CheckedPacking packing =
-      read_any_packing(path.string(), {{law, density, scale}, domain, anyway, density != ReadOptions{}.density});
-  warn_of(packing.notes);
-  return packing.specimen;
 }
 
 /// Adds what it does not say: figures, and a seed, which no other one has.   @return the names of the entries
@@ -120,6 +88,21 @@ std::map<std::string, std::map<std::string, double>> numbers_of_library(const Pa
   return entries;
 }
 
+/// For the command line: the table of a library, the recipes of its entries, and what to say of odd densities.
+py::tuple describe_library(const Path &path)
+{
+  const std::vector<LibraryEntry> entries = list_library(path.value);
+  std::vector<std::string> recipes, remarks;
+  for (const LibraryEntry &entry : entries)
+    {
+      recipes.push_back(entry.text("recipe"));
+      const double density = entry.number("relative_density");
+      if (const std::string remark = density_remark(density); !remark.empty())
+        remarks.push_back(fmt::format("{}: D_r = {:.3f}{}", entry.name, density, remark));
+    }
+  return py::make_tuple(library_table(entries), recipes, remarks);
+}
+
 /// Columns of history.h5 as arrays, with all their digits, and their units.   @throws InputError  damaged, or no history
 py::tuple read_series(const Path &path)
 {
@@ -136,55 +119,10 @@ py::tuple read_series(const Path &path)
     }
   return py::make_tuple(columns, units);
 }
-
-PackingFormat wanted_format(const fs_path &path, const std::string &format)
-{
-  return format.empty() ? format_of_file(path) : format_named(format);
-}
-
-void bind_packings(py::module_ &module)
-{
-  module.def(
-      "read_packing",
-      [](const Path &path, const LengthUnit &unit, Density density, const Domain &domain, AnyLaw law, Anyway anyway) {
-        return read_packing(path, unit, density, domain, *law, anyway);
-      },
-      py::arg("path"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0, py::arg("domain") = "",
-      py::arg("law") = Law(), py::arg("anyway") = false,
-      "A packing as a Specimen, whatever wrote it: HDF5 of Isostat, LAMMPS dump or data file (units si, atom_style\n"
-      "sphere), text of YADE, CSV, VTP. Refuses what cannot be meant (spheres in mm read as metres, deep overlaps,\n"
-      "spheres outside the box) unless `anyway`; what had to be assumed is a warning.\n\n"
-      "length_unit: of the file, \"mm\" ...; density: kg/m3, where the file does not say it; domain: "
-      "\"periodic-cell\"\n"
-      "where the file has a box that repeats itself.");
-  module.def(
-      "write_packing",
-      [](const Path &path, Given<const Specimen *, "specimen"> specimen, const Format &format, Overwrite overwrite) {
-        check_new(path, overwrite);
-        warn_of(write_packing(path, *specimen, wanted_format(path, format)));
-      },
-      py::arg("path"), py::arg("specimen"), py::kw_only(), py::arg("format") = "", py::arg("overwrite") = false,
-      "Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp; or by format: \"specimen\",\n"
-      "\"lammps-dump\", \"lammps-data\", \"yade\", \"csv\" or \"vtp\". What the format cannot hold is a warning. A "
-      "file that is\n"
-      "there is replaced only with `overwrite`.");
-  module.def(
-      "convert",
-      [](const Given<fs_path, "source"> &from, const Given<fs_path, "target"> &to, const LengthUnit &unit,
-         Density density, const Domain &domain, const Format &format, Anyway anyway, Overwrite overwrite) {
-        check_new(to, overwrite);
-        const PackingFormat wanted = wanted_format(to, format);
-        warn_of(write_packing(to, read_packing(from, unit, density, domain, Law(), anyway), wanted));
-      },
-      py::arg("source"), py::arg("target"), py::kw_only(), py::arg("length_unit") = "m", py::arg("density") = 2650.0,
-      py::arg("domain") = "", py::arg("format") = "", py::arg("anyway") = false, py::arg("overwrite") = false,
-      "What `isostat convert` does: read_packing, then write_packing.");
-}
 } // namespace
 
 void bind_files(py::module_ &module)
 {
-  bind_packings(module);
   py::class_<Specimen>(module, "Specimen", "A prepared packing with the story of how it was made.")
       .def(py::init([](Given<const Snapshot *, "snapshot"> state) {
              Specimen specimen{*state, {}, {}};
@@ -215,27 +153,15 @@ void bind_files(py::module_ &module)
       [](const Path &path, Given<std::vector<Specimen>, "specimens"> specimens, Overwrite overwrite,
          Given<bool, "append"> append) { return write_library(path, specimens.value, overwrite, append); },
       py::arg("path"), py::arg("specimens"), py::kw_only(), py::arg("overwrite") = false, py::arg("append") = false,
-      "Writes periodic specimens into one file, as the program specimen_library does: a column takes its packings\n"
+      "Writes periodic specimens into one file, as `isostat library` does: a column takes its packings\n"
       "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
       "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
+  module.def("_describe_library", &describe_library);
   module.def("read_series", &read_series, py::arg("path"),
              "Columns of a history.h5, with all their digits, and their units.");
-  module.def(
-      "import_tables",
-      [](const Path &path, AnyLaw law, Density density) {
-        const Snapshot read = import_tables(path, *law, density);
-        warn_of(check_packing(read, path.value.string(), [](const std::string &unit) {
-          return fmt::format("give {} to isostat.read_packing()",
-                             unit == "m" ? "anyway=True" : "length_unit=\"" + unit + "\"");
-        }));
-        return read;
-      },
-      py::arg("path"), py::arg("law") = Law(), py::arg("density") = 2650.0,
-      "A packing from text: a file of lines `x y z r` in m, or a folder with contact history (user guide). Refuses\n"
-      "what no packing of soil is, as read_packing() does.");
   module.def("write_vtp", to_new_file<"snapshot", Snapshot>(&write_grains_vtp), py::arg("path"), py::arg("snapshot"),
              py::kw_only(), py::arg("overwrite") = false,
              "Grains for ParaView. A file that is there is replaced only with `overwrite`.");

@@ -37,7 +37,7 @@ PYBIND11_MODULE(_core, module)
   python::bind_scene(module);
   python::bind_snapshot(module);
   python::bind_measures(module);
-  python::bind_convert(module);
+  python::bind_packings(module);
   python::bind_files(module);
   python::bind_run(module);
   python::bind_rve(module);

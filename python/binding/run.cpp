@@ -317,6 +317,7 @@ void bind_run(py::module_ &module)
                const py::gil_scoped_release free;
                return prepared(scene, cache, static_cast<int>(threads), quiet);
              });
+  module.def("_cached_specimen", &cached_specimen);
   py::class_<Result>(module, "Result")
       .def_readonly("finished", &Result::finished)
       .def_readonly("summary", &Result::summary)

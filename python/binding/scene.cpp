@@ -2,6 +2,7 @@
 // Scenes and contact laws.   tested: tests/python/scene_test.py
 #include "dem/scene/scene.hpp"
 #include "dem/contact/law_parameters.hpp"
+#include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
 
 namespace isostat::python
@@ -39,6 +40,8 @@ void bind_scene(py::module_ &module)
       .def_property_readonly(
           "folder", [](const Scene &scene) { return scene.output.folder; },
           "Where run() leaves results unless it is told: results/<name of the scene file>.")
+      .def_property_readonly("recipe", &specimen_recipe,
+                             "All that its prepared specimen depends on: what the cache and a library know it by.")
       .def_property_readonly("text", &to_toml, "The whole scene as TOML: every key with its value and unit.")
       .def(
           "__eq__", [](const Scene &one, const Scene &other) { return one == other; }, py::is_operator())

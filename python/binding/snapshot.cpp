@@ -6,14 +6,17 @@
 #include "python/binding/binding.hpp"
 #include "python/binding/given.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 
 namespace isostat::python
 {
 namespace
 {
 using Self = py::object; ///< the owner of the arrays
+using OptionalDoubles = std::optional<Doubles>;
 
 const Snapshot &of(const Self &self) { return self.cast<const Snapshot &>(); }
 
@@ -55,7 +58,7 @@ PeriodicCell periodic_cell(const Doubles &cell)
 }
 
 /// @throws InputError  not one of the two
-void set_domain(Snapshot &snapshot, const std::optional<Doubles> &box, const std::optional<Doubles> &cell)
+void set_domain(Snapshot &snapshot, const OptionalDoubles &box, const OptionalDoubles &cell)
 {
   if (box.has_value() == cell.has_value())
     throw InputError("give either box = [lower, upper] or cell, in m.");
@@ -90,9 +93,23 @@ void check_spheres(const Snapshot &snapshot, bool anyway)
     }
 }
 
+/// Vectors of the grains where there are any.   @throws InputError  not one for each, not finite
+std::vector<Vec3> motion(const OptionalDoubles &given, const char *name, std::size_t n)
+{
+  std::vector<Vec3> found = given ? points(*given, name) : std::vector<Vec3>();
+  if (given && (found.size() != n || !std::ranges::all_of(found, [](const Vec3 &v) { return v.allFinite(); })))
+    throw InputError(fmt::format("{}: must be finite, and as many as centres, of which there are {}.", name, n));
+  return found;
+}
+
+/// @tparam checked  by check_spheres(), which takes `anyway`
+template <bool checked>
 Snapshot from_spheres(const Given<Doubles, "centres"> &centres, const Given<std::vector<double>, "radii"> &given_radii,
-                      Given<double, "density"> density, const Given<std::optional<Doubles>, "box"> &box,
-                      const Given<std::optional<Doubles>, "cell"> &cell, const Given<const Law *, "law"> &law,
+                      Given<double, "density"> density, const Given<OptionalDoubles, "box"> &box,
+                      const Given<OptionalDoubles, "cell"> &cell,
+                      const Given<std::optional<std::vector<std::uint32_t>>, "ids"> &ids,
+                      const Given<OptionalDoubles, "velocities"> &velocities,
+                      const Given<OptionalDoubles, "spins"> &spins, const Given<const Law *, "law"> &law,
                       Given<bool, "anyway"> anyway)
 {
   const std::vector<Vec3> x = points(centres, "centres");
@@ -106,11 +123,24 @@ Snapshot from_spheres(const Given<Doubles, "centres"> &centres, const Given<std:
                        ": a radius must be positive and finite, in m, and a centre finite.");
   if (!(density > 0 && std::isfinite(density)))
     throw InputError("density: must be positive and finite, in kg/m3.");
+  const std::vector<Vec3> v = motion(velocities, "velocities", x.size()), w = motion(spins, "spins", x.size());
   Snapshot snapshot;
   snapshot.grains = make_packing(x, radii, density);
+  if (ids.value)
+    {
+      if (std::set<std::uint32_t>(ids.value->begin(), ids.value->end()).size() != x.size() ||
+          ids.value->size() != x.size())
+        throw InputError("ids: must be as many as centres, each once.");
+      snapshot.grains.id = *ids.value;
+    }
+  for (std::size_t i = 0; i < v.size(); ++i)
+    snapshot.grains.set_linear_velocity(i, v[i]);
+  for (std::size_t i = 0; i < w.size(); ++i)
+    snapshot.grains.set_angular_velocity(i, w[i]);
   snapshot.law = *law.value;
   set_domain(snapshot, box, cell);
-  check_spheres(snapshot, anyway);
+  if (checked)
+    check_spheres(snapshot, anyway);
   return snapshot;
 }
 
@@ -204,13 +234,17 @@ void bind_snapshot(py::module_ &module)
       "they keep it alive. SI; stress and strain tensors are tension positive, p' and q compression positive.");
   snapshot
       .def_static(
-          "from_spheres", &from_spheres, py::arg("centres"), py::arg("radii"), py::kw_only(),
+          "from_spheres", &from_spheres<true>, py::arg("centres"), py::arg("radii"), py::kw_only(),
           py::arg("density") = 2650.0, py::arg("box") = py::none(), py::arg("cell") = py::none(),
+          py::arg("ids") = py::none(), py::arg("velocities") = py::none(), py::arg("spins") = py::none(),
           py::arg("law") = Law(), py::arg("anyway") = false,
-          "Resting spheres without contacts. Refuses numbers that are no spheres in a larger domain, and, unless "
+          "Spheres without contacts. Refuses numbers that are no spheres in a larger domain, and, unless "
           "`anyway`,\nwhat read_packing() refuses: lengths in mm, deep overlaps, spheres outside the box, densities "
           "not in kg/m3.\n\ncentres: (n, 3), m. radii: (n), m. density: of the grains, kg/m3.\n"
           "box: two corners, m; or cell: of a periodic packing, three lengths or the edges in columns, (3, 3), m.\n"
+          "ids: (n), whole numbers; default: counted from 0. velocities: (n, 3), m/s, spins: (n, 3), rad/s; default: "
+          "at "
+          "rest.\n"
           "Contacts form when a run begins, without shear forces: let a `rebalance` stage come first.")
       .def_readonly("time", &Snapshot::time, "s.")
       .def_readonly("step", &Snapshot::step, "Time steps since the run began.")
@@ -238,5 +272,8 @@ void bind_snapshot(py::module_ &module)
       });
   add_grains(snapshot);
   add_contacts(snapshot);
+  module.def("_spheres", &from_spheres<false>, py::arg("centres"), py::arg("radii"), py::kw_only(), py::arg("density"),
+             py::arg("box"), py::arg("cell"), py::arg("ids"), py::arg("velocities"), py::arg("spins"),
+             py::arg("law") = Law(), py::arg("anyway") = false);
 }
 } // namespace isostat::python

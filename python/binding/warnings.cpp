@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "python/binding/warnings.hpp"
 
+#include <cerrno>
 #include <string_view>
 
 namespace isostat::python
@@ -23,7 +24,12 @@ constexpr std::pair<std::string_view, std::string_view> keywords[] = {{"--overwr
 bool speaks_as_command = false;
 } // namespace
 
-void speak_as_command() { speaks_as_command = true; }
+void speak_as_command()
+{
+  static char name[] = "isostat";
+  program_invocation_short_name = name; // as files name the program that wrote them
+  speaks_as_command = true;
+}
 
 std::string in_python(std::string text)
 {

@@ -10,7 +10,7 @@ namespace isostat::python
 {
 /// Options of the command line in a message become keywords.
 std::string in_python(std::string text);
-/// From now on messages name options of a command line, for programs that are written in Python.
+/// From now on messages name options of a command line, and files the program `isostat`.
 void speak_as_command();
 
 /// Warnings of a call, which join a list of Python when it is over, whether it fails or not. Made and gone with the GIL.

@@ -16,9 +16,9 @@ import sys
 try:
     import numpy  # noqa: F401  that it is missing is said here, not somewhere inside
     from isostat._core import (__version__, InputError, IsostatWarning, Law, Moment, RunFailure, Rve, RveResponse, RveState,
-                               Snapshot, Specimen, convert, default_scene, import_tables, list_library, measure_units,
-                               read_packing, read_snapshot, read_specimen, scene_manual, write_force_chains_vtp,
-                               write_library, write_packing, write_specimen, write_vtp)
+                               Snapshot, Specimen, default_scene, list_library, measure_units, read_snapshot,
+                               read_specimen, scene_manual, write_force_chains_vtp, write_library, write_specimen,
+                               write_vtp)
 except ModuleNotFoundError as error:
     built = sorted(file.name.split(".")[1] for file in pathlib.Path(__file__).parent.glob("_core.*.so"))
     raise ImportError(
@@ -26,6 +26,7 @@ except ModuleNotFoundError as error:
         f"is {sys.implementation.cache_tag}, {sys.executable}. Run the Python that it was built for, on Debian "
         "/usr/bin/python3 with python3-numpy, or build it for this one (-DPython_EXECUTABLE=...)") from error
 from isostat import pickles  # noqa: F401  it teaches pickle what packings are
+from isostat.packings import convert, import_tables, read_packing, write_packing
 from isostat.results import History, Results, draw, read
 from isostat.running import Run, prepare, run
 from isostat.scene import Scene

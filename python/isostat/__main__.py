@@ -3,6 +3,7 @@
 
     isostat calibrate PLAN                            parameters of a scene from laboratory curves
     isostat resistance SCENE --ratios 0.1,0.15,0.2    tests at several amplitudes: a resistance curve
+    isostat ensemble SCENE -n 8                       a soil column with eight sets of packings: bands
     isostat compare results/one results/other         two runs side by side in compare.html
     isostat element_test SCENE                        the program of this name, with everything that follows
 """
@@ -17,6 +18,8 @@ from isostat.campaign.runs import program
 
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
              "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
+             "ensemble": "a soil column with many sets of packings or many records: bands of all",
+             "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}

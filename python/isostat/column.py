@@ -33,12 +33,19 @@ class ColumnScene(_column.ColumnScene):
         super().__init__(*scene_source(source, set, sections))
 
     def member(self, k):
-        """The k-th member of an ensemble, as `soil_column --ensemble` runs it: layers of grains have the next seeds of
-        their library, or the next lot; member 0 is the scene itself.
+        """The k-th member of an ensemble, as `isostat ensemble` runs it. Layers of grains have the seeds of their library
+        that follow those of the members before, or, where seeds are drawn at random, `lot` is k more. Member 0 is the
+        scene itself.
 
         runs = [column.run(scene.member(k), f"results/member_{k}") for k in range(8)]
         """
-        return type(self)(self._member(k))
+        sections = self.to_dict()
+        for layer in sections["layer"]:
+            if layer["material"] == "grains" and layer["mixed_realisations"] > 1:
+                layer["lot"] += k
+            elif layer["material"] == "grains":
+                layer["realisation"] += k * sections["grains"]["realisations"]
+        return type(self)(sections)
 
     with_ = Scene.with_
     __reduce__ = Scene.__reduce__

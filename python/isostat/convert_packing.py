@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from isostat import _core
+from isostat import _core, packings
 from isostat.campaign import command
 
 
@@ -11,7 +11,7 @@ def main(words: list[str]) -> int:
     line = argparse.ArgumentParser(prog="isostat convert", description="A packing from one format into another, checked "
                                    "on the way: units, overlaps, box")
     line.add_argument("source", metavar="IN", help="specimen, snapshot (.h5) or library.h5#s0007 of Isostat; LAMMPS dump "
-                      "or data file (units si, atom_style sphere); text `x y z r` of YADE; CSV; VTP")
+                      "or data file (units si, atom_style sphere); text `x y z r` of YADE; CSV; VTP; folder of tables")
     line.add_argument("target", metavar="OUT", help="the same packing in another format, by its ending: .h5 .dump .data "
                       ".txt .csv .vtp")
     line.add_argument("--to", default="", metavar="FORMAT", help="specimen, lammps-dump, lammps-data, yade, csv or vtp, "
@@ -26,9 +26,14 @@ def main(words: list[str]) -> int:
     asked = line.parse_args(words)
 
     def convert():
-        figures, notes = _core._convert_file(asked.source, asked.target, asked.to, asked.length_unit, asked.scale,
-                                             asked.density, asked.domain, asked.anyway, asked.overwrite)
-        print(f"{asked.target}\n{figures}", end="")
+        unit, scale, density = asked.length_unit, asked.scale, asked.density
+        if unit:
+            scale = packings.quantity(f"--length-unit {unit}", f"1 {unit}", "length")
+        how = packings.Reading(1 if scale is None else scale, scale == 1,
+                               packings.quantity(f"--density {density}", density or "2650 kg/m3", "density"),
+                               density is not None, asked.domain, anyway=asked.anyway)
+        specimen, notes = packings.convert_any(asked.source, asked.target, how, asked.to, asked.overwrite)
+        print(f"{asked.target}\n{_core._figures(specimen.snapshot)}", end="")
         for note in notes:
             print(f"warning: {note}", file=sys.stderr)
     return command.run(convert)

@@ -2,7 +2,6 @@
 """Scenes from files, text, dictionaries and keywords.   tested: tests/python/scene_test.py"""
 import json
 import os
-import pathlib
 import re
 import tomllib
 from typing import Any, Self
@@ -54,7 +53,7 @@ def scene_source(source, overrides, sections):
     if isinstance(source, os.PathLike) or (isinstance(source, str) and "\n" not in source):
         if sections:
             raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
-        if not pathlib.Path(source).is_file():
+        if not os.path.isfile(source):
             raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
         return "", os.fspath(source), given, True
     if isinstance(source, str):

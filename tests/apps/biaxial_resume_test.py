@@ -57,7 +57,7 @@ class Resume(ColumnTest):
 
     def test_packings_on_other_threads(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.assert_done(self.run_app("specimen_library", scene, *FEW, "-o", "library.h5"))
+        self.assert_done(self.run_app("isostat", "library", scene, *FEW, "-o", "library.h5"))
         block = self.write("block.toml", GRAINS.replace("steps = 2", "steps = 6"))
         options = (*SAVED, *settings(nonlocal__length="0.5 m", newton__max_iterations=0,
                                      newton__relaxation_iterations=300))

@@ -229,7 +229,7 @@ class Biaxial(AppTest):
 
     def test_packings(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.assert_done(self.run_app("specimen_library", scene, *FEW, "-n", "2", "-o", "library.h5"))
+        self.assert_done(self.run_app("isostat", "library", scene, *FEW, "-n", "2", "-o", "library.h5"))
         mixed = ("--set", "soil.mixed_realisations=2")
         self.assert_done(self.run_block(GRAINS, *mixed))
         self.assert_done(self.run_block(GRAINS, *mixed, "--threads", "2", name="threads"))

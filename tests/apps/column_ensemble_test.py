@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""soil_column --ensemble: members with packings or records of their own, side by side, killed and resumed, and the
-bands of all, computed anew from the members' files."""
+"""isostat ensemble: members with packings or records of their own, side by side, on ranks, killed and resumed, and the
+bands of all, computed again from the members' files."""
 import csv
 import json
 import pathlib
@@ -12,7 +12,7 @@ import signal
 import h5py
 import numpy as np
 
-from column_support import ColumnTest, settings
+from column_support import SCENES, ColumnTest, settings
 from support import contents, main
 
 SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
@@ -89,45 +89,48 @@ class Ensemble(ColumnTest):
         self.scene = self.write("grains.toml", GRAINS.format(cache=self.cache))
         if not (self.cache / "library.h5").exists():
             self.assert_done(self.run_app(
-                "specimen_library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
+                "isostat", "library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
                 "-n", "6", *settings(grading__grains=120, grading__cloud_edge="2.289 mm",
                                      specimen__density_tolerance=0.05)))
 
+    def run_ensemble(self, *arguments):
+        return self.run_app("isostat", "ensemble", *arguments, "--no-figures")
+
     def ensemble(self, folder, *more):
         """Three members below a folder of this test."""
-        self.assert_done(self.run_column(self.scene, "--ensemble", 3, "-o", folder, "-q", *more))
+        self.assert_done(self.run_ensemble(self.scene, "-n", 3, "-o", folder, "-q", *more))
         return self.folder / folder
 
     def assert_same_ensemble(self, one, other):
         def kept(folder):
             return {name for name in contents(self.folder / folder)
-                    if not any(word in name for word in ("provenance", "times.json", "checkpoint", "logs/", "queue",
-                                                         ".lock"))}
+                    if not any(word in name for word in ("provenance", "times.json", "checkpoint", "logs/", ".lock"))}
         self.assertIn("members/02/history.csv", kept(one))
         self.assert_same_contents(one, other, kept)
 
     def test_same_bytes(self):
-        """One after the other, two side by side, on two ranks, and of a call that was killed."""
+        """One after the other, two side by side, on the ranks of mpirun, and of a call that was killed."""
         self.ensemble("one")
         self.ensemble("two", "-j", 2)
         self.assert_same_ensemble("one", "two")
-        result = self.run_on_ranks(2, self.scene, "--ensemble", 3, "-o", "ranks", "-q")
+        result = self.run_command(["mpirun", "--oversubscribe", "-n", "3", *self.command(
+            "isostat", "ensemble", self.scene, "-n", 3, "-o", "ranks", "-q", "--no-figures")])
         self.assert_done(result)
-        self.assertIn("by this helper", result.stdout)
+        self.assertEqual(result.stdout.count("3 of 3 finished"), 1, "one report")
         self.assert_same_ensemble("one", "ranks")
         for with_signal, code, member in ((signal.SIGKILL, -signal.SIGKILL, "00"), (signal.SIGTERM, 130, "01")):
             started = (self.folder / f"killed/members/{member}/checkpoint/last.h5", False)
-            self.assertEqual(self.run_and_stop(0.05, with_signal, started, self.scene, "--ensemble", 3, "-o", "killed",
-                                               program="soil_column"), code)
+            self.assertEqual(self.run_and_stop(0.05, with_signal, started, "ensemble", self.scene, "-n", 3, "-o",
+                                               "killed", program="isostat"), code)
         self.assertFalse((self.folder / "killed/members/02/summary.json").exists())
-        self.ensemble("killed", "--resume")
+        self.ensemble("killed")
         self.assert_same_ensemble("one", "killed")
 
     def test_members_and_bands(self):
         """Members are the runs of their seeds; every number and band is that of their files."""
         self.ensemble("few")
         before = (self.folder / "few/members/01/history.h5").stat().st_mtime_ns
-        self.assert_done(self.run_column(self.scene, "--ensemble", 5, "-o", "few", "-q"))
+        self.assert_done(self.run_ensemble(self.scene, "-n", 5, "-o", "few", "-q"))
         self.assertEqual((self.folder / "few/members/01/history.h5").stat().st_mtime_ns, before, "kept")
         self.assert_done(self.run_column(self.scene, "-o", "alone", "-q", *settings(layer__0__realisation=3)))
         self.assertEqual((self.folder / "few/members/03/history.csv").read_bytes(),
@@ -187,10 +190,10 @@ class Ensemble(ColumnTest):
             self.assertEqual(row.split()[-1], "5")
         self.assertNotIn("the same packings", text)
         calls = (folder / "provenance.txt").read_text(encoding="utf-8").split("\n\n")
-        self.assertEqual([re.search(r"--ensemble (\d)", call)[1] for call in calls], ["3", "5"])
+        self.assertEqual([re.search(r"-n (\d)", call)[1] for call in calls], ["3", "5"])
 
     def test_two_members_have_no_band(self):
-        self.assert_done(self.run_app("soil_column", self.scene, "--ensemble", 2, "-o", "two", "-q"))
+        self.assert_done(self.run_app("isostat", "ensemble", self.scene, "-n", 2, "-o", "two", "-q"))
         told = json.loads((self.folder / "two/ensemble.json").read_text(encoding="utf-8"))["numbers"]["peak_surface"]
         self.assertEqual((told["n"], told["p16"], told["p84"]), (2, None, None))
         self.assertEqual(told["p50"], told["mean"])
@@ -203,7 +206,7 @@ class Ensemble(ColumnTest):
 
     def test_members_with_the_same_packings_count_once(self):
         """Four lots of two seeds for one block: two of them at least are alike, to the bit."""
-        self.assert_done(self.run_column(self.scene, "--ensemble", 4, "-o", "out", "-q", *settings(
+        self.assert_done(self.run_ensemble(self.scene, "-n", 4, "-o", "out", "-q", *settings(
             layer__0__mixed_realisations=2, layer__0__lot_length="3 m")))
         rows = table(self.folder / "out/members.csv")
         same = {name: of for name, of in zip(rows["member"], rows["same_as"]) if of}
@@ -219,21 +222,31 @@ class Ensemble(ColumnTest):
             self.assertIn(f"{name} as {of}", text)
         self.assertIn(f"they count once, n = {4 - len(same)}", text)
 
-    def test_validate_looks_at_every_member(self):
-        result = self.run_column(self.scene, "--ensemble", 3, "--validate")
+    def test_validate_checks_every_member(self):
+        result = self.run_ensemble(self.scene, "-n", 3, "--validate")
         self.assert_done(result)
         self.assertIn("# 02: layer.0.realisation = 2", result.stdout)
         self.write("again.toml", result.stdout)
         self.assert_done(self.run_column("again.toml", "--validate"))
         scene = self.write_records()
-        self.assertIn("# r01: record", self.run_column(scene, "--records", "first.txt,second.txt", "--validate").stdout)
-        for arguments, parts in (((self.scene, "--ensemble", 7), ("6 realisations", "needs 7")),
+        two = ("--records", "first.txt,second.txt", "--validate")
+        self.assertIn("# r01: record", self.run_ensemble(scene, *two).stdout)
+        both = self.write("both.toml", self.scene.read_text(encoding="utf-8").replace(
+            'kind = "harmonic"\namplitude = "0.6 g"\nfrequency = "5 Hz"\nduration = "0.4 s"',
+            'kind = "record"\nfile = "first.txt"\nunit = "m/s2"'))
+        self.assertEqual(re.findall(r"^# (r\w+): layer.0.realisation = (\d) record .*/(\w+).txt$",
+                                    self.run_ensemble(both, "-n", 2, *two).stdout, re.M),
+                         [("r00_00", "0", "first"), ("r00_01", "1", "first"), ("r01_00", "0", "second"),
+                          ("r01_01", "1", "second")])
+        for arguments, parts in (((self.scene, "-n", 7), ("6 realisations", "needs 7")),
                                  ((scene, "--records", "first.txt,none.txt"), ("none.txt",)),
-                                 ((scene, "--ensemble", 2), ("without a layer of grains",)),
-                                 ((self.scene, "--jobs", 2), ("--ensemble or --records",))):
-            self.assert_refused(self.run_column(*arguments, "--validate"), *parts)
+                                 ((scene, "--records", "first.txt,first.txt"), ("file 1 of 2", "appears twice")),
+                                 ((scene, "--records", "first.txt,"), ("file 2 of 2", "has no name")),
+                                 ((scene, "-n", 2), ("without a layer of grains",)),
+                                 ((self.scene, "--jobs", 2), ("-n and --records are missing",))):
+            self.assert_refused(self.run_ensemble(*arguments, "--validate"), *parts)
         (self.folder / "second.txt").write_text("0 1\nno number\n", encoding="utf-8")
-        self.assert_refused(self.run_column(scene, "--records", "first.txt,second.txt", "--validate"), "second.txt")
+        self.assert_refused(self.run_ensemble(scene, *two), "second.txt")
         self.assertFalse((self.folder / "results").exists())
 
     def sources(self, name):
@@ -251,9 +264,9 @@ class Ensemble(ColumnTest):
             self.assertEqual(len(sources), 6, "two packings at three depths")
             self.assertGreater(len(set(sources)), 2, "of several seeds")
         self.assertGreater(len({tuple(sources) for sources in drawn}), 1)
-        scenes = [(self.folder / f"mixed/scenes/0{k}.toml").read_text(encoding="utf-8") for k in range(3)]
-        self.assertIn("lot = 2", scenes[2])
-        self.assertIn("realisation = 0", scenes[2])
+        scene = (self.folder / "mixed/scenes/02.toml").read_text(encoding="utf-8")
+        self.assertIn("lot = 2", scene)
+        self.assertIn("realisation = 0", scene)
         blocks = [word.replace("mixed.h5", "blocks.h5") for word in mixed] + settings(layer__0__lot_length="3 m")
         self.assert_done(self.run_column(self.scene, "-o", "blocks", "-q", *blocks))
         sources = self.sources("blocks.h5")
@@ -288,7 +301,7 @@ class Ensemble(ColumnTest):
                 slope__angle=angle, layer__0__k0=1)), *parts)
 
     def test_boxes(self):
-        """How their surface moves, and r_u at the scene's depths, are among what members are compared by."""
+        """How their surface moves, and r_u at the scene's depths, are compared."""
         self.write_records()
         box = SAND.replace("[water]", """[mesh]
 dimension = 2
@@ -299,8 +312,10 @@ ground_x = ["0 m", "6 m"]
 ground_z = ["4 m", "3 m"]
 [water]""").replace('"undrained"', '"coupled"').replace("density =", 'permeability = "1e-4 m/s"\ndensity =')
         box = box.replace("[output]", '[output]\ndepths = ["1 m", "2 m"]')
-        self.assert_done(self.run_app("soil_column", self.write("box.toml", box), "--records", "first.txt,second.txt",
-                                      "-o", "out", "-q"))
+        self.assert_done(self.run_app("isostat", "ensemble", self.write("box.toml", box), "--records",
+                                      "first.txt,second.txt", "-o", "out", "-q"))
+        shared = settings(mesh__distributed="true")
+        self.assert_refused(self.run_ensemble("box.toml", "--records", "first.txt", *shared), "distributed = true")
         rows = table(self.folder / "out/members.csv")
         for k, member in enumerate(("r00", "r01")):
             summary = json.loads((self.folder / f"out/members/{member}/summary.json").read_text(encoding="utf-8"))
@@ -316,59 +331,68 @@ ground_z = ["4 m", "3 m"]
     def test_records(self):
         """Motions instead of packings; figures and report of what they give."""
         scene = self.write_records()
-        self.assert_done(self.run_app("soil_column", scene, "--records", "first.txt,second.txt", "-j", 0, "-o", "out",
-                                      "-q"))
+        self.assert_done(self.run_app("isostat", "ensemble", scene, "--records", "first.txt,second.txt", "-j", 0, "-o",
+                                      "out", "-q"))
         rows = table(self.folder / "out/members.csv")
         self.assertEqual((rows["member"], rows["record"]), (["r00", "r01"], ["first.txt", "second.txt"]))
         self.assertNotEqual(*rows["peak_surface"])
-        for name in ("profiles", "spectra", "histories", "numbers"):
-            self.assertGreater((self.folder / f"out/figures/fig_ensemble_{name}.png").stat().st_size, 10000)
+        self.assertGreater((self.folder / "out/figures/fig_ensemble_histories.png").stat().st_size, 10000)
         self.assertIn("2 of 2 have finished", (self.folder / "out/report.html").read_text(encoding="utf-8"))
 
     def test_refusals(self):
-        def refused(scene, *arguments, parts=()):
-            self.assert_refused(self.run_column(scene, "-o", "out", *arguments), *parts)
+        def refused(scene, *arguments, parts=(), run=self.run_ensemble):
+            self.assert_refused(run(scene, "-o", "out", *arguments), *parts)
             self.assertFalse((self.folder / "out").exists())
         sand = self.write_records()
-        refused(sand, "--ensemble", 2, parts=("--ensemble 2", "without a layer of grains", "--records"))
+        refused(sand, "-n", 2, parts=("-n 2", "without a layer of grains", "--records"))
         refused(sand, "--records", "first.txt,none.txt", parts=("none.txt",))
         refused(self.scene, "--records", "first.txt", parts=("exactly one [[motion]]", "record"))
-        refused(self.scene, "--ensemble", 7, parts=("--ensemble 7", "6 realisations", "needs 7", "--append"))
-        refused(self.scene, "--ensemble", 4, *settings(grains__realisations=2), parts=("6 realisations", "needs 8"))
-        refused(self.scene, "--jobs", 2, parts=("--ensemble or --records",))
+        refused(self.scene, "-n", 7, parts=("member 06", "realisation = 6", "6 realisations", "needs 7", "--append"))
+        refused(self.scene, "-n", 4, *settings(grains__realisations=2), parts=("6 realisations", "needs 8"))
+        refused(self.scene, "--jobs", 2, parts=("-n and --records are missing",))
+        refused(SCENES / "terzaghi.toml", "-n", 2, parts=("analysis.kind", "consolidation"))
+        own = self.write("own.toml", re.sub("shear_velocity.*", "", SAND.replace('"iwan"', '"user"')))
+        refused(own, "--records", "first.txt", parts=("layer.0.material", "isostat.column.run()"))
         all_seeds = settings(layer__0__mixed_realisations=2, grains__realisations=2)
-        refused(self.scene, "--ensemble", 2, *all_seeds, parts=("every point has all seeds", "mixed_realisations"))
-        for more in ("--ensemble", 2), (), ("--validate",):
-            refused(self.scene, *more, *settings(layer__0__mixed_realisations=8, layer__0__realisation=1),
+        refused(self.scene, "-n", 2, *all_seeds, parts=("every point has all seeds", "mixed_realisations"))
+        for run, more in (self.run_ensemble, ("-n", 2)), (self.run_column, ()), (self.run_column, ("--validate",)):
+            refused(self.scene, *more, *settings(layer__0__mixed_realisations=8, layer__0__realisation=1), run=run,
                     parts=("layer.0.realisation = 1, layer.0.mixed_realisations = 8", "6 realisations", "needs 9"))
-        refused(self.scene, *settings(layer__0__mixed_realisations=2, grains__realisations=3),
+        refused(self.scene, *settings(layer__0__mixed_realisations=2, grains__realisations=3), run=self.run_column,
                 parts=("layer.0.mixed_realisations", "at least grains.realisations, 3"))
         self.ensemble("out")
-        self.assert_refused(self.run_column(self.scene, "--ensemble", 3, "-o", "out",
-                                            *settings(motion__0__amplitude="0.5 g")), "another scene", "amplitude")
+        self.assert_refused(self.run_ensemble(self.scene, "-n", 3, "-o", "out",
+                                              *settings(motion__0__amplitude="0.5 g")), "another scene", "amplitude")
         (self.folder / "own").mkdir()
         for name in ("scene.toml", "thesis.txt"):
             self.write(f"own/{name}", self.scene.read_text(encoding="utf-8"))
         before = contents(self.folder / "own")
-        self.assert_refused(self.run_column(self.scene, "--ensemble", 2, "-o", "own", "--overwrite"),
+        self.assert_refused(self.run_ensemble(self.scene, "-n", 2, "-o", "own", "--overwrite"),
                             "holds no provenance.txt and may not be a results folder")
         self.assertEqual(contents(self.folder / "own"), before)
 
     def test_a_member_that_fails(self):
         """The others are kept and compared; the message names the member and why."""
-        scene = self.write_records()
-        self.assert_done(self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q"))
+        arguments = (self.write_records(), "--records", "first.txt,second.txt", "-o", "out", "-q")
+        self.assert_done(self.run_ensemble(*arguments))
         whole = (self.folder / "out/summary.txt").read_text(encoding="utf-8")
         kept = self.folder / "out/members/r01"
+
+        def assert_failed(*parts):
+            result = self.run_ensemble(*arguments)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            for part in ("1 of 2 members failed", "r01", *parts):
+                self.assertIn(part, result.stderr)
+            self.assertIn("1 of 2 finished", (self.folder / "out/summary.txt").read_text(encoding="utf-8"))
+
+        profiles = (kept / "profiles.h5").read_bytes()
+        (kept / "profiles.h5").write_bytes(profiles[:1000])
+        assert_failed("out/members/r01: is damaged", "Remove it")
         (kept / "summary.json").unlink()
         for file in (kept / "checkpoint").iterdir():
             file.write_bytes(b"no checkpoint")
-        result = self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q")
-        self.assertEqual(result.returncode, 1, result.stderr)
-        for part in ("1 of 2 members failed", "r01", "the same command tries again"):
-            self.assertIn(part, result.stderr)
-        self.assertIn("1 of 2 finished", (self.folder / "out/summary.txt").read_text(encoding="utf-8"))
-        self.assert_done(self.run_column(scene, "--records", "first.txt,second.txt", "-o", "out", "-q", "--overwrite"))
+        assert_failed("exit code 2", "the same command tries again")
+        self.assert_done(self.run_ensemble(*arguments, "--overwrite"))
         self.assertEqual((self.folder / "out/summary.txt").read_text(encoding="utf-8"), whole)
 
 

@@ -57,17 +57,20 @@ class SceneMistakes(AppTest):
 
     def test_jobs(self):
         """0 is as many as there are cores, in every program; then the scene is looked for."""
-        for program in ("soil_column", "specimen_library"):
-            if not (BIN / program).exists():
+        for program in ("isostat calibrate", "isostat resistance", "isostat ensemble", "isostat library"):
+            name, *command = program.split()
+            if not (BIN / name).exists():
                 continue
+            ratios = ["--ratios", "0.2"] if "resistance" in command else []
             for n in (-1, 1025):
-                result = self.run_app(program, "none.toml", "--jobs", n)
+                result = self.run_app(name, *command, "none.toml", *ratios, "--jobs", n)
                 self.assertEqual(result.returncode, 2, program)
-                self.assertRegex(result.stderr, "0 (to|-) 1024")  # as CLI11 of Debian 12 and of 13 has it
-            result = self.run_app(program, "none.toml", "--jobs", 0)
+                self.assertRegex(result.stderr, "0 (to|-) 1024|0, 1024]")  # CLI11 of Debian 12 and of 13, Python
+            result = self.run_app(name, *command, "none.toml", *ratios, "--jobs", 0)
             self.assertEqual(result.returncode, 2, program)
-            self.assertNotIn("range", result.stderr)
-            self.assertIn("0: as many as the machine has cores", self.run_app(program, "--help").stdout)
+            self.assertIn("none.toml", result.stderr)
+            self.assertRegex(self.run_app(name, *command, "--help").stdout,
+                             r"0:\s+(as many as the machine has cores|one\s+for\s+each\s+core)")
 
     def test_validate_writes_nothing(self):
         scene = self.write("scene.toml", tiny_scene())
@@ -223,10 +226,23 @@ class Version(AppTest):
         apps = pathlib.Path(__file__).resolve().parents[2] / "apps"
         programs = [main.parent.name for main in apps.glob("*/main.cpp") if (BIN / main.parent.name).exists()]
         self.assertIn("element_test", programs)
-        for program in programs:
+        for program in [*programs, "isostat"]:
             result = self.run_app(program, "--version")
             self.assert_done(result)
             self.assertRegex(result.stdout, rf"^{program}( \(Isostat\))? \d+\.\d+\.\d+ ")
+
+
+class Bare(AppTest):
+    def test_isostat_alone_lists_its_commands(self):
+        for words in ((), ("--help",)):
+            result = self.run_app("isostat", *words)
+            self.assert_done(result)
+            self.assertRegex(result.stdout, "\n  library .*\n(?s:.*)\n  element_test ")
+        self.assert_refused(self.run_app("isostat", "librray"), "librray: is no command of isostat")
+
+    def test_a_scene_of_too_long_a_name(self):
+        for words in (("element_test",), ("isostat", "library"), ("isostat", "resistance", "--ratios", "0.2")):
+            self.assert_refused(self.run_app(*words, "x" * 300), "x" * 300)
 
 
 class Copied(AppTest):
@@ -234,8 +250,10 @@ class Copied(AppTest):
         for program in ("isostat", "element_test"):
             (self.folder / "there").mkdir(exist_ok=True)
             shutil.copy(BIN / program, self.folder / "there" / program)
-        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "share/isostat/report",
+        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat is not there",
                             "copied", "built or installed")
+        (self.folder / "link").symlink_to(BIN / "isostat")
+        self.assert_done(self.run_app(self.folder / "link", "--version"))
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=600)))
         result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
         self.assert_done(result)

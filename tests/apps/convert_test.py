@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""isostat convert: packings of other programs in and out, what is refused, and the same guard in scenes."""
+"""isostat convert: packings of other programs in and out, what is refused, and scenes, which refuse such files."""
 import math
 import os
 import shutil
@@ -8,7 +8,7 @@ import shutil
 import h5py
 import numpy as np
 
-from support import AppTest, REBALANCE, main, tiny_scene
+from support import AppTest, main, tiny_scene
 
 ENDINGS = ("dump", "data", "txt", "csv", "vtp", "h5")
 LATTICE = [(x, y, z) for x in (0.3, 0.9, 1.5) for y in (0.3, 0.9, 1.5) for z in (0.3, 0.9, 1.5)]  # mm, touching
@@ -113,17 +113,18 @@ class Convert(AppTest):
         for part in ("periodic cell    0.84768 x 0.84768 x 0.84768 mm", "void ratio       0.3464"):
             self.assertIn(part, result.stdout)
 
-    def test_a_scene_says_what_bounds_a_data_file(self):
+    def test_the_user_says_what_bounds_a_data_file(self):
         places, edge = self.fcc()
         rows = "".join(f"{i + 1} 1 0.0002 2650 {x!r} {y!r} {z!r} 0 0 0\n" for i, (x, y, z) in enumerate(places))
         self.write("p.data", f"via write_data, units = si\n\n{len(places)} atoms\n1 atom types\n\n"
                    + "".join(f"0 {edge!r} {a}lo {a}hi\n" for a in "xyz") + f"\nAtoms # sphere\n\n{rows}")
+        self.assert_done(self.convert("p.data", "p.h5", "--domain", "periodic-cell"))
         scene = self.write("scene.toml", """[contact]
 young = "1 GPa"
 friction = "45 deg"
 [specimen]
 domain = "periodic-cell"
-file = "p.data"
+file = "p.h5"
 pressure = "100 kPa"
 [[stage]]
 kind = "rebalance"
@@ -164,17 +165,29 @@ kind = "rebalance"
         self.assertIn("warning: YADE", result.stderr)
         self.assert_refused(self.convert("cell.txt", "out.h5", "--domain", "rigid-box"), "domain rigid-box")
 
-    def test_scenes_have_the_same_guard(self):
-        self.lattice("mm.txt", unit=1)
-        self.lattice("deep.txt", radius=0.4)
-        for name, words in (("mm.txt", ("largest radius", "isostat convert", "--length-unit mm")),
-                            ("deep.txt", ("overlap by 50 %",))):
-            scene = self.write("scene.toml", tiny_scene(specimen=f'file = "{name}"',
-                                                        stages=REBALANCE.format(steps=100)))
-            result = self.run_test(scene, "-o", "out", "--overwrite", "--quiet")
-            self.assertEqual(result.returncode, 2, result.stderr)
-            for word in words:
-                self.assertIn(word, result.stderr)
+    def test_scenes_start_from_files_of_isostat(self):
+        self.lattice("a.txt")
+        (self.folder / "tables").mkdir()
+        for name in ("a.txt", "tables", "nowhere.csv"):
+            scene = self.write("scene.toml", tiny_scene(specimen=f'file = "{name}"'))
+            self.assert_refused(self.run_test(scene, "-o", "out", "--quiet"), "scene.toml:", "specimen.file",
+                                f"isostat convert {name} packing.h5")
+            self.assertFalse((self.folder / "out").exists())
+
+    def test_grains_of_another_program_are_stored_along_a_curve(self):
+        """Neighbours in space are neighbours in memory; ids say where they were in the file."""
+        mixed = [LATTICE[7 * k % len(LATTICE)] for k in range(len(LATTICE))]
+        rows = "".join(" ".join(repr(1e-3 * v) for v in (*centre, 0.3)) + "\n" for centre in mixed)
+        self.assert_done(self.convert(self.write("mixed.txt", rows), "mixed.h5"))
+        with h5py.File(self.folder / "mixed.h5") as file:
+            ids = np.array(file["snapshot/grains/id"])
+        places = self.positions("mixed.h5")[:, :3]
+        np.testing.assert_array_equal(places, 1e-3 * np.array(mixed)[ids])
+
+        def way(stored):
+            return np.linalg.norm(np.diff(stored, axis=0), axis=1).sum()
+        in_file = way(places[np.argsort(ids)])
+        self.assertLess(4 * way(places), 3 * in_file)
 
 
 class Snapshots(AppTest):

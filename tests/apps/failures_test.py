@@ -7,10 +7,10 @@ import collections
 import errno
 import signal
 
-from biaxial_test import CELL, FEW, FRICTION
+from biaxial_test import FRICTION
 from failing_runs import COLUMN, EVERY, OUTPUT, SAVED, SHORT_TEST, FailingRuns
 from grain_column_test import GrainColumnTest
-from support import main, results, tiny_scene
+from support import main, results
 from void_ratio_limits_test import LIMITS, QUICK
 
 
@@ -24,11 +24,6 @@ class Failures(FailingRuns):
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=3)
 
-    def test_specimen_library(self):
-        scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.every_call("specimen_library", scene, *FEW, output=("-o", "out/library.h5", "-q"),
-                        goes_on=FailingRuns.repeated, most=3, fewest=1,
-                        harmless={"open": 1})  # a lock: two processes would prepare the same specimen
 
     def test_void_ratio_limits(self):
         scene = self.write("limits.toml", LIMITS)

@@ -9,15 +9,17 @@ from support import MONOTONIC, contents, main, tiny_scene
 
 
 class Interrupted(ColumnTest):
-    def stop_drawing(self, *command, with_signal=signal.SIGINT, after=0.1, stop=os.killpg):
+    def stop_drawing(self, *command, with_signal=signal.SIGINT, after=0.1, stop=os.killpg, begun="figures.log",
+                     parts=("interrupted while its figures were drawn; all other results are complete",
+                            "isostat report 'out'")):
         """Runs it in a terminal of its own, and stops all in it (os.killpg) or the program alone (os.kill) some seconds
-        after the figures have been begun. Returns what it said on stderr."""
-        log = self.folder / "out/figures.log"
-        code, said = self.stop_when(log.exists, log, with_signal, self.command(*command, "-o", "out", "-q"), after,
+        after it has written the file `begun`. Returns what it said on stderr."""
+        file = self.folder / "out" / begun
+        code, said = self.stop_when(file.exists, file, with_signal, self.command(*command, "-o", "out", "-q"), after,
                                     lambda process, number: stop(process.pid, number), start_new_session=True)
         self.assertEqual(code, 130, said)
-        self.assertIn("interrupted while its figures were drawn; all other results are complete", said)
-        self.assertIn("isostat report 'out'", said)
+        for part in parts:
+            self.assertIn(part, said)
         self.assertFalse((self.folder / "out/report.html").exists())
         return said
 
@@ -68,8 +70,8 @@ class Interrupted(ColumnTest):
         scene = self.write("shaken.toml", self.scene.read_text(encoding="utf-8").replace(
             'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "3 Hz"\nduration = "60 s"\nramp = "1 s"',
             'kind = "record"\nfile = "a.txt"'))
-        ensemble = ("soil_column", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
-        self.stop_drawing(*ensemble)
+        ensemble = ("isostat", "ensemble", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
+        self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command goes on",))
         self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))
         self.assertTrue((self.folder / "out/report.html").exists())
 

@@ -68,7 +68,7 @@ class GrainColumnTest(ColumnTest):
         self.scene = self.write("grains.toml", GRAINS.format(cache=self.cache))
         if not (self.cache / "library.h5").exists():
             self.assert_done(self.run_app(
-                "specimen_library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
+                "isostat", "library", SPECIMENS, "-o", self.cache / "library.h5", "--pressures", "30 kPa", "-q",
                 # 10 mm x (250/10000)^(1/3); so few grains make the density jump with the friction
                 *settings(grading__grains=250, grading__cloud_edge="2.924 mm", specimen__density_tolerance=0.04)))
 
@@ -169,7 +169,7 @@ class Sands(GrainColumnTest):
 
     def test_each_layer_has_its_own_packings(self):
         self.assert_done(self.run_app(
-            "specimen_library", SPECIMENS, "-o", self.cache / "stiff.h5", "--pressures", "30 kPa", "-q",
+            "isostat", "library", SPECIMENS, "-o", self.cache / "stiff.h5", "--pressures", "30 kPa", "-q",
             *settings(grading__grains=300, grading__cloud_edge="3.107 mm", specimen__density_tolerance=0.04,
                       contact__young="1 GPa")))
         layer = GRAINS[GRAINS.index("[[layer]]"):GRAINS.index("[grains]")].replace("3 m", "1.5 m").replace("= 5", "= 3")
@@ -337,9 +337,9 @@ class Mistakes(GrainColumnTest):
     def test_library(self):
         self.refuse(["grains.library", "nowhere.h5", "is not there"], *settings(grains__library="nowhere.h5"))
         self.refuse(["grains.toml", "not an HDF5 file"], *settings(grains__library="grains.toml"))
-        self.refuse(["0 realisations", "of 0.9", "specimen_library --append", "s0001"],
+        self.refuse(["0 realisations", "of 0.9", "isostat library --append", "s0001"],
                     *settings(layer__0__relative_density=0.9))
-        self.refuse(["1 realisations", "needs 3", "specimen_library --append"], *settings(layer__0__realisation=2))
+        self.refuse(["1 realisations", "needs 3", "isostat library --append"], *settings(layer__0__realisation=2))
         result = self.run_on_ranks(2, self.scene, "-o", "out", *settings(layer__0__relative_density=0.9))
         self.assertEqual(result.returncode, 2)
         self.assertEqual(result.stderr.count("error: "), 1, result.stderr)
@@ -349,7 +349,7 @@ class Mistakes(GrainColumnTest):
         for old, new, *parts in (
                 ('relative_density = 0.5', 'relative_density = 0.5\nshear_velocity = "150 m/s"', "shear_velocity",
                  "does not belong"),
-                (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "specimen_library"),
+                (f'library = "{self.cache}/library.h5"\n', "", "grains.library", "isostat", "library"),
                 ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths",
                  "entry 1 is 4 m"),
                 ('depths = ["0.5 m", "2 m"]', 'depths = ["4 m"]', "output.depths", "4 m"),

@@ -149,7 +149,7 @@ class LiquefactionResistance(AppTest):
         monotonic = self.write("monotonic.toml", tiny_scene(stages=MONOTONIC.format(steps=10)))
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", scene=monotonic), "no cyclic stage", "undrained-cyclic")
         self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "is not there")
-        packing = self.write("packing.txt", "# box 0 1 0 1 0 1\n0.5 0.5 0.5 0.5\n")
+        packing = self.write("packing.h5", "")
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", "--set", f"specimen.file={packing}",
                                         scene=self.write("triaxial.toml", TRIAXIAL)), "specimen.file",
                             "--realisations 1")

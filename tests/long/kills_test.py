@@ -94,9 +94,9 @@ class Kills(AppTest):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
         self.kill("element_test", (scene, *SAVED, "-q", "--no-figures"), self.folder_of_run)
 
-    def test_specimen_library(self):
+    def test_library(self):
         scene = self.write("scene.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.kill("specimen_library", (scene, *FEW, "-n", 3, "-q"),
+        self.kill("isostat", ("library", scene, *FEW, "-n", 3, "-q"),
                   lambda parts: ["--append"] if parts.exists() else [], others=(("--jobs", (1, 2)),), ending=".h5")
 
     def test_resistance(self):
@@ -118,7 +118,7 @@ class Kills(AppTest):
         scene = self.write("grains.toml", COLUMN_OF_GRAINS.format(cache=self.folder))
         library = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
         self.assert_done(self.run_app(
-            "specimen_library", library, "-o", "library.h5", "--pressures", "30 kPa", "-q",
+            "isostat", "library", library, "-o", "library.h5", "--pressures", "30 kPa", "-q",
             *settings(grading__grains=250, grading__cloud_edge="2.924 mm", specimen__density_tolerance=0.04)))
         self.run_to([*self.command("soil_column", scene), "-o", "first", "-q", "--no-figures"], 0)  # fills the cache
         self.kill("soil_column", (scene, "-q", "--no-figures"), self.folder_of_run, ranks=(1, 2, 3))
@@ -128,7 +128,7 @@ class Kills(AppTest):
 
     def test_block_of_grains(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
-        self.assert_done(self.run_app("specimen_library", scene, *FEW, "-n", "2", "-o", "library.h5", "-q"))
+        self.assert_done(self.run_app("isostat", "library", scene, *FEW, "-n", "2", "-o", "library.h5", "-q"))
         self.kill("biaxial", (self.write("block.toml", BLOCK), *SAVED, "-q", "--no-figures"), self.folder_of_run)
 
 

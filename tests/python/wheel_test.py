@@ -48,6 +48,9 @@ class WheelTest(unittest.TestCase):
             _, ratio, _, pressure = done.stdout.split()
             self.assertGreater(float(ratio), 2)
             self.assertGreater((work / "drained.png").stat().st_size, 10_000)
+            done = subprocess.run([sys.executable, work / "site/bin/isostat", "library", "--help"], cwd=work, text=True,
+                                  capture_output=True, env={**os.environ, "PYTHONPATH": str(work / "site")})
+            self.assertIn("--relative-densities", done.stdout, done.stderr)
 
 
 if __name__ == "__main__":

@@ -30,10 +30,15 @@ def table(path):
     return {name: [float(row[name]) for row in rows] for name in rows[0]}
 
 
-def run(binary, scene, folder):
-    subprocess.run([binary, scene, "-o", folder, "--quiet", "--no-figures"], cwd=ROOT, check=True,
-                   stdout=subprocess.DEVNULL)
-    return pathlib.Path(folder) / "history.csv"
+def run(programs, scene, folder):
+    """The scene on the stored packing of 1,000 grains."""
+    def call(name, *arguments):
+        subprocess.run([programs / name, *arguments], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    packing = folder / "medium.h5"
+    call("isostat", "convert", "tests/reference/n1000/medium", packing)
+    call("element_test", scene, "-o", folder / "results", "--quiet", "--no-figures", "--set",
+         f"specimen.file={packing}")
+    return folder / "results/history.csv"
 
 
 def compare(name, got, wanted):
@@ -59,12 +64,12 @@ def compare(name, got, wanted):
 
 
 def main():
-    binary = str(pathlib.Path(sys.argv[1]).resolve() / "element_test")
+    programs = pathlib.Path(sys.argv[1]).resolve()
     problems = []
     scenes = sorted(HERE.glob("*.toml"))
     for scene in scenes:
         with tempfile.TemporaryDirectory() as folder:
-            history = run(binary, str(scene), folder + "/results")
+            history = run(programs, scene, pathlib.Path(folder))
             expected = scene.with_suffix(".expected.csv")
             if "--regenerate" in sys.argv:
                 shutil.copy(history, expected)

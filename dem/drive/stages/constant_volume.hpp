@@ -78,13 +78,6 @@ public:
   /// The keys that say so, for messages: "deviator_average -+ deviator_amplitude".
   virtual const char *limits_text() const = 0;
 
-  /// The cyclic stress ratio (CSR) of this kind, in words: "q_amp / (2 p0')".
-  virtual const char *stress_ratio_text() const = 0;
-  /// Sets the amplitude from it.   @param p0  mean effective stress after consolidation, Pa
-  virtual void set_stress_ratio(double ratio, double p0) = 0;
-  /// Back to the default amplitude.
-  virtual void forget_stress_ratio() = 0;
-
 protected:
   Verdict reached(const StageContext &c, const Observation &seen) const final;
   double turning_load(const DriveState &state) const final;
@@ -102,9 +95,6 @@ public:
 
   bool operator==(const UndrainedCyclic &) const = default;
   const char *kind() const override { return "undrained-cyclic"; }
-  const char *stress_ratio_text() const override { return "q_amp / (2 p0')"; }
-  void set_stress_ratio(double ratio, double p0) override { deviator_amplitude = 2 * ratio * p0; }
-  void forget_stress_ratio() override { deviator_amplitude = UndrainedCyclic{}.deviator_amplitude; }
   double average(double) const override { return deviator_average; }
   double amplitude(double) const override { return deviator_amplitude; }
   const char *limits_text() const override { return "deviator_average -+ deviator_amplitude"; }
@@ -121,9 +111,6 @@ public:
   bool operator==(const UndrainedCyclicSimpleShear &) const = default;
   const char *kind() const override { return "undrained-cyclic-simple-shear"; }
   const ShearMode &mode() const override { return simple_shear_mode; }
-  const char *stress_ratio_text() const override { return "tau_amp / sigma'_v0"; }
-  void set_stress_ratio(double ratio, double) override { stress_ratio = ratio; }
-  void forget_stress_ratio() override { stress_ratio = UndrainedCyclicSimpleShear{}.stress_ratio; }
   double average(double sigma_v) const override { return static_stress_ratio * sigma_v; }
   double amplitude(double sigma_v) const override { return stress_ratio * sigma_v; }
   const char *limits_text() const override { return "(static_stress_ratio -+ stress_ratio) sigma'_v0"; }

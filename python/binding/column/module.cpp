@@ -2,8 +2,8 @@
 // The soil column. A module of its own, because it needs deal.II and MPI, which `import isostat` does not load.
 // tested: tests/python/column_test.py
 #include "apps/common/interrupt.hpp"
+#include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
-#include "apps/soil_column/ensemble.hpp"
 #include "apps/soil_column/run.hpp"
 #include "base/error.hpp"
 #include "base/files/replace_file.hpp"
@@ -146,7 +146,8 @@ PYBIND11_MODULE(_column, module)
       .def_property_readonly(
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")
-      .def("_member", [](const ColumnScene &scene, std::size_t k) { return to_toml(member_scene(scene, k)); })
+      .def("check_inputs", &check_inputs,
+           "Reads libraries and records. Raises InputError where they do not have what the scene takes from them.")
       .def(
           "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
       .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })

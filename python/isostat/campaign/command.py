@@ -21,12 +21,12 @@ SCENES = next((folder for parent in pathlib.Path(__file__).parents[2:7]
 
 def shipped(folder: str, name: str) -> str:
     """A file as it is named, or else the installed one of this name."""
-    installed = SCENES / folder / name
-    return str(installed) if not os.path.exists(name) and installed.is_file() else name
+    installed = str(SCENES / folder / name)
+    return installed if not os.path.exists(name) and os.path.isfile(installed) else name
 
 
-def add_scene(line: argparse.ArgumentParser, text: str) -> None:
-    line.add_argument("scene", metavar="SCENE", type=lambda name: shipped("scenes", name), help=text)
+def add_scene(line: argparse.ArgumentParser, text: str, nargs: str | None = None) -> None:
+    line.add_argument("scene", metavar="SCENE", nargs=nargs, type=lambda name: shipped("scenes", name), help=text)
     line.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                       help='override a key, e.g. --set specimen.pressure="100 kPa" (repeatable)')
 
@@ -41,14 +41,19 @@ def overrides(given: list[str]) -> dict[str, str]:
 
 def add_campaign(line: argparse.ArgumentParser, folder: str) -> None:
     """Options of a campaign. folder: default of --output, as the help says it."""
-    line.add_argument("-j", "--jobs", type=count(0, 1024), default=1,
-                      help="runs side by side on this machine, each on one thread (default 1; 0: one for each core). "
-                           "Results do not depend on it")
-    line.add_argument("--engine", help=ENGINE_TEXT)
+    add_engine(line)
     line.add_argument("-o", "--output", type=pathlib.Path, help=f"results folder (default: {folder})")
     line.add_argument("--overwrite", action="store_true", help="start anew: remove finished runs of this folder")
-    line.add_argument("-q", "--quiet", action="store_true", help="no progress on stderr")
     line.add_argument("--no-figures", action="store_true", help="leave no figure and no report")
+
+
+def add_engine(line: argparse.ArgumentParser, jobs: int = 1) -> None:
+    """Where runs are done, and what is said meanwhile."""
+    line.add_argument("-j", "--jobs", type=count(0, 1024), default=jobs,
+                      help=f"runs side by side on this machine, each on one thread (default {jobs}; 0: one for each core). "
+                           "Results do not depend on it")
+    line.add_argument("--engine", help=ENGINE_TEXT)
+    line.add_argument("-q", "--quiet", action="store_true", help="no progress on stderr")
 
 
 def count(low: int, high: int) -> Callable[[str], int]:

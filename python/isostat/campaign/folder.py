@@ -9,12 +9,14 @@ import shlex
 import shutil
 import sys
 import time
+import typing
 
 from isostat import _core
+from isostat.campaign.runs import wait_until_free
 
 FIRST_FILES = (".lock", "provenance.txt", "scene.toml")  # of a call that was killed before its scene was there
 PATIENCE = 5  # s, for a program that is about to leave
-_held = []  # files whose locks end with this process
+_locks: list[typing.BinaryIO] = []  # of this process, until it ends
 
 
 def write_replacing(path: pathlib.Path, text: str) -> None:
@@ -65,7 +67,7 @@ class CampaignFolder:
             return
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            _held.append(open(self.path / ".lock", "ab"))  # pylint: disable=consider-using-with  (until the end)
+            _locks.append(open(self.path / ".lock", "ab"))  # pylint: disable=consider-using-with
         except OSError as error:
             raise _core.InputError(f"{self.path}: the output folder cannot be made or written to ({error.strerror}). "
                                    "Give a path you may write to with --output.") from error
@@ -97,7 +99,7 @@ class CampaignFolder:
         end = time.monotonic() + PATIENCE
         while True:
             try:
-                return fcntl.flock(_held[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return fcntl.flock(_locks[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 if time.monotonic() > end:
                     raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
@@ -109,6 +111,8 @@ class CampaignFolder:
                 raise
 
     def _empty(self):
+        for lock in self.path.glob("*/**/.lock"):
+            wait_until_free(lock.parent)  # of a run whose campaign was killed
         names = [entry.name for entry in self.path.iterdir() if entry.name not in FIRST_FILES]
         for name in [*names, "scene.toml", "provenance.txt"]:  # last what tells that these are results
             path = self.path / name

@@ -7,6 +7,7 @@ import concurrent.futures
 import contextlib
 import dataclasses
 import fcntl
+import json
 import os
 import pathlib
 import shutil
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from isostat import _core
 
@@ -30,6 +32,8 @@ def program(name: str) -> str:
     for folder in folders:
         if os.access(folder / name, os.X_OK) and (folder / name).is_file():
             return str((folder / name).absolute())
+    if found := shutil.which(name):  # of another installation: a wheel has no programs
+        return found
     raise _core.InputError(f"{name}: is not in this installation of Isostat. Build it: cmake --build --preset release "
                            f"--target {name}.")
 
@@ -78,6 +82,14 @@ class Run:
             lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
             return next((line for line in reversed(lines) if line.strip()), "")
         return ""
+
+
+def read_summary(results: pathlib.Path) -> dict[str, Any]:
+    """summary.json of a run that has finished.   Raises InputError (a damaged file)"""
+    try:
+        return json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise _core.InputError(f"{results / 'summary.json'}: is damaged ({error}).") from error
 
 
 def wait_until_free(folder: pathlib.Path) -> None:

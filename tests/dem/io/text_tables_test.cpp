@@ -39,11 +39,6 @@ protected:
     put("comp_contacts_step0.csv", contact_header + row + "\n");
     return refusal();
   }
-  std::string refusal_of_spheres(const std::string &text) const
-  {
-    const auto path = put("spheres.txt", text);
-    return message_of<InputError>([&] { import_tables(path, LinearRolling{}, 2650); });
-  }
   std::filesystem::path put_gzip(const std::string &name, const std::string &text) const
   {
     gzFile file = gzopen((folder / name).c_str(), "wb");
@@ -75,17 +70,6 @@ TEST_F(TextTables, GrainsBoxAndContacts)
   EXPECT_TRUE(s.wall_contacts[1].wall == 1 && s.wall_contacts[1].grain == 1 && s.wall_contacts[1].overlap == 0.05);
 }
 
-TEST_F(TextTables, SpheresWithRowNames)
-{
-  for (const std::string text : {"\"\",\"x\",\"y\",\"z\",\"r\"\n\"1\",0.5,1,1.5,0.25\n", ",x,y,z,r\n0,0.5,1,1.5,0.25\n",
-                                 "\"x\" \"y\" \"z\" \"r\"\n\"1\" 0.5 1 1.5 0.25\n"})
-    {
-      const Snapshot s = import_tables(put("spheres.csv", text), LinearRolling{}, 2650);
-      ASSERT_EQ(s.grains.n_grains(), 1u) << text;
-      EXPECT_EQ(s.grains.centre(0), Vec3(0.5, 1, 1.5)) << text;
-    }
-}
-
 TEST_F(TextTables, GzippedTables)
 {
   const Snapshot plain = import();
@@ -104,13 +88,12 @@ TEST_F(TextTables, GzippedTables)
 
 TEST_F(TextTables, CutGzipIsRefused)
 {
-  std::string text = "# noise\n";
+  std::string text = "id,x,y,z,r,vx,vy,vz,wx,wy,wz\n";
   for (int i = 0; i < 2000; ++i)
-    text += std::to_string(i * 7919 % 1000003) + " 0 0 1\n";
-  const auto path = put_gzip("spheres.txt.gz", text);
-  EXPECT_EQ(import_tables(path, LinearRolling{}, 2650).grains.n_grains(), 2000u);
-  cut_to_half(path);
-  EXPECT_THAT(message_of<InputError>([&] { import_tables(path, LinearRolling{}, 2650); }), HasSubstr("cut off"));
+    text += std::to_string(i) + "," + std::to_string(i * 7919 % 1000003) + ",0,0,1,0,0,0,0,0,0\n";
+  std::filesystem::remove(folder / "comp_particles_step0.csv");
+  cut_to_half(put_gzip("comp_particles_step0.csv.gz", text));
+  EXPECT_THAT(refusal(), HasSubstr("cut off"));
 }
 
 TEST_F(TextTables, UnknownOverlapFollowsFromForceAndStiffness)
@@ -160,31 +143,10 @@ TEST_F(TextTables, BadGrainsAndWalls)
   EXPECT_THAT(refusal(), HasSubstr("2 walls; expected six"));
 }
 
-TEST_F(TextTables, PlainSpheres)
+TEST_F(TextTables, PlacesAndDensitiesThatAreNone)
 {
-  const auto with_box =
-      put("a.txt", "# made by hand\n# box 0 1 0 2 0 3\nx y z r\n0.5 0.5 0.5 0.25\n0.5,1.5,\t2.5 , 0.1\n\n");
-  const Snapshot s = import_tables(with_box, LinearRolling{}, 2650);
-  EXPECT_EQ(s.grains.n_grains(), 2u);
-  EXPECT_EQ(s.grains.centre(1), Vec3(0.5, 1.5, 2.5));
-  EXPECT_EQ(s.box.upper, Vec3(1, 2, 3));
-  EXPECT_TRUE(s.contacts.empty());
-  const Snapshot free = import_tables(put("b.txt", "0 0 0 1\n2 0 0 0.5\n"), LinearRolling{}, 2650);
-  EXPECT_EQ(free.box.lower, Vec3(-1, -1, -1));
-  EXPECT_EQ(free.box.upper, Vec3(2.5, 1, 1));
-}
-
-TEST_F(TextTables, BadPlainSpheres)
-{
-  EXPECT_THAT(refusal_of_spheres("0 0 0 1\n0 0 0\n"), HasSubstr("spheres.txt:2: \"0 0 0\"; expected four numbers"));
-  EXPECT_THAT(refusal_of_spheres("0 0 0 1\n0 0 zero 1\n"), HasSubstr("spheres.txt:2"));
-  EXPECT_THAT(refusal_of_spheres("0 0 0 nan\n"), HasSubstr("spheres.txt:1: radius"));
-  EXPECT_THAT(refusal_of_spheres("x y z r\n"), HasSubstr("no spheres"));
-  EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1\n0 0 0 1\n"), HasSubstr("spheres.txt:1"));
-  EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1 1 0\n0 0 0 1\n"), HasSubstr("each pair rising"));
-  EXPECT_THAT(refusal_of_spheres("# box 0 1 0 1 0 1\n\n2 0 0 1\n"), HasSubstr("spheres.txt:3: centre x = 2"));
-  EXPECT_THAT(message_of<InputError>([&] { import_tables(folder / "absent.txt", LinearRolling{}, 2650); }),
-              HasSubstr("absent.txt: cannot be opened"));
+  EXPECT_THAT(message_of<InputError>([&] { import_tables(folder / "absent", LinearRolling{}, 2650); }),
+              HasSubstr("absent: neither comp_walls_step0.csv nor comp_walls_step0.csv.gz is there"));
   EXPECT_THROW(import_tables(folder, LinearRolling{}, 0), InputError);
 }
 } // namespace

@@ -241,6 +241,10 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "[[stage]]\nkind = \"friction\"\nfriction = \"18 deg\"",
                    {"stage.0.friction", "has no effect"});
   expect_complaint("[specimen]\nfile = \"\"", {"specimen.file", "must name a file"});
+  for (const std::string file : {"packing.txt", "tests/n1000", "a.h5.csv", "a.csv#s0001"})
+    expect_complaint("[specimen]\nfile = \"" + file + "\"",
+                     {"scene.toml:", "specimen.file = " + file, "must be a file of Isostat (.h5)",
+                      "isostat convert " + file + " packing.h5"});
   expect_complaint(smallest + "[contact]\nrolling = {}", {"scene.toml:4: contact.rolling", "without friction"});
 }
 
@@ -258,8 +262,11 @@ TEST(SceneError, MissingFiles)
   const std::string path = testing::TempDir() + "isostat_scene_test.toml";
   std::ofstream(path) << "[specimen]\nfile = \"/nowhere/specimen.h5\"\n";
   EXPECT_THROW(read_scene(path), InputError);
-  EXPECT_EQ(read_scene(path, {"specimen.file=" + path}).output.folder, "results/isostat_scene_test");
+  const std::string packing = testing::TempDir() + "isostat_scene_test.h5";
+  std::ofstream(packing) << "";
+  EXPECT_EQ(read_scene(path, {"specimen.file=" + packing}).output.folder, "results/isostat_scene_test");
   std::filesystem::remove(path);
+  std::filesystem::remove(packing);
 }
 
 TEST(SceneOverride, IsNamedInErrors)

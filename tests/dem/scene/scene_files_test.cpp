@@ -20,7 +20,7 @@ void check_ready_scene(const std::filesystem::path &path)
   const bool quick = name.starts_with("quick_"), in_cell = scene.specimen.domain == "periodic-cell";
   EXPECT_FALSE(scene.title.empty());
   const bool for_library = name.starts_with("rve_library"); // of many small specimens
-  if (for_library || (quick && in_cell)) // no walls, so fewer grains will do
+  if (for_library || (quick && in_cell))                    // no walls, so fewer grains will do
     EXPECT_EQ(scene.grading.grains, 1000u);
   else
     EXPECT_EQ(scene.grading.grains, quick ? 2000u : 10000u);

@@ -309,7 +309,10 @@ TEST(Scene, RoundTripToTheBit)
         if (scene.grading.d50)
           scene.grading.cloud_edge = GradingSpec{}.cloud_edge;
         if (!scene.specimen.file.empty()) // whose grains are its own: a scrambled grading was not written
-          scene.grading = {};
+          {
+            scene.specimen.file += ".h5";
+            scene.grading = {};
+          }
         scene.drive = {}; // of a static one
         if (scene.specimen.e_min)
           scene.specimen.e_max = *scene.specimen.e_min * 1.37;

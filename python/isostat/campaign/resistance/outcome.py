@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What one run says about resistance, and the line through all.   tested: tests/apps/resistance_test.py"""
 import dataclasses
-import json
 import math
 import pathlib
 from typing import Any
 
 import numpy as np
 
-from isostat import _core
+from isostat.campaign.runs import read_summary
 from isostat.results import read_table
 
 DOUBLE_AMPLITUDE, SINGLE_AMPLITUDE = 0.03, 0.0375  # of gamma: what counts as failure
@@ -58,10 +57,7 @@ class Outcome:
         largest = np.abs(strain).max(initial=0)
         self.status = ("liquefied" if self.to_liquefaction is not None else
                        "strain" if largest >= max_strain else "censored")
-        try:
-            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise _core.InputError(f"{folder / 'summary.json'}: is damaged ({error}).") from error
+        summary = read_summary(folder)
         self.void_ratio, self.seconds = summary.get("void_ratio"), summary.get("seconds")
 
 

@@ -133,7 +133,7 @@ TEST(StaticBias, ThatIsotropicConsolidationCannotGiveIsRefusedAtReading)
 using ScenesOnDisk = TemporaryFolder;
 
 /// The written form of a scene has its default loads, and would be refused.
-TEST_F(ScenesOnDisk, DefaultLoadsCountAsWellUnlessACampaignGivesOthers)
+TEST_F(ScenesOnDisk, DefaultLoadsCountAsWell)
 {
   const std::string text = "[specimen]\npreparation_friction = \"10 deg\"\n[[stage]]\nkind = "
                            "\"undrained-cyclic\"\ndeviator_average = \"80 kPa\"\n";
@@ -141,7 +141,6 @@ TEST_F(ScenesOnDisk, DefaultLoadsCountAsWellUnlessACampaignGivesOthers)
               testing::StartsWith("s.toml:5: stage.0.deviator_average = 80 kPa; cannot be held"));
   const std::string path = put("s.toml", text).string();
   EXPECT_THAT(test::refusal([&] { read_scene(path); }), testing::HasSubstr("cannot be held"));
-  EXPECT_NO_THROW(read_scene(path, {}, LeftOutLoads::given_later));
 }
 
 TEST(PathKeys, ShearNeedsTheCell)
