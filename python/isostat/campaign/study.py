@@ -16,6 +16,7 @@ tested: tests/apps/study_test.py
 import argparse
 import concurrent.futures
 import importlib
+import os
 import pathlib
 import sys
 from typing import Any
@@ -71,9 +72,9 @@ def estimate(store: Store, planned: list[Any]) -> float:
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
     planned = study.runs(options)
     if options.quick:
-        planned = [run for run in planned if run.estimated_seconds() < QUICK_SECONDS]
-        prepared = {run.specimen for run in planned if run.kind == "prepare"}
-        planned = [run for run in planned if run.specimen in prepared]
+        long = [run for run in planned if run.estimated_seconds() > QUICK_SECONDS]
+        missing = {run.specimen for run in long if run.kind == "prepare"}
+        planned = [run for run in planned if run not in long and run.specimen not in missing]
     store = Store(options.output, planned)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
@@ -118,6 +119,7 @@ def load(name: str) -> Any:
     if name not in known:
         raise _core.InputError(f"{name}: is no study. There are: {', '.join(known)}.")
     sys.path[:0] = [str(folder.parent), str(pathlib.Path(__file__).parents[1])]  # studies, figures
+    os.environ.setdefault("MPLBACKEND", "Agg")  # figures are only saved
     return importlib.import_module(f"studies.{name}")
 
 
