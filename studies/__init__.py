@@ -3,4 +3,4 @@
 import pathlib
 
 _ABOVE = pathlib.Path(__file__).resolve().parents[1]
-APPS = _ABOVE / "apps" if (_ABOVE / "apps").is_dir() else _ABOVE  # with scenes, laboratory: of the repository, or installed
+APPS = _ABOVE / "apps" if (_ABOVE / "apps").is_dir() else _ABOVE  # with scenes, laboratory; or installed

@@ -17,7 +17,8 @@ def write_tables(folder, tables):
 
 def markdown(header, rows):
     """A table of texts."""
-    return "\n".join("| " + " | ".join(row) + " |" if row else "|" + "---|" * len(header) for row in (header, [], *rows))
+    lines = ["| " + " | ".join(row) + " |" for row in (header, *rows)]
+    return "\n".join([lines[0], "|" + "---|" * len(header), *lines[1:]])
 
 
 def write_csv(path, rows, digits=5):

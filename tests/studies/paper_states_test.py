@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests/apps")]
 from support import BIN, ToleranceTest  # noqa: E402  (the folders come first)
 
 sys.path[:0] = [str(BIN.parent / "python")]
-from studies.paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402  (the folders come first)
+from studies.paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402  (folders first)
 from studies.tables import write_csv  # noqa: E402
 
 
