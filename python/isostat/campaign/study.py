@@ -3,13 +3,15 @@
 
 A study is a package of the folder studies, with
 
-    runs(options) -> list        what is run: objects with name, specimen, kind ("prepare" for one that only makes it), scene(),
-                                 estimated_seconds(), and program if it is not element_test
+    runs(options) -> list        what is run: objects with name, kind, estimated_seconds(), scene(), and program if it is not
+                                 element_test. Those of kind "prepare" come first and make what others of the same
+                                 `specimen` need. In place of scene(): function, called in a process of its own with the
+                                 folder of results and arguments(), a dictionary; it returns one, too
     report(store, runs, folder)  leaves tables and figures of what has been run
     add_options(line)            options of its own, if it has any
     DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
 
-or with do(options, executor) in place of the first two, where it runs other things than scenes.
+or with do(options, executor) in place of the first two.
 
 tested: tests/apps/study_test.py
 """
@@ -24,6 +26,7 @@ from typing import Any
 from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder
+from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete
 from isostat.running import as_scene
 
@@ -41,12 +44,19 @@ def studies_folder() -> pathlib.Path:
     raise _core.InputError("the folder studies is not in this installation. Call isostat study in the repository.")
 
 
+def as_run(folder: pathlib.Path, planned: Any) -> Run:
+    if hasattr(planned, "function"):
+        return FunctionRun.of(folder, planned.name, planned.function, planned.arguments())
+    scene = planned.scene()
+    return Run.below(folder, planned.name, scene if hasattr(scene, "text") else as_scene(scene),
+                     program=getattr(planned, "program", "element_test"))
+
+
 class Store:
     """What has been run in a folder, by the runs of a study."""
 
     def __init__(self, folder: pathlib.Path, planned: list[Any]):
-        self._runs = {run.name: Run.below(folder, run.name, as_scene(run.scene()),
-                                          program=getattr(run, "program", "element_test")) for run in planned}
+        self._runs = {run.name: as_run(folder, run) for run in planned}
 
     def run(self, planned: Any) -> Run:
         return self._runs[planned.name]
@@ -74,7 +84,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
     if options.quick:
         long = [run for run in planned if run.estimated_seconds() > QUICK_SECONDS]
         missing = {run.specimen for run in long if run.kind == "prepare"}
-        planned = [run for run in planned if run not in long and run.specimen not in missing]
+        planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
     store = Store(options.output, planned)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
