@@ -14,7 +14,8 @@ def add_options(line):
 
 
 def runs(options):
-    return [run for part in options.parts for run in plan.PARTS[part](options.seeds, options.grains, options.amplitudes)]
+    given = options.seeds, options.grains, options.amplitudes
+    return [run for part in options.parts for run in plan.PARTS[part](*given)]
 
 
 __all__ = ["DEFAULTS", "QUICK", "add_options", "report", "runs"]

@@ -18,12 +18,14 @@ NORMAL = np.eye(3, dtype=bool)
 def element(results, run, contact, **options):
     """The packing of a run, isotropically consolidated."""
     scene = isostat.Scene(
-        grading={"grains": run.grains, "cloud_edge": f"{10 * (run.grains / 10000) ** (1 / 3):.3f} mm", "seed": run.seed},
+        grading={"grains": run.grains, "seed": run.seed,
+                 "cloud_edge": f"{10 * (run.grains / 10000) ** (1 / 3):.3f} mm"},
         contact={**contact, "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
                  "twisting": {"stiffness": 0.3}},
         specimen={"domain": "periodic-cell", "pressure": f"{run.pressure} kPa",
                   "preparation_friction": f"{run.degrees} deg"})
-    return isostat.Rve(isostat.prepare(scene, cache=results.parent / "specimens").snapshot, min_steps=MIN_STEPS, **options)
+    specimen = isostat.prepare(scene, cache=results.parent / "specimens")
+    return isostat.Rve(specimen.snapshot, min_steps=MIN_STEPS, **options)
 
 
 def accepted(response):

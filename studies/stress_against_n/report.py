@@ -85,7 +85,8 @@ def means(samples, by_grains):
 
 def fits(samples):
     first, last = samples[0].grains[[0, -1]]
-    return (["quantity", "x in scatter ~ N^-x", f"mean at N = {last:,} minus mean at {first:,}", "m_inf", "c", "misfit"],
+    change = f"mean at N = {last:,} minus mean at {first:,}"
+    return (["quantity", "x in scatter ~ N^-x", change, "m_inf", "c", "misfit"],
             [[s.quantity.title, with_error(-s.scatter[1][0], s.scatter[1][1]),
               with_error(s.mean[-1] - s.mean[0], math.hypot(s.error[0], s.error[-1])), with_error(*s.drift[0]),
               with_error(*s.drift[1]), f"{s.misfit:.1f}"] for s in samples if s.scatter and s.drift])

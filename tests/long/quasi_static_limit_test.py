@@ -30,7 +30,7 @@ class SlowTests(unittest.TestCase):
                  for domain in plan.DOMAINS for s in SEEDS]
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        store = Store(pathlib.Path(cls.folder.name), runs)
+        store = Store(pathlib.Path(cls.folder.name))
         with campaign.engine("local", jobs=0) as executor:
             for kind in ("prepare", "cyclic"):
                 campaign.complete(executor, [store.run(run) for run in runs if run.kind == kind])

@@ -17,6 +17,7 @@ tested: tests/apps/study_test.py
 """
 import argparse
 import concurrent.futures
+import contextlib
 import importlib
 import os
 import pathlib
@@ -55,17 +56,23 @@ def as_run(folder: pathlib.Path, planned: Any) -> Run:
 class Store:
     """What has been run in a folder, by the runs of a study."""
 
-    def __init__(self, folder: pathlib.Path, planned: list[Any]):
-        self._runs = {run.name: as_run(folder, run) for run in planned}
+    def __init__(self, folder: pathlib.Path):
+        self._folder = folder
+        self._runs: dict[str, Run] = {}
 
     def run(self, planned: Any) -> Run:
+        """Raises InputError where its scene needs what has not been prepared yet"""
+        if planned.name not in self._runs:
+            self._runs[planned.name] = as_run(self._folder, planned)
         return self._runs[planned.name]
 
     def folder(self, planned: Any) -> pathlib.Path:
         return self.run(planned).results
 
     def is_done(self, planned: Any) -> bool:
-        return self.run(planned).is_finished
+        with contextlib.suppress(_core.InputError):
+            return self.run(planned).is_finished
+        return False
 
     def cpu_seconds(self, planned: Any) -> float:
         return self.run(planned).cpu_seconds
@@ -85,7 +92,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         long = [run for run in planned if run.estimated_seconds() > QUICK_SECONDS]
         missing = {run.specimen for run in long if run.kind == "prepare"}
         planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
-    store = Store(options.output, planned)
+    store = Store(options.output)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
