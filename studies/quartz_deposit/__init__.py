@@ -20,8 +20,8 @@ SECONDS = {"quartz": 5000, "linear": 1800}  # of 12 s
 
 def library(results, scene, keys, pressures):
     """Specimens of a column."""
-    specimens = [isostat.prepare(isostat.Scene(scene, set={**keys, "specimen.pressure": pressure}), cache=results.parent /
-                                 "specimens") for pressure in pressures]
+    scenes = [isostat.Scene(scene, set={**keys, "specimen.pressure": pressure}) for pressure in pressures]
+    specimens = [isostat.prepare(one, cache=results.parent / "specimens") for one in scenes]
     return {"entries": isostat.write_library(results / "library.h5", specimens, overwrite=True)}
 
 

@@ -40,8 +40,8 @@ class Run:
     def arguments(self):
         edge = 10 * (self.grains / 10000) ** (1 / 3)
         return {"scene": str(APPS / "scenes/void_ratio_limits.toml"),
-                "keys": {"grading.grains": self.grains, "grading.seed": self.seed, "grading.cloud_edge": f"{edge:.15g} mm",
-                         "specimen.domain": self.domain}}
+                "keys": {"grading.grains": self.grains, "grading.seed": self.seed,
+                         "grading.cloud_edge": f"{edge:.15g} mm", "specimen.domain": self.domain}}
 
     def estimated_seconds(self):
         return 60 * self.grains / 2000

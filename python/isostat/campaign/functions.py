@@ -25,9 +25,10 @@ class FunctionRun(Run):
     def of(cls, folder: pathlib.Path, name: str, function: Callable[..., dict[str, Any]],
            arguments: dict[str, Any]) -> "FunctionRun":
         module, folder = sys.modules[function.__module__], folder.absolute()
+        depth = module.__name__.count(".") + hasattr(module, "__path__")
         text = json.dumps({"module": module.__name__, "function": function.__name__, "arguments": arguments}, indent=1)
         return cls(name, text, folder / "scenes" / f"{name}.json", folder / "runs" / name, folder / "logs" / f"{name}.log",
-                   str(pathlib.Path(str(module.__file__)).absolute().parents[module.__name__.count(".")]))
+                   str(pathlib.Path(str(module.__file__)).absolute().parents[depth]))
 
     def command(self, resumed: bool) -> list[str]:
         paths = f"{pathlib.Path(__file__).absolute().parents[2]}:{self.program}"

@@ -93,12 +93,13 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         missing = {run.specimen for run in long if run.kind == "prepare"}
         planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
     store = Store(options.output)
+    if not options.dry_run:
+        CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
+                       overwrite=options.overwrite)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
         return
-    CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
-                   overwrite=options.overwrite)
     progress = command.Progress(
         lambda: f"{sum(map(store.is_done, planned))} of {len(planned)} runs, ETA "
         f"{command.duration_text(estimate(store, planned) / max(1, options.jobs))}", options.quiet)
