@@ -154,7 +154,7 @@ class Packing:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run, as runner.Campaign takes it."""
+    """One run, as isostat study takes it."""
 
     kind: str  # prepare, compression, extension, drained, cyclic
     packing: Packing

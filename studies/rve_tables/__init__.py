@@ -59,7 +59,8 @@ class Run:
 
     @property
     def name(self):
-        return f"{self.kind}_{self.consolidation if self.twisting is None else self.twisting}_s{self.seed}_n{self.grains}"
+        variant = self.consolidation if self.twisting is None else self.twisting
+        return f"{self.kind}_{variant}_s{self.seed}_n{self.grains}"
 
     @property
     def strains(self):
@@ -112,6 +113,7 @@ def rotation(run, result):
 
 def twisting(alpha, results):
     """Mean and standard deviation over the packings."""
-    values = np.array([[*(s[name] for name in ("shear", "mean") for s in r["states"][1:]), r["speed"]] for r in results])
+    values = np.array([[*(s[name] for name in ("shear", "mean") for s in result["states"][1:]), result["speed"]]
+                       for result in results])
     spread = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(values.shape[1])
     return [f"{alpha:g}", *(f"{m:.1f} ± {s:.1f}" for m, s in zip(values.mean(axis=0), spread))]
