@@ -155,7 +155,7 @@ def main():
     arguments = parser.parse_args()
     root = arguments.root.resolve()
 
-    tops = ("base", "dem", "fem", "coupling", "apps", "tests", "benchmarks", "examples", "scripts")
+    tops = ("base", "dem", "fem", "coupling", "apps", "tests", "benchmarks", "studies", "examples", "scripts")
     files = [f for top in tops for f in sorted((root / top).rglob("*")) if f.suffix in {".cpp", ".hpp", ".c", ".h", ".py"}]
     problems, lengths = [], {}
     for file in files:

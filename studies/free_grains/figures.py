@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws what the tables say."""
 import numpy as np
-import matplotlib
+import matplotlib.pyplot as plt
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-
-from studies.free_grains import plan  # noqa: E402
-from studies.speed_error import paths  # noqa: E402
+from studies.ensembles import mean_and_interval
+from studies.free_grains import plan
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False}
@@ -55,7 +52,7 @@ def draw_cycles(results, path):
             keys = [(domain, plan.GRAINS, setting) for setting in settings]
             keys = [key for key in keys if len(results.cyclic.get(key, {})) > 1]
             steps = [np.mean([t.steps for t in results.cyclic[key].values()]) for key in keys]
-            found = [paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
+            found = [mean_and_interval(results.differences(key, reference, lambda t: t.cycles)) for key in keys]
             if found and not (domain != "rigid-box" and "walls push" in label):
                 mean, half = np.array(found).T
                 panel.errorbar(steps, base + mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)
@@ -77,7 +74,7 @@ def draw_damping(results, path):
         for rate, (label, colour, marker) in enumerate(RATES):
             keys = {damping: (domain, plan.GRAINS, both[damping][rate]) for damping in sorted(both)}
             seeds = set(results.cyclic.get(keys[0.2], {}))
-            rows = [(damping, *paths.mean_and_interval(results.differences(key, reference, lambda t: t.cycles, seeds)))
+            rows = [(damping, *mean_and_interval(results.differences(key, reference, lambda t: t.cycles, seeds)))
                     for damping, key in keys.items() if len(results.cyclic.get(key, {})) > 2]
             if rows:
                 damping, mean, half = np.array(rows).T

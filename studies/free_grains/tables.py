@@ -2,8 +2,9 @@
 """Gathers the runs that are done: one table for each question, written as CSV."""
 import numpy as np
 
-from studies.free_grains import plan
-from studies.speed_error import paths
+from studies.ensembles import ensemble, mean_and_interval
+from studies.free_grains import paths, plan
+from studies.history import History
 
 REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
 
@@ -31,7 +32,7 @@ class Results:
         for run in self.runs:
             if run.kind == "cyclic":
                 self.cyclic.setdefault((run.packing, run.grains, run.setting), {})[run.seed] = Cyclic(
-                    paths.History(store.folder(run)))
+                    History(store.folder(run)))
 
     def of(self, kind):
         return [run for run in self.runs if run.kind == kind]
@@ -65,12 +66,12 @@ class Results:
             cycles = [t.cycles for t in tests.values() if np.isfinite(t.cycles)]
             stress = np.array([d for d in self.differences(key, reference, lambda t: t.p)])
             rows.append([domain, grains, setting.label, len(tests), len(cycles), np.mean(cycles),
-                         paths.ensemble(cycles)[2],
-                         *paths.mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
-                         *paths.mean_and_interval(self.differences(key, slow, lambda t: t.cycles)),
+                         ensemble(cycles)[2],
+                         *mean_and_interval(self.differences(key, reference, lambda t: t.cycles)),
+                         *mean_and_interval(self.differences(key, slow, lambda t: t.cycles)),
                          np.mean([t.steps for t in tests.values()]),
                          np.nanmean([t.redundancy for t in tests.values()]), *np.nanmean(stress, axis=0),
-                         *[paths.mean_and_interval(column)[1] for column in stress.T]])
+                         *[mean_and_interval(column)[1] for column in stress.T]])
         return header, rows
 
     def path_table(self):
@@ -81,7 +82,7 @@ class Results:
                 found = self.path_distances((domain, grains, setting), (domain, grains, reference))
                 if found and setting is not reference:
                     rows.append(["cyclic to reversal 10", domain, grains, setting.label, reference.label, len(found),
-                                 np.mean(found), paths.ensemble(found)[2], np.median(found), np.max(found)])
+                                 np.mean(found), ensemble(found)[2], np.median(found), np.max(found)])
         return ["path", "domain", "grains", "setting", "reference", "seeds", "largest distance (% of p0')",
                 "standard error", "median", "largest of a specimen"], rows
 
@@ -93,18 +94,18 @@ class Results:
             found = [p[domain, setting, s] - p[domain, plan.DEFAULT, s] for d, other, s in p
                      if (d, other) == (domain, setting) and (domain, plan.DEFAULT, s) in p]
             if setting is not plan.DEFAULT and found:
-                rows.append([domain, setting.label, len(found), *paths.mean_and_interval(found), np.median(found),
+                rows.append([domain, setting.label, len(found), *mean_and_interval(found), np.median(found),
                              np.min(found), np.max(found)])
         return ["domain", "setting", "seeds", "p' at reversal 2 less that of the default (kPa)", "half 95 % interval",
                 "median", "least", "largest"], rows
 
     def end_of_first_cycle(self, run):
-        history = paths.History(self.store.folder(run))
+        history = History(self.store.folder(run))
         return history.p[history.reversal_rows[1]] / 1e3
 
     def monotonic_table(self):
         """At each strain p' less that of the slow test, and the largest distance of the path up to it; over p0'."""
-        histories = {(run.setting, run.seed): paths.History(self.store.folder(run)) for run in self.of("monotonic")}
+        histories = {(run.setting, run.seed): History(self.store.folder(run)) for run in self.of("monotonic")}
         *settings, reference = plan.ONE_WAY
         rows = []
         for setting in settings:
@@ -113,16 +114,16 @@ class Results:
                          for (some, s) in histories if some == setting and (reference, s) in histories]
                 pairs = [pair for pair in pairs if all(path is not None for path in pair)]
                 if pairs:
-                    signed = paths.mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
+                    signed = mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
                     distances = [100 * paths.deviation(*pair)[1] for pair in pairs]
                     rows.append([setting.label, reference.label, len(pairs), f"{100 * strain:g}", *signed,
-                                 np.mean(distances), paths.ensemble(distances)[2]])
+                                 np.mean(distances), ensemble(distances)[2]])
         return ["setting", "reference", "seeds", "axial strain (%)", "p' less that of the reference (% of p0')",
                 "half 95 % interval", "largest distance of the path (% of p0')", "standard error"], rows
 
     def held(self, run):
         """Steps since loading stopped, p' lost (kPa), kinetic energy (J), unbalanced-force ratio; p' at first (kPa)."""
-        h = paths.History(self.store.folder(run))
+        h = History(self.store.folder(run))
         rows = np.flatnonzero(h.stage == h.stage[-1])
         return (h.step[rows] - h.step[rows[0]], (h.p[rows[0]] - h.p[rows]) / 1e3, h.E_kin[rows], h.unbalanced[rows],
                 h.p[rows[0]] / 1e3)
@@ -145,7 +146,7 @@ class Results:
                   "share of sliding contacts", "share of rolling contacts", "strain travelled (%)"]
         rows = []
         for setting in (plan.DEFAULT, plan.SLOW):
-            found = [liquefied(paths.History(self.store.folder(run))) for run in self.of("liquefied")
+            found = [liquefied(History(self.store.folder(run))) for run in self.of("liquefied")
                      if run.setting == setting]
             found = [f for f in found if f]
             if found:

@@ -4,7 +4,7 @@ drained tests beside the laboratory. And what they leave open: resistance curves
 other ways, slower tests and usual ones.
 
     isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
-    isostat study paper --quick                                     smaller strains, fewer states: ten minutes on two cores
+    isostat study paper --quick                                     smaller strains, fewer states (12 CPU minutes)
     isostat study paper --parts resistance critical ways paces      what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
     isostat study paper --figures docs/results/paper                figures and claims anew from tables
@@ -16,6 +16,7 @@ import sys
 
 from isostat.campaign import study
 from studies.paper import claims, figures, plan, tables, variants
+from studies.tables import read_csv, write_csv
 
 DEFAULTS, QUICK = {"seeds": 3}, {}
 MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
@@ -51,14 +52,14 @@ def write(folder, found):
     """The tables, and those that are read as texts."""
     for name, rows in found.items():
         if rows:
-            tables.write_csv(folder / f"{name}.csv", rows)
+            write_csv(folder / f"{name}.csv", rows)
         if rows and name in MARKDOWN:
             (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
 
 
 def draw(folder):
     """Figures and claims from the tables in a folder."""
-    needed = {name: tables.read_csv(folder / f"{name}.csv") for name in claims.TABLES}
+    needed = {name: read_csv(folder / f"{name}.csv") for name in claims.TABLES}
     if needed["undrained_states"] and needed["cyclic_tests"]:
         write(folder, {"claims": claims.table(needed)})
     figures.draw(folder)

@@ -5,8 +5,8 @@ import operator
 
 import numpy as np
 
+from studies.ensembles import ensemble, mean_and_interval
 from studies.paper import plan, states
-from studies.speed_error import paths
 
 TABLES = ("undrained_states", "cyclic_tests", "half_cycles", "paces")  # that they are judged by
 MARGIN = 0.2  # of the number of the paper
@@ -32,7 +32,7 @@ def verdict(claim, values):
     or lower if none of it is. Of a sentence: whether it holds in nearly all tests, in nearly none, or in some."""
     if not values:
         return "not tested"
-    mean, half = paths.mean_and_interval(values)
+    mean, half = mean_and_interval(values)
     if claim.expected is None:
         return "holds" if mean >= SURE else "does not hold" if mean <= 1 - SURE else "in some tests"
     away, margin = mean - claim.expected, MARGIN * abs(claim.expected)
@@ -122,7 +122,7 @@ def sentence(holds, *names):
 
 def of_halves(number):
     """number(row), averaged over the half cycles of a test in which it is one."""
-    return lambda t: by_seed((rows[0]["seed"], paths.ensemble([number(row) for row in rows])[0]) for rows in t.halves())
+    return lambda t: by_seed((rows[0]["seed"], ensemble([number(row) for row in rows])[0]) for rows in t.halves())
 
 
 def correlated(one, other, least):
@@ -275,7 +275,7 @@ def table(tables):
     tests, rows = Tests(tables), []
     for claim in CLAIMS:
         values = [v for v in claim.values(tests) if np.isfinite(v)]
-        mean, _, error, n = paths.ensemble(values)
+        mean, _, error, n = ensemble(values)
         if n:
             rows.append({"claim": claim.text, "expected": "" if claim.expected is None else claim.expected,
                          "by": claim.source, "unit": claim.unit if claim.expected is not None else "share of tests",

@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from studies.paper import lab, plan, states
-from studies.paper.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
+from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
                            plain_logarithm)
 from studies.paper.resistance import REFERENCE, fitted_ratios
 

@@ -2,11 +2,13 @@
 """Laboratory tests on Karlsruhe fine sand (apps/laboratory)."""
 import csv
 import dataclasses
-import pathlib
 
 import numpy as np
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "apps/laboratory"
+from isostat.results import read_table
+from studies import APPS
+
+FOLDER = APPS / "laboratory"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,8 +42,7 @@ def drained_tests():
 
 
 def drained_test(path, entry):
-    rows = rows_of(path)
-    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    columns = read_table(path)
     return Drained(path.stem, float(entry["e_0[-]"]), float(entry["Dr_0[%]"]) / 100,
                    100 * round(float(entry["sigma_r0[kPa]"]) / 100), columns["eps_a[%]"] / 100,
                    columns["eps_v[%]"] / 100, 1e3 * columns["sigma_v[kPa]"], 1e3 * columns["sigma_r[kPa]"])

@@ -8,7 +8,7 @@ P0 = 200  # kPa, of the paper
 FRICTION = 18  # degrees
 PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
-# (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (docs/results/paper/limits.csv);
+# (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (study void_ratio_limits);
 # at the paper's limits no box of 2,000 grains is as dense as D_r = 0.88
 PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.632, 0.896)}
 CELL_LIMITS = (0.518, 0.802)  # of 2,000 grains, the loosest away from walls
@@ -154,7 +154,7 @@ class Packing:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run, as runner.Campaign takes it."""
+    """One run, as isostat study takes it."""
 
     kind: str  # prepare, compression, extension, drained, cyclic
     packing: Packing

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gathers the tests that are done into tables: a row for each test, and curves as mean and standard deviation."""
-import csv
-
 import numpy as np
 
+from studies.ensembles import ensemble
+from studies.history import History
 from studies.paper import lab, plan, resistance, states, variants
-from studies.speed_error import paths
+from studies.tables import number, read_csv
 
 STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
 PHASED = (*states.COUNTS, *states.FRACTIONS, "Fxx", "Fyy", "Fzz", "F_yx", "F_yz")
@@ -28,7 +28,7 @@ def relative_density(e, limits):
 def history_of(run, folder):
     """The history; that of a cyclic test without the stages that make and drain the specimen, with the volumetric
     strain of the latter, `drained_strain`."""
-    history = paths.History(folder)
+    history = History(folder)
     if run.kind == "cyclic":
         history.IR_walls = states.redundancy_with_walls(history, run.packing.grains)
         rows = history.stage == len(run.packing.stages())
@@ -164,7 +164,7 @@ def phase_numbers(column, found):
     if len(seeds) < max(1, len(found) / 2):
         return dict.fromkeys((column, f"{column} low", f"{column} high"), np.nan)
     means, lows, highs = zip(*seeds)
-    mean, deviation, *_ = paths.ensemble(means)
+    mean, deviation, *_ = ensemble(means)
     back = np.exp if logarithmic else float
     return {column: back(mean), f"{column} s.d. of ln" if logarithmic else f"{column} s.d.": deviation,
             f"{column} low": back(np.mean(lows)), f"{column} high": back(np.mean(highs))}
@@ -184,7 +184,7 @@ def curves(groups, values, names):
         for k, strain in enumerate(grid):
             row = {"test": kind, "specimen": label, "slow": slow, "seeds": len(tests), "|eps_1| (%)": strain}
             for column, name in enumerate(names):
-                row[name], row[f"{name} s.d."], *_ = paths.ensemble(found[:, column, k])
+                row[name], row[f"{name} s.d."], *_ = ensemble(found[:, column, k])
             rows.append(row)
     return rows
 
@@ -197,14 +197,6 @@ TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", 
         "laboratory test")
 
 
-def read_csv(path):
-    """Rows of a table; none if it is not there."""
-    if not path.exists():
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{name: value_of(text) for name, text in row.items()} for row in csv.DictReader(file)]
-
-
 def merged(path, rows):
     """These rows behind those of the table that is there, but for the tests and curves that are in `rows`."""
     before = read_csv(path)
@@ -215,29 +207,3 @@ def merged(path, rows):
 def test_of(row):
     """To which test or curve a row belongs."""
     return tuple(str(number(row.get(name, ""))) for name in TEST)
-
-
-def value_of(text):
-    """Of a cell of a table: a number, a truth value, or text; not a number where it is empty."""
-    if text in ("True", "False"):
-        return text == "True"
-    try:
-        return int(text) if text.isdigit() else float(text or "nan")
-    except ValueError:
-        return text
-
-
-def write_csv(path, rows):
-    """A table of dictionaries; columns in the order in which they are first met."""
-    header = list(dict.fromkeys(name for row in rows for name in row))
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(header)
-        for row in rows:
-            out.writerow([number(row.get(name, "")) for name in header])
-
-
-def number(value):
-    if isinstance(value, (float, np.floating)):
-        return "" if np.isnan(value) else f"{value:.5g}"
-    return value

@@ -2,8 +2,8 @@
 """What hangs on how specimens are made, and on how fast they are tested: a row for each variant."""
 import numpy as np
 
+from studies.ensembles import ensemble
 from studies.paper import plan, states
-from studies.speed_error import paths
 
 
 HALVES = {"I_R as p'/p0' first passes 0.01": "I_R as p'/p0' first passes 0.01",
@@ -30,7 +30,7 @@ def of_pace(history):
     return {"cycles to liquefaction": numbers["cycles"], "steps": history.step[-1] - history.step[0],
             "I_R at the onset": numbers["I_R at onset, Eq. 2"],
             "p'/p0' where I_R falls below 1": numbers["p'/p0' where I_R falls below 1, Eq. 2"],
-            **{name: paths.ensemble([row[column] for row in halves])[0] for name, column in HALVES.items()},
+            **{name: ensemble([row[column] for row in halves])[0] for name, column in HALVES.items()},
             "f_R at the onset": np.nan if history.onset is None else history.f_R[history.onset],
             **{name: numbers.get(name, np.nan) for name in strains}}
 
@@ -78,7 +78,7 @@ def markdown(rows):
 
 
 def cell(values):
-    mean, _, error, n = paths.ensemble(values)
+    mean, _, error, n = ensemble(values)
     if n == 0:
         return "–"
     text = f"{mean:.4g}" + (f" ± {error:.2g}" if n > 1 else "")

@@ -2,12 +2,11 @@
 """Figures: error against cost, and cycles specimen by specimen."""
 import numpy as np
 import matplotlib
+import matplotlib.pyplot as plt
+from matplotlib import ticker
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib import ticker  # noqa: E402
-
-from studies.speed_error import paths, plan  # noqa: E402
+from studies.ensembles import ensemble
+from studies.speed_error import plan
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
          "grid.color": "#e4e4e4", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False}
@@ -106,7 +105,7 @@ def cycles(results, path):
                 place, colour = labels.index(key[2].label), look(key[2])[0]
                 spread = place + np.linspace(-0.2, 0.2, len(values))
                 axes.plot(values, spread, "o", ms=3, color=colour, alpha=0.4, mew=0)
-                mean, _, error, n = paths.ensemble(values)
+                mean, _, error, n = ensemble(values)
                 axes.errorbar(mean, place, xerr=error if n > 1 else 0, fmt="D", ms=5, color=colour, elinewidth=2)
             axes.axvline(0, color="#9a9a9a", lw=0.8, zorder=0)
             axes.set_title(title, fontsize=9.5, loc="left")

@@ -69,7 +69,7 @@ until = {{ {} }}
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run, as runner.Campaign takes it."""
+    """One run, as isostat study takes it."""
 
     kind: str  # prepare; cyclic, to the onset; path, five cycles; monotonic
     seed: int

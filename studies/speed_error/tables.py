@@ -5,7 +5,9 @@ import warnings
 
 import numpy as np
 
-from studies.speed_error import paths, plan
+from studies.ensembles import ensemble, mean_and_interval
+from studies.history import History
+from studies.speed_error import plan
 
 REVERSALS = 10  # up to here paths are compared
 STRAINS = (0.001, 0.002, 0.005)  # of monotonic tests
@@ -59,7 +61,7 @@ class Results:
         self.cyclic = collections.defaultdict(dict)  # by packing, grains and setting, then by seed
         self.monotonic = collections.defaultdict(dict)  # by setting, then by seed
         for run in done:
-            history, cpu = paths.History(store.folder(run)), store.cpu_seconds(run)
+            history, cpu = History(store.folder(run)), store.cpu_seconds(run)
             if run.kind == "monotonic":
                 self.monotonic[run.setting][run.seed] = history, cpu
             else:
@@ -107,7 +109,7 @@ class Results:
                 continue
             difference = [a.cycles - b.cycles for a, b in self.pairs(key, plan.STATIC).values()]
             rows.append([key[0], key[1], key[2].label, len(tests), *self.mean_and_error([t.cycles for t in tests]),
-                         *paths.mean_and_interval(difference), np.mean([t.steps for t in tests]),
+                         *mean_and_interval(difference), np.mean([t.steps for t in tests]),
                          np.max([t.steps for t in tests]), np.mean([t.steps * t.milliseconds / 1e3 for t in tests]),
                          *self.mean_and_error([t.before[0] for t in tests]),
                          *self.mean_and_error([t.before[1] for t in tests]), np.mean([t.after[1] for t in tests])])
@@ -118,7 +120,7 @@ class Results:
 
     @staticmethod
     def mean_and_error(values):
-        mean, _, error, _ = paths.ensemble(values)
+        mean, _, error, _ = ensemble(values)
         return mean, error
 
     def monotonic_table(self):

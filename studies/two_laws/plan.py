@@ -34,7 +34,7 @@ paraview = false
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run, as runner.Campaign takes it: its specimen first (prepare), then its test."""
+    """One run, as isostat study takes it: its specimen first (prepare), then its test."""
 
     kind: str  # prepare, cyclic (triaxial), monotonic, shear (cyclic simple shear)
     law: str

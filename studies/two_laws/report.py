@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables and figures of the runs that are done."""
-import csv
 import json
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FixedLocator, NullFormatter
 
-from studies.paper.drawing import BLUE, ORANGE, RED, STYLE, panels, plain_logarithm
-from studies.speed_error import paths
+from studies.history import History
+from studies.drawing import BLUE, ORANGE, RED, STYLE, panels, plain_logarithm
+from studies.tables import write_csv
 from studies.two_laws import plan
 
 COLOURS = {"linear-rolling": ORANGE, "hertz-mindlin": BLUE}
@@ -27,7 +27,7 @@ def rows_of(store, runs, kinds):
         row = {"law": run.law, "seed": run.seed, "prepared at (deg)": run.degrees, "e": summary["void_ratio"],
                "p0' (kPa)": run.pressure}
         if run.kind == "monotonic":
-            history = paths.History(store.folder(run))
+            history = History(store.folder(run))
             last = int(np.argmin(np.abs(history.eps_y - history.eps_y[0] - 0.05)))
             row |= {"least p' (kPa)": history.p.min() / 1e3, "p' at 5 % (MPa)": history.p[last] / 1e6,
                     "q/p' at 5 %": history.q[last] / history.p[last]}
@@ -40,15 +40,6 @@ def rows_of(store, runs, kinds):
         rows.append(row)
     return rows
 
-
-def write_csv(path, rows):
-    if not rows:
-        return
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 def resistance_at(rows):
@@ -140,7 +131,8 @@ def write(store, runs, folder):
     paper, shear, monotonic = (rows_of(store, runs, kinds) for kinds in (("cyclic",), ("shear",), ("monotonic",)))
     ratios = k_sigma(shear)
     for name, rows in (("paper_test", paper), ("shear", shear), ("monotonic", monotonic), ("k_sigma", ratios)):
-        write_csv(folder / f"{name}.csv", rows)
+        if rows:
+            write_csv(folder / f"{name}.csv", rows, digits=6)
     if paper:
         draw_paper(paper, folder / "paper_test.png")
     if shear:

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The default's distance to a slow test: cyclic tests on 20 specimens, box and cell, against a tenth of the
 rate. Not part of the usual tests: ctest --preset long, some ten minutes on two cores."""
-import os
 import pathlib
 import sys
 import tempfile
@@ -10,11 +9,13 @@ import unittest
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "benchmarks"))
-from free_grains import plan, tables  # noqa: E402  (the folder comes first)
-from speed_error import paths, runner  # noqa: E402
+BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2]), str(BIN.parent / "python")]
+from isostat import campaign  # noqa: E402  (the folders come first)
+from isostat.campaign.study import Store  # noqa: E402
+from studies.ensembles import mean_and_interval  # noqa: E402
+from studies.free_grains import plan, tables  # noqa: E402
 
-BINARY = pathlib.Path(sys.argv.pop(1)) / "element_test"
 SEEDS = range(1, 21)
 CYCLES = 1.0  # what the mean may differ by, 95 % interval included; 0.71 and 0.59 were measured
 PATH = {"rigid-box": 1.0, "periodic-cell": 0.5}  # % of p0', mean to reversal 10; 0.61 +- 0.10 and 0.22 +- 0.04 measured
@@ -29,9 +30,11 @@ class SlowTests(unittest.TestCase):
                  for domain in plan.DOMAINS for s in SEEDS]
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        store = runner.Store(cls.folder.name)
-        complete = runner.Campaign(store, BINARY, runs, len(os.sched_getaffinity(0))).run_all(0)
-        assert complete, "a run failed: see above"
+        store = Store(pathlib.Path(cls.folder.name))
+        with campaign.engine("local", jobs=0) as executor:
+            for kind in ("prepare", "cyclic"):
+                campaign.complete(executor, [store.run(run) for run in runs if run.kind == kind])
+        assert all(map(store.is_done, runs)), "a run failed"
         cls.results = tables.Results(store, runs)
 
     def test_the_default_is_as_far_from_them_as_said(self):
@@ -40,7 +43,7 @@ class SlowTests(unittest.TestCase):
                 default, slow = ((domain, plan.GRAINS, setting) for setting in (plan.DEFAULT, plan.SLOW))
                 tests = self.results.cyclic[default].values()
                 self.assertEqual(sum(np.isfinite(t.cycles) for t in tests), len(SEEDS), "all liquefy")
-                cycles, half = paths.mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
+                cycles, half = mean_and_interval(self.results.differences(slow, default, lambda t: t.cycles))
                 steps = np.mean([t.steps for t in tests])
                 path = np.mean(self.results.path_distances(default, slow))
                 print(f"{domain}: cycles at a tenth of the rate {cycles:+.2f} +- {half:.2f}, path {path:.2f} % of p0' "

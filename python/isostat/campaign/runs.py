@@ -59,6 +59,10 @@ class Run:
         return cls(name, scene.text, folder / "scenes" / f"{name}.toml", folder / results / name,
                    folder / "logs" / f"{name}.log", program, threads)
 
+    def command(self, resumed: bool) -> list[str]:
+        return [program(self.program), str(self.scene), "--output", str(self.results), "--threads", str(self.threads),
+                "--no-figures", *["--resume"] * resumed]
+
     @property
     def is_finished(self) -> bool:
         """True if its folder holds the results of this scene, to its end."""
@@ -116,8 +120,7 @@ def execute(run: Run) -> tuple[int, float]:
     for file in (run.results, run.log):
         file.parent.mkdir(parents=True, exist_ok=True)
     run.log.unlink(missing_ok=True)  # it may be a link to a file of somebody
-    command = ["setpriv", "--pdeathsig", "TERM", "--", program(run.program), str(run.scene), "--output",
-               str(run.results), "--threads", str(run.threads), "--no-figures", *["--resume"] * resumed]
+    command = ["setpriv", "--pdeathsig", "TERM", "--", *run.command(resumed)]
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(LAUNCHED) or name.startswith("OMPI_ALLOW_RUN_AS_ROOT")}
     with open(run.log, "xb") as log:

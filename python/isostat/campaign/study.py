@@ -3,19 +3,23 @@
 
 A study is a package of the folder studies, with
 
-    runs(options) -> list        what is run: objects with name, specimen, kind ("prepare" for one that only makes it), scene(),
-                                 estimated_seconds(), and program if it is not element_test
+    runs(options) -> list        what is run: objects with name, kind, estimated_seconds(), scene(), and program if it is not
+                                 element_test. Those of kind "prepare" come first and make what others of the same
+                                 `specimen` need. In place of scene(): function, called in a process of its own with the
+                                 folder of results and arguments(), a dictionary; it returns one, too
     report(store, runs, folder)  leaves tables and figures of what has been run
     add_options(line)            options of its own, if it has any
     DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
 
-or with do(options, executor) in place of the first two, where it runs other things than scenes.
+or with do(options, executor) in place of the first two.
 
 tested: tests/apps/study_test.py
 """
 import argparse
 import concurrent.futures
+import contextlib
 import importlib
+import os
 import pathlib
 import sys
 from typing import Any
@@ -23,6 +27,7 @@ from typing import Any
 from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder
+from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete
 from isostat.running import as_scene
 
@@ -40,21 +45,34 @@ def studies_folder() -> pathlib.Path:
     raise _core.InputError("the folder studies is not in this installation. Call isostat study in the repository.")
 
 
+def as_run(folder: pathlib.Path, planned: Any) -> Run:
+    if hasattr(planned, "function"):
+        return FunctionRun.of(folder, planned.name, planned.function, planned.arguments())
+    scene = planned.scene()
+    return Run.below(folder, planned.name, scene if hasattr(scene, "text") else as_scene(scene),
+                     program=getattr(planned, "program", "element_test"))
+
+
 class Store:
     """What has been run in a folder, by the runs of a study."""
 
-    def __init__(self, folder: pathlib.Path, planned: list[Any]):
-        self._runs = {run.name: Run.below(folder, run.name, as_scene(run.scene()),
-                                          program=getattr(run, "program", "element_test")) for run in planned}
+    def __init__(self, folder: pathlib.Path):
+        self._folder = folder
+        self._runs: dict[str, Run] = {}
 
     def run(self, planned: Any) -> Run:
+        """Raises InputError where its scene needs what has not been prepared yet"""
+        if planned.name not in self._runs:
+            self._runs[planned.name] = as_run(self._folder, planned)
         return self._runs[planned.name]
 
     def folder(self, planned: Any) -> pathlib.Path:
         return self.run(planned).results
 
     def is_done(self, planned: Any) -> bool:
-        return self.run(planned).is_finished
+        with contextlib.suppress(_core.InputError):
+            return self.run(planned).is_finished
+        return False
 
     def cpu_seconds(self, planned: Any) -> float:
         return self.run(planned).cpu_seconds
@@ -71,16 +89,17 @@ def estimate(store: Store, planned: list[Any]) -> float:
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
     planned = study.runs(options)
     if options.quick:
-        planned = [run for run in planned if run.estimated_seconds() < QUICK_SECONDS]
-        prepared = {run.specimen for run in planned if run.kind == "prepare"}
-        planned = [run for run in planned if run.specimen in prepared]
-    store = Store(options.output, planned)
+        long = [run for run in planned if run.estimated_seconds() > QUICK_SECONDS]
+        missing = {run.specimen for run in long if run.kind == "prepare"}
+        planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
+    store = Store(options.output)
+    if not options.dry_run:
+        CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
+                       overwrite=options.overwrite)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
         return
-    CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
-                   overwrite=options.overwrite)
     progress = command.Progress(
         lambda: f"{sum(map(store.is_done, planned))} of {len(planned)} runs, ETA "
         f"{command.duration_text(estimate(store, planned) / max(1, options.jobs))}", options.quiet)
@@ -118,6 +137,7 @@ def load(name: str) -> Any:
     if name not in known:
         raise _core.InputError(f"{name}: is no study. There are: {', '.join(known)}.")
     sys.path[:0] = [str(folder.parent), str(pathlib.Path(__file__).parents[1])]  # studies, figures
+    os.environ.setdefault("MPLBACKEND", "Agg")  # figures are only saved
     return importlib.import_module(f"studies.{name}")
 
 

@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures and tables of what has been run."""
-import json
+import matplotlib.pyplot as plt
+import numpy as np
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
-
-from . import plan, published  # noqa: E402
+from studies.small_strain import plan, published
 
 COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red", "asperities": "tab:green"}
 LOST = 0.05  # G/G_max below which a cycle is that of a liquid: its damping ratio means nothing
@@ -16,9 +11,10 @@ NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Min
          "asperities": "quartz with asperities, n = 1.65"}
 
 
-def read(folder, kind):
+def read(store, planned, kind):
     """All results of a kind, as dictionaries."""
-    return [json.loads(path.read_text()) for path in sorted((folder / "runs").glob(f"{kind}_*.json"))]
+    results = [store.run(run).result for run in planned if run.kind == kind and store.is_done(run)]
+    return [{**result["call"]["arguments"]["run"], **result} for result in results]
 
 
 def mean(values):
@@ -109,8 +105,8 @@ def draw_velocity(results, path):
     figure, axis = plt.subplots(figsize=(4.4, 4.4), layout="constrained")
     for law in plan.LAWS:
         depth, speeds, target = (np.array(x) for x in zip(*velocity_rows(results, law), strict=True))
-        axis.errorbar(speeds.mean(axis=1), depth, xerr=speeds.std(axis=1, ddof=1) / np.sqrt(speeds.shape[1]), fmt="o-",
-                      ms=3.5, color=COLOURS[law], label=f"{law}, {plan.GROUND[law]['young']}")
+        axis.errorbar(speeds.mean(axis=1), depth, xerr=[mean(values)[1] for values in speeds], fmt="o-", ms=3.5,
+                      color=COLOURS[law], label=f"{law}, {plan.GROUND[law]['young']}")
     axis.plot(target.mean(axis=1), depth, "--", color="black", lw=1, label="resonant column")
     axis.fill_betweenx(depth, 0.85 * target.mean(axis=1), 1.15 * target.mean(axis=1), color="0.85", label="within 15 %")
     axis.set(xlabel="velocity of shear waves (m/s)", ylabel="depth (m)", xlim=(0, None), ylim=(21, 0))
@@ -204,20 +200,17 @@ def draw_reduction(results, drained, path):
     plt.close(figure)
 
 
-def write(folder, docs):
-    """Figures beside the pages of `docs`, tables to the terminal."""
-    for page in ("hertz_mindlin", "modulus_reduction"):
-        (docs / page).mkdir(parents=True, exist_ok=True)
-    if stiffness := read(folder, "stiffness"):
-        draw_stiffness(stiffness, docs / "hertz_mindlin" / "stiffness.png")
+def write(store, planned, folder):
+    """Figures, and tables on stdout."""
+    if stiffness := read(store, planned, "stiffness"):
+        draw_stiffness(stiffness, folder / "stiffness.png")
         print(stiffness_table(stiffness))
-    if velocity := read(folder, "velocity"):
-        draw_velocity(velocity, docs / "hertz_mindlin" / "velocity.png")
+    if velocity := read(store, planned, "velocity"):
+        draw_velocity(velocity, folder / "velocity.png")
         print("\n" + velocity_table(velocity))
-    if reduction := read(folder, "reduction"):
+    if reduction := read(store, planned, "reduction"):
         for drained in (True, False):
-            draw_reduction(reduction, drained,
-                           docs / "modulus_reduction" / f"{'drained' if drained else 'undrained'}.png")
+            draw_reduction(reduction, drained, folder / f"{'drained' if drained else 'undrained'}.png")
             print(f"\n{'drained' if drained else 'undrained'}: G/G_max; damping ratio\n")
             print(reduction_table(reduction, drained))
         print("\n" + halved_table(reduction))

@@ -1,27 +1,31 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How one run is done: specimen, loading, what is measured."""
-import time
+import types
 
 import isostat
 import numpy as np
 
-from . import plan
-
+PRESSURES = (20, 50, 100, 200, 400, 800)  # kPa, of `stiffness`
+DEPTHS = (1, 2, 3, 5, 7, 10, 15, 20)  # m, of `velocity`
+BUOYANT_WEIGHT = 9.7e3  # N/m3, of saturated ground of 1,970 kg/m3 under water
+CYCLES = 3             # of `reduction`
 STEPS = 12             # increments of a quarter of a cycle
 MIN_STEPS = 300        # time steps of an increment, at least
 TOLERANCE = 1e-4       # of stresses that are kept, over p'
 NORMAL = np.eye(3, dtype=bool)
 
 
-def specimen(run, cache, grains, pressure, laws=plan.STIFFNESS_LAWS):
+def element(results, run, contact, **options):
     """The packing of a run, isotropically consolidated."""
     scene = isostat.Scene(
-        grading={"grains": grains, "cloud_edge": f"{10 * (grains / 10000) ** (1 / 3):.3f} mm", "seed": run.seed},
-        contact={**laws[run.law], "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
+        grading={"grains": run.grains, "seed": run.seed,
+                 "cloud_edge": f"{10 * (run.grains / 10000) ** (1 / 3):.3f} mm"},
+        contact={**contact, "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
                  "twisting": {"stiffness": 0.3}},
-        specimen={"domain": "periodic-cell", "pressure": f"{pressure} kPa",
+        specimen={"domain": "periodic-cell", "pressure": f"{run.pressure} kPa",
                   "preparation_friction": f"{run.degrees} deg"})
-    return isostat.prepare(scene, cache=cache).snapshot
+    specimen = isostat.prepare(scene, cache=results.parent / "specimens")
+    return isostat.Rve(specimen.snapshot, min_steps=MIN_STEPS, **options)
 
 
 def accepted(response):
@@ -38,34 +42,32 @@ def state(rve):
             float(np.mean(np.diag(stiffness)[:3])), "coordination": network["coordination_number"]}
 
 
-def stiffness(run, cache, grains):
+def stiffness(results, run, contact):
     """Moduli at each pressure, one packing compressed from one to the next."""
-    start = time.perf_counter()
-    rve = isostat.Rve(specimen(run, cache, grains, run.pressure), min_steps=MIN_STEPS)
+    rve = element(results, types.SimpleNamespace(**run), contact)
     states = [state(rve)]
-    for pressure in plan.PRESSURES[1:]:
+    for pressure in PRESSURES[1:]:
         previous = states[-1]["mean_stress"] / 1e3
         for target in np.geomspace(previous, pressure, 9)[1:]:
             accepted(rve.mixed(np.zeros((3, 3)), -1e3 * target * np.eye(3), np.ones((3, 3), dtype=bool), TOLERANCE))
         states.append(state(rve))
-    return {"states": states, "seconds": time.perf_counter() - start}
+    return {"states": states}
 
 
-def velocity(run, cache, grains):
+def velocity(results, run, contact):
     """Of vertical shear waves at each depth of a deposit, loaded by the weight above without lateral strain."""
-    start = time.perf_counter()
-    rve = isostat.Rve(specimen(run, cache, grains, run.pressure, plan.GROUND), min_steps=MIN_STEPS)
+    rve = element(results, types.SimpleNamespace(**run), contact)
     vertical, states = np.zeros((3, 3), dtype=bool), []
     vertical[1, 1] = True
-    for depth in plan.DEPTHS:
-        target, present = plan.BUOYANT_WEIGHT * depth, -rve.stress[1, 1]
+    for depth in DEPTHS:
+        target, present = BUOYANT_WEIGHT * depth, -rve.stress[1, 1]
         for stress in np.geomspace(present, target, 5)[1:]:
             accepted(rve.mixed(np.zeros((3, 3)), -stress * np.eye(3), vertical, TOLERANCE))
         c = rve.stiffness()
         modulus = (c[3, 3] + c[5, 5]) / 2  # shear in the planes yz and xy, y being vertical
         states.append({**state(rve), "depth": depth, "lateral": -(rve.stress[0, 0] + rve.stress[2, 2]) / 2,
                        "velocity": float(np.sqrt(modulus / 1970))})
-    return {"states": states, "seconds": time.perf_counter() - start}
+    return {"states": states}
 
 
 def loop(gamma, tau):
@@ -76,14 +78,14 @@ def loop(gamma, tau):
     return {"secant": float(secant), "damping_ratio": float(lost / (2 * np.pi * secant * amplitude**2))}
 
 
-def reduction(run, cache, grains):
+def reduction(results, run, contact):
     """Cycles of simple shear. Drained: the normal stresses stay what they are; undrained: the volume does."""
-    start = time.perf_counter()
-    rve = isostat.Rve(specimen(run, cache, grains, run.pressure), min_steps=MIN_STEPS, damping=run.damping)
+    run = types.SimpleNamespace(**run)
+    rve = element(results, run, contact, damping=run.damping)
     first = state(rve)
     kept, increment = rve.stress * NORMAL, np.zeros((3, 3))
     gamma, tau, pressure = [0.0], [rve.stress[0, 1]], [first["mean_stress"]]
-    for sign in [1] * STEPS + ([-1] * 2 * STEPS + [1] * 2 * STEPS) * plan.CYCLES:
+    for sign in [1] * STEPS + ([-1] * 2 * STEPS + [1] * 2 * STEPS) * CYCLES:
         increment[0, 1] = sign * run.amplitude / STEPS
         accepted(rve.mixed(increment, kept, NORMAL, TOLERANCE) if run.drained else rve.undrained(increment))
         gamma.append(gamma[-1] + increment[0, 1])
@@ -91,5 +93,4 @@ def reduction(run, cache, grains):
         pressure.append(-np.trace(rve.stress) / 3)
     last = slice(-4 * STEPS - 1, None)  # from the last peak but one to the last
     return {**first, **loop(np.array(gamma)[last], np.array(tau)[last]),
-            "gamma": gamma, "tau": tau, "p": pressure, "void_ratio_after": rve.void_ratio,
-            "seconds": time.perf_counter() - start}
+            "gamma": gamma, "tau": tau, "p": pressure, "void_ratio_after": rve.void_ratio}
