@@ -5,9 +5,11 @@ A study is a package of the folder studies, with
 
     runs(options) -> list        what is run: objects with name, specimen, kind ("prepare" for one that only makes it), scene(),
                                  estimated_seconds(), and program if it is not element_test
+    prepare(options, executor)   makes what several runs share, before runs(); scene() is None where it is still missing
     report(store, runs, folder)  leaves tables and figures of what has been run
     add_options(line)            options of its own, if it has any
     DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
+    PAGE                         the folder of docs/results that gets tables and figures, if its name is another
 
 or with do(options, executor) in place of the first two, where it runs other things than scenes.
 
@@ -44,8 +46,10 @@ class Store:
     """What has been run in a folder, by the runs of a study."""
 
     def __init__(self, folder: pathlib.Path, planned: list[Any]):
-        self._runs = {run.name: Run.below(folder, run.name, as_scene(run.scene()),
-                                          program=getattr(run, "program", "element_test")) for run in planned}
+        scenes = [(run, run.scene()) for run in planned]
+        self._runs = {run.name: Run.below(folder, run.name, scene if hasattr(scene, "text") else as_scene(scene),
+                                          program=getattr(run, "program", "element_test"))
+                      for run, scene in scenes if scene is not None}
 
     def run(self, planned: Any) -> Run:
         return self._runs[planned.name]
@@ -54,7 +58,7 @@ class Store:
         return self.run(planned).results
 
     def is_done(self, planned: Any) -> bool:
-        return self.run(planned).is_finished
+        return planned.name in self._runs and self.run(planned).is_finished
 
     def cpu_seconds(self, planned: Any) -> float:
         return self.run(planned).cpu_seconds
@@ -69,18 +73,20 @@ def estimate(store: Store, planned: list[Any]) -> float:
 
 
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
+    if not options.dry_run:
+        CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
+                       overwrite=options.overwrite)
+        getattr(study, "prepare", lambda *_: None)(options, executor)
     planned = study.runs(options)
     if options.quick:
-        planned = [run for run in planned if run.estimated_seconds() < QUICK_SECONDS]
-        prepared = {run.specimen for run in planned if run.kind == "prepare"}
-        planned = [run for run in planned if run.specimen in prepared]
+        short = [run for run in planned if run.estimated_seconds() < QUICK_SECONDS]
+        missing = {run.specimen for run in planned if run.kind == "prepare" and run not in short}
+        planned = [run for run in short if run.specimen not in missing]
     store = Store(options.output, planned)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
         return
-    CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
-                   overwrite=options.overwrite)
     progress = command.Progress(
         lambda: f"{sum(map(store.is_done, planned))} of {len(planned)} runs, ETA "
         f"{command.duration_text(estimate(store, planned) / max(1, options.jobs))}", options.quiet)
@@ -96,7 +102,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
             complete(executor, [store.run(run) for run in left if (run.kind == "prepare") == is_specimen], ended,
                      progress.waiting)
     finally:
-        folder = tables_folder(options, all(map(store.is_done, planned)))
+        folder = tables_folder(study, options, all(map(store.is_done, planned)))
         folder.mkdir(parents=True, exist_ok=True)
         study.report(store, planned, folder)
         print(f"tables and figures in {folder}")
@@ -105,9 +111,9 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
                                f"{failed[0].last_line}. The others are kept, the same command tries again.")
 
 
-def tables_folder(options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
+def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
     """Where tables and figures go: into the page's folder only if they are those of the whole study."""
-    page = studies_folder().parent / "docs/results" / options.name
+    page = studies_folder().parent / "docs/results" / getattr(study, "PAGE", options.name)
     of_page = is_complete and not options.quick and page.is_dir()
     return options.tables or (page if of_page else options.output / "tables")
 
