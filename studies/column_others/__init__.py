@@ -182,6 +182,7 @@ def report(store, planned, folder):
     tables = {}
     for part in (masing, published, equivalent):
         of_part = [(case[1:], rows) for case, rows in results.items() if case[0] == part.__name__]
-        rows = part(of_part, folder / f"{part.__name__}.png") if of_part else [{}]
-        tables[part.__name__] = list(rows[0]), [list(row.values()) for row in rows]
+        if of_part:
+            rows = part(of_part, folder / f"{part.__name__}.png")
+            tables[part.__name__] = list(rows[0]), [list(row.values()) for row in rows]
     write_tables(folder, tables)
