@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the studies of soil columns share: their runs, and libraries of specimens."""
+"""What the studies of soil columns share: their runs, and libraries of specimens.
+
+tested: tests/studies/columns_test.py
+"""
 import dataclasses
 import json
 import pathlib

@@ -19,42 +19,32 @@ MOTIONS = {"harmonic 1": (cases.HARMONIC.format(1), 5), "harmonic 3": (cases.HAR
 MESHES = (12, 80), (32, 80), (64, 80), (128, 40), (128, 80), (128, 160)  # elements of the sand, cells
 
 
-def masing_cases(quick):
-    """Motion, elements of the sand, cells."""
-    if quick:
-        return [("harmonic 3", 12, 40), ("harmonic 3", 128, 40)]
-    return [(motion, *mesh) for motion in MOTIONS for mesh in MESHES[::4 if motion == "record 5" else 1]]
-
-
-def published_cases(quick):
-    """Highest frequency, Hz, elements for the shortest wave, duration, s."""
-    return [(20, 5, 9)] if quick else [(50, 4, 14), (50, 8, 14)]
-
-
-def peaks(quick):
-    """Of the outcrop, m/s2."""
-    return (0.01, 3) if quick else (0.001, 0.01, 0.1, 0.5, 1, 3, 8)
-
-
 def step_of(cells):
     return 0.016 / cells
 
 
+def corner(options):
+    """Highest frequency of the published example, Hz."""
+    return 20 if options.quick else 50
+
+
 def prepare(options, _executor):
-    cases.write_published(options.output, published_cases(options.quick)[0][0])
+    cases.write_published(options.output, corner(options))
 
 
 def runs(options):
-    found = []
-    for motion, elements, cells in masing_cases(options.quick):
-        text, duration = MOTIONS[motion]
-        found.append(Run(("masing", motion, elements, cells), cases.sand_scene(
-            text, cells=cells, elements=elements, step=step_of(cells), duration=duration)))
-    found += [Run(("published", corner, per_wave), cases.published_scene(options.output, corner, per_wave, duration),
-                  needs=(options.output / "pulse.txt",))
-              for corner, per_wave, duration in published_cases(options.quick)]
+    quick, files = options.quick, options.output
+    sands = [("harmonic 3", 12, 40), ("harmonic 3", 128, 40)] if quick else [
+        (motion, *mesh) for motion in MOTIONS for mesh in MESHES[::4 if motion == "record 5" else 1]]
+    found = [Run(("masing", motion, elements, cells), cases.sand_scene(
+        MOTIONS[motion][0], cells=cells, elements=elements, step=step_of(cells), duration=MOTIONS[motion][1]))
+        for motion, elements, cells in sands]
+    found += [Run(("published", corner(options), per_wave), cases.published_scene(
+        files, corner(options), per_wave, 9 if quick else 14), needs=(files / "pulse.txt",))
+        for per_wave in ((5,) if quick else (4, 8))]
     return found + [Run(("equivalent", peak), cases.sand_scene(
-        cases.RECORDED.format(peak), elements=64, rows=5, duration=20, rock=cases.ROCK)) for peak in peaks(options.quick)]
+        cases.RECORDED.format(peak), elements=64, rows=5, duration=20, rock=cases.ROCK))
+        for peak in ((0.01, 3) if quick else (0.001, 0.01, 0.1, 0.5, 1, 3, 8))]
 
 
 def percent(value):

@@ -13,7 +13,7 @@ A study is a package of the folder studies, with
 
 or with do(options, executor) in place of the first two, where it runs other things than scenes.
 
-tested: tests/apps/study_test.py
+tested: tests/apps/study_test.py, tests/studies/columns_test.py
 """
 import argparse
 import concurrent.futures
