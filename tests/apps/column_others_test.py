@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The soil column against solutions that owe nothing to Isostat: column_masing.py, column_layers.py."""
+"""The soil column against solutions that owe nothing to Isostat: studies/column_masing.py, studies/column_layers.py."""
 import numpy as np
 
-import column_cases as cases
-from column_layers import equivalent_linear, hyperbola
-from column_masing import Masing
 from column_support import ColumnTest
+from studies import column_cases as cases
+from studies.column_layers import equivalent_linear, hyperbola
+from studies.column_masing import Masing
 from support import main
 
 

@@ -3,9 +3,9 @@
 """The soil column against the published example of the program nrattle (tests/reference/nrattle)."""
 import numpy as np
 
-import column_cases as cases
-from column_layers import Layers
 from column_support import ColumnTest
+from studies import column_cases as cases
+from studies.column_layers import Layers
 from support import main
 
 
@@ -19,6 +19,7 @@ class Published(ColumnTest):
     def test_column(self):
         """8 km of soil and rock in 206 layers, to 20 Hz; to 50 Hz in docs/results/column_others.md."""
         _, frequency, amplification = cases.published()
+        cases.write_published(self.folder, 20)
         rows, _ = self.rows_of(cases.published_scene(self.folder, corner=20, per_wave=5, duration=9))
         low = (frequency > 0) & (frequency <= 20)
         off = np.abs(cases.amplification(rows, frequency[low]) / amplification[low] - 1)

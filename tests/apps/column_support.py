@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import sys
 
 import h5py
 import numpy as np
@@ -11,7 +12,9 @@ from support import AppTest, contents
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
                   OMP_NUM_THREADS="1")
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/column"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES = ROOT / "apps/scenes/column"
+sys.path.append(str(ROOT))  # for studies
 
 SOIL = """title = "sand over clay"
 [water]

@@ -123,6 +123,7 @@ def execute(run: Run) -> tuple[int, float]:
     command = ["setpriv", "--pdeathsig", "TERM", "--", *run.command(resumed)]
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(LAUNCHED) or name.startswith("OMPI_ALLOW_RUN_AS_ROOT")}
+    environment |= {"OMP_NUM_THREADS": str(run.threads), "OPENBLAS_NUM_THREADS": "1"}
     with open(run.log, "xb") as log:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
                                    env=environment, process_group=0)

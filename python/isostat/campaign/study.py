@@ -7,13 +7,15 @@ A study is a package of the folder studies, with
                                  element_test. Those of kind "prepare" come first and make what others of the same
                                  `specimen` need. In place of scene(): function, called in a process of its own with the
                                  folder of results and arguments(), a dictionary; it returns one, too
+    prepare(options, executor)   makes what several runs share, before runs(); scene() is None where it is still missing
     report(store, runs, folder)  leaves tables and figures of what has been run
     add_options(line)            options of its own, if it has any
     DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
+    PAGE                         the folder of docs/results that gets tables and figures, if its name is another
 
 or with do(options, executor) in place of the first two.
 
-tested: tests/apps/study_test.py
+tested: tests/apps/study_test.py, tests/studies/columns_test.py
 """
 import argparse
 import concurrent.futures
@@ -30,7 +32,6 @@ from isostat.campaign.folder import CampaignFolder
 from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete
 from isostat.running import as_scene
-
 
 QUICK_SECONDS = 20  # of CPU by estimate: of runs that `--quick` leaves in
 
@@ -49,6 +50,8 @@ def as_run(folder: pathlib.Path, planned: Any) -> Run:
     if hasattr(planned, "function"):
         return FunctionRun.of(folder, planned.name, planned.function, planned.arguments())
     scene = planned.scene()
+    if scene is None:
+        raise _core.InputError(f"{planned.name}: what it starts from has not been prepared.")
     return Run.below(folder, planned.name, scene if hasattr(scene, "text") else as_scene(scene),
                      program=getattr(planned, "program", "element_test"))
 
@@ -87,15 +90,16 @@ def estimate(store: Store, planned: list[Any]) -> float:
 
 
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
+    if not options.dry_run:
+        CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
+                       overwrite=options.overwrite)
+        getattr(study, "prepare", lambda *_: None)(options, executor)
     planned = study.runs(options)
     if options.quick:
         long = [run for run in planned if run.estimated_seconds() > QUICK_SECONDS]
         missing = {run.specimen for run in long if run.kind == "prepare"}
         planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
     store = Store(options.output)
-    if not options.dry_run:
-        CampaignFolder(options.output, {"scene.toml": f'title = "{options.name}"\n'}, owner="study",
-                       overwrite=options.overwrite)
     left = [run for run in planned if not store.is_done(run)]
     print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
@@ -115,7 +119,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
             complete(executor, [store.run(run) for run in left if (run.kind == "prepare") == is_specimen], ended,
                      progress.waiting)
     finally:
-        folder = tables_folder(options, all(map(store.is_done, planned)))
+        folder = tables_folder(study, options, all(map(store.is_done, planned)))
         folder.mkdir(parents=True, exist_ok=True)
         study.report(store, planned, folder)
         print(f"tables and figures in {folder}")
@@ -124,9 +128,9 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
                                f"{failed[0].last_line}. The others are kept, the same command tries again.")
 
 
-def tables_folder(options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
+def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
     """Where tables and figures go: into the page's folder only if they are those of the whole study."""
-    page = studies_folder().parent / "docs/results" / options.name
+    page = studies_folder().parent / "docs/results" / getattr(study, "PAGE", options.name)
     of_page = is_complete and not options.quick and page.is_dir()
     return options.tables or (page if of_page else options.output / "tables")
 

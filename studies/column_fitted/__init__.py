@@ -1,30 +1,23 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """An undrained column of packings beside an Iwan column that is fitted to the curve of such a packing.
-
-    column_fitted.py [--build build/release] [--folder results/column_fitted] [--report docs/results/column_others]
 
 A packing of 300 grains (apps/scenes/rve_library.toml) is sheared at constant volume at 100 and 200 kPa by element_test.
 The Iwan sand has G and its exponent from the secants at a strain of 2e-5, and the strength ratio, mean of both, from
 the hyperbolas of that G through the curves up to 0.5 %; it neither contracts nor dilates. Both columns have the same
-mesh, water, motion and mass damping, in three strengths of shaking. Writes a table (fitted.csv) and a figure
-(fitted.png) into REPORT. Two minutes on one core.
+mesh, water, motion and mass damping, in three strengths of shaking.
 """
-import argparse
-import csv
-import pathlib
-import subprocess
-
-import h5py
+import isostat
 import numpy as np
-import matplotlib
 from scipy import optimize
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+from figures.common import BLUE, plt
+from isostat.campaign.runs import Run as Process, complete
+from isostat.results import read_table
+from studies.columns import SCENES, Run, histories, library
+from studies.tables import write_tables
 
-LIBRARY = pathlib.Path(__file__).resolve().parents[1] / "apps/scenes/rve_library.toml"
-SIZE = {"grading.grains": "300", "grading.cloud_edge": "3.107 mm"}
+DEFAULTS, QUICK, PAGE = {}, {}, "column_others"
+SIZE = {"grading.grains": 300, "grading.cloud_edge": "3.107 mm"}
 PRESSURES, SMALL_STRAIN, LARGEST_STRAIN, PEAKS = (100e3, 200e3), 2e-5, 0.005, (0.02, 0.1, 0.2)
 STAGE = '[[stage]]\nkind = "{}"\n{}\n'
 COLUMN = """title = "{title}"
@@ -57,49 +50,45 @@ mass_damping = "0.2 1/s"
 history_interval = "4 ms"
 depths = ["9.5 m"]
 """
-GREY, BLUE = "#7f7f7f", "#0072b2"
 
 
 def hyperbola(strain, modulus, strength):
     return modulus * strain / (1 + modulus * strain / strength)
 
 
-class Runs:
-    def __init__(self, options):
-        self.bin, self.folder = pathlib.Path(options.build).resolve() / "bin", pathlib.Path(options.folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
+def curve_run(folder, pressure):
+    """Undrained simple shear of a packing from an isotropic pressure, by element_test."""
+    scene = (SCENES / "rve_library.toml").read_text(encoding="utf-8").split("[motion]")[0]
+    scene += '[motion]\nstrain_rate = "0.1 1/s"\n'
+    scene += "" if pressure == 100e3 else STAGE.format("compress", f'pressure = "{pressure} Pa"')
+    scene += STAGE.format("undrained-simple-shear", "strain = 0.01")
+    scene += '[output]\nrecord_stress = "0.2 kPa"\nrecord_strain = 2e-6\nsnapshots = "none"\nparaview = false\n'
+    return Process.below(folder / "curves", f"shear_{pressure / 1e3:.0f}", isostat.Scene(scene, set=SIZE))
 
-    def call(self, program, *arguments):
-        subprocess.run([self.bin / program, *arguments], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
 
-    def library(self):
-        if not (self.folder / "library.h5").exists():
-            sizes = [part for key, value in SIZE.items() for part in ("--set", f"{key}={value}")]
-            self.call("isostat", "library", LIBRARY, "-o", "library.h5", "--pressures", "100 kPa", *sizes)
+def curve(run):
+    """(gamma, tau)."""
+    h = read_table(run.results / "history.csv")
+    return np.array([h[name][h["stage"] == h["stage"][-1]] for name in ("gamma_xy", "tau_xy")])
 
-    def curve(self, pressure):
-        """(gamma, tau) of undrained simple shear from an isotropic pressure."""
-        head = LIBRARY.read_text(encoding="utf-8").split("[motion]")[0]
-        compress = "" if pressure == 100e3 else STAGE.format("compress", f'pressure = "{pressure} Pa"')
-        shear = STAGE.format("undrained-simple-shear", "strain = 0.01")
-        name = f"shear_{pressure / 1e3:.0f}"
-        (self.folder / f"{name}.toml").write_text(
-            head + '[motion]\nstrain_rate = "0.1 1/s"\n' + compress + shear +
-            '[output]\nrecord_stress = "0.2 kPa"\nrecord_strain = 2e-6\nsnapshots = "none"\nparaview = false\n',
-            encoding="utf-8")
-        sizes = [part for key, value in SIZE.items() for part in ("--set", f"{key}={value}")]
-        self.call("element_test", f"{name}.toml", "-o", name, "--overwrite", "--no-figures", "--quiet", *sizes)
-        with open(self.folder / name / "history.csv", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        last = rows[-1]["stage (-)"]
-        rows = [row for row in rows if row["stage (-)"] == last]
-        return np.array([[float(row[key]) for row in rows] for key in ("gamma_xy (-)", "tau_xy (Pa)")])
 
-    def column(self, name, soil, peak):
-        (self.folder / f"{name}.toml").write_text(COLUMN.format(title=name, soil=soil, peak=peak), encoding="utf-8")
-        self.call("soil_column", f"{name}.toml", "-o", name, "--overwrite", "--no-figures", "--quiet")
-        with h5py.File(self.folder / name / "history.h5") as file:
-            return {key: values[()] for key, values in file["history"].items()}
+def curves_of(folder):
+    return [curve(curve_run(folder, pressure)) for pressure in PRESSURES]
+
+
+def prepare(options, executor):
+    library(options.output / "library.h5", executor, 1, ["100 kPa"], SIZE)
+    needed = [curve_run(options.output, pressure) for pressure in PRESSURES]
+    complete(executor, [run for run in needed if not run.is_finished])
+
+
+def runs(options):
+    files = options.output / "library.h5", *(curve_run(options.output, p).results / "summary.json" for p in PRESSURES)
+    iwan = iwan_of(*fit(curves_of(options.output))) if all(file.is_file() for file in files) else ""
+    packings = (f'material = "grains"\nrelative_density = 0.5\n[grains]\nlibrary = "{files[0]}"\n'
+                f'cache = "{options.output / "in_situ.h5"}"')
+    return [Run((kind, peak), COLUMN.format(title=f"{kind}_{peak}", soil=soil, peak=peak), seconds=seconds, needs=files)
+            for peak in PEAKS for kind, soil, seconds in (("packings", packings, 600 * peak), ("iwan", iwan, 4))]
 
 
 def fit(curves):
@@ -114,6 +103,15 @@ def fit(curves):
         misfit = max(misfit, np.abs(hyperbola(strain[part], *values) - stress[part]).max() / stress[part].max())
         found.append(values)
     return np.array(found), misfit
+
+
+def iwan_of(fitted, misfit):
+    """The Iwan sand with this fit."""
+    exponent = np.log(fitted[1, 0] / fitted[0, 0]) / np.log(PRESSURES[1] / PRESSURES[0])
+    ratios = fitted[:, 1] / PRESSURES
+    print(f"G {fitted[:, 0] / 1e6} MPa, exponent {exponent:.3f}, strength ratios {ratios}, misfit {100 * misfit:.2f} %")
+    return (f'material = "iwan"\nshear_modulus = "{fitted[0, 0] / 1e6} MPa"\nexponent = {exponent}\n'
+            f"strength_ratio = {ratios.mean()}\ncontraction = 0\ndilation = 0\nelements = 64")
 
 
 def draw(curves, fitted, results, path):
@@ -159,33 +157,13 @@ def compare(peak, grains, iwan):
     return row
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default="build/release")
-    parser.add_argument("--folder", default="results/column_fitted")
-    parser.add_argument("--report", default="docs/results/column_others")
-    options = parser.parse_args()
-    runs, report = Runs(options), pathlib.Path(options.report)
-    report.mkdir(parents=True, exist_ok=True)
-    runs.library()
-    curves = [runs.curve(pressure) for pressure in PRESSURES]
-    fitted, misfit = fit(curves)
-    exponent = np.log(fitted[1, 0] / fitted[0, 0]) / np.log(PRESSURES[1] / PRESSURES[0])
-    ratios = fitted[:, 1] / PRESSURES
-    print(f"G {fitted[:, 0] / 1e6} MPa, exponent {exponent:.3f}, strength ratios {ratios}, misfit {100 * misfit:.2f} %")
-    soil = (f'material = "iwan"\nshear_modulus = "{fitted[0, 0] / 1e6} MPa"\nexponent = {exponent}\n'
-            f"strength_ratio = {ratios.mean()}\ncontraction = 0\ndilation = 0\nelements = 64")
-    packings = 'material = "grains"\nrelative_density = 0.5\n[grains]\nlibrary = "library.h5"\ncache = "in_situ.h5"'
-    kinds = ("packings", packings), ("iwan", soil)
-    results = {peak: [runs.column(f"{name}_{peak}", text, peak) for name, text in kinds] for peak in PEAKS}
+def report(store, planned, folder):
+    found = histories(store, planned)
+    results = {peak: [found["packings", peak], found["iwan", peak]] for peak in PEAKS
+               if {("packings", peak), ("iwan", peak)} <= found.keys()}
     rows = [compare(peak, *pair) for peak, pair in results.items()]
-    with open(report / "fitted.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
-    print("\n".join(str(row) for row in rows))
-    draw(curves, fitted, results, report / "fitted.png")
-
-
-if __name__ == "__main__":
-    main()
+    if rows:
+        write_tables(folder, {"fitted": (list(rows[0]), [list(row.values()) for row in rows])})
+    if len(results) == len(PEAKS):
+        curves = curves_of(store.run(planned[0]).scene.parents[1])
+        draw(curves, fit(curves)[0], results, folder / "fitted.png")

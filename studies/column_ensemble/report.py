@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables and figures of the runs that have finished."""
 import dataclasses
-import json
-import sys
-import pathlib
 
 import h5py
+import isostat
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")  # files only
-from figures.common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, STYLE, panel_letter, plt, read_history  # noqa: E402
-
-from . import plan  # noqa: E402
+from figures.common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, STYLE, panel_letter, plt
+from isostat.results import read_table
+from studies.column_ensemble import plan
+from studies.columns import parsed
+from studies.tables import write_tables
 
 LIQUEFIED, STRAINED = 0.95, 0.01
 # name, what it is, unit, factor, digits
@@ -32,9 +28,7 @@ class Result:
     depth: np.ndarray
     max_ru: np.ndarray
     max_gamma: np.ndarray
-    history: dict
-    seconds: float
-    height: float
+    history: isostat.History
 
 
 def tributary(depth, height):
@@ -43,9 +37,8 @@ def tributary(depth, height):
 
 
 def read(run, folder):
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    history, spectra = read_history(folder / "history.csv"), read_history(folder / "spectra.csv")
-    grains = read_history(folder / "grain_profiles/history.csv")
+    summary, history = parsed(folder), isostat.read(folder).history
+    spectra, grains = read_table(folder / "spectra.csv"), read_table(folder / "grain_profiles/history.csv")
     with h5py.File(folder / "profiles.h5") as file:
         depth, ru, gamma = file["depth"][()], file["ru"][()], file["peak_gamma"][()]
     weight, a = tributary(depth, summary["height"]), history["surface_ax"]
@@ -56,17 +49,14 @@ def read(run, folder):
         "sa": np.interp(0.3, spectra["period"], spectra["surface_x"]),
         "arias": np.pi / (2 * 9.80665) * np.trapz(a**2, history["time"]), "settlement": summary["settlement"],
         "redundancy": np.mean([grains[f"p{k}_IR"][-1] for k in range(len(depth))])}
-    times = json.loads((folder / "times.json").read_text(encoding="utf-8"))
-    return Result(run, numbers, depth, ru.max(axis=0), gamma, history, times["wall"], summary["height"])
+    return Result(run, numbers, depth, ru.max(axis=0), gamma, history)
 
 
-def finished(folder):
+def finished(store, runs):
     """{sample: results by member}"""
     samples = {}
-    for run in plan.runs():
-        path = folder / "runs" / run.name
-        if (path / "summary.txt").exists():
-            samples.setdefault(run.group, []).append(read(run, path))
+    for run in filter(store.is_done, runs):
+        samples.setdefault(run.group, []).append(read(run, store.folder(run)))
     return {group: sorted(found, key=lambda r: r.run.member) for group, found in samples.items()}
 
 
@@ -86,10 +76,9 @@ def label(run):
     return f"{depths}, {run.points} points, {packings}{grains}{viscosity}"
 
 
-def table(samples):
+def columns_table(samples):
     heads = [f"{what}, {unit}" if unit != "-" else what for _, what, unit, _, _ in QUANTITIES]
-    yield "| column | n | " + " | ".join(heads) + " |"
-    yield "|---" * (len(QUANTITIES) + 2) + "|"
+    rows = []
     for results in samples.values():
         cells = []
         for name, _, _, factor, digits in QUANTITIES:
@@ -98,45 +87,39 @@ def table(samples):
             n = np.isfinite(values).sum()  # those that liquefied, say
             cells.append(f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else "") +
                          (f" ({n} of {len(values)})" if n < len(values) else ""))
-        yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
+        rows.append([label(results[0].run), len(results), *cells])
+    return ["column", "n", *heads], rows
 
 
 def scatter(samples):
     """Standard deviation between members: what more packings at a point should lower."""
-    yield "| column | n | " + " | ".join(what for _, what, _, _, _ in QUANTITIES) + " |"
-    yield "|---" * (len(QUANTITIES) + 2) + "|"
-    for results in samples.values():
-        if len(results) > 2:
-            cells = [f"{factor * np.std([r.numbers[name] for r in results], ddof=1):.{digits}f}".replace("nan", "-")
-                     for name, _, _, factor, digits in QUANTITIES]
-            yield f"| {label(results[0].run)} | {len(results)} | " + " | ".join(cells) + " |"
+    return ["column", "n", *(what for _, what, _, _, _ in QUANTITIES)], [
+        [label(results[0].run), len(results),
+         *(f"{factor * np.std([r.numbers[name] for r in results], ddof=1):.{digits}f}".replace("nan", "-")
+           for name, _, _, factor, digits in QUANTITIES)] for results in samples.values() if len(results) > 2]
 
 
-def pairs(samples, one, other):
+def differences(samples, one, other):
     """Mean difference of the members that both samples have."""
     found = {group: {r.run.member: r for r in samples.get(group, [])} for group in (one, other)}
     both = sorted(found[one].keys() & found[other].keys())
-    if not both:
-        return
-    yield f"| {other} less {one}, n = {len(both)} | difference | of |"
-    yield "|---|---|---|"
-    for name, what, unit, factor, digits in QUANTITIES:
+    rows = []
+    for name, what, unit, factor, digits in QUANTITIES if both else ():
         mean, error = mean_error([factor * (found[other][k].numbers[name] - found[one][k].numbers[name]) for k in both])
         base, _ = mean_error([factor * found[one][k].numbers[name] for k in both])
-        yield f"| {what}, {unit} | {mean:+.{digits}f} ± {error:.{digits}f} | {base:.{digits}f} |"
+        rows.append([f"{what}, {unit}", f"{mean:+.{digits}f} ± {error:.{digits}f}", f"{base:.{digits}f}"])
+    return [f"{other} less {one}, n = {len(both)}", "difference", "of"], rows
 
 
 def meshes(samples):
     """The same seeds on several meshes: liquefied thickness, settlement and S_a of each."""
     found = {n: {r.run.member: r for r in samples.get(f"same_p{n}_m1_v0.1", [])} for n in POINTS}
     found = {points: results for points, results in found.items() if results}
-    yield "| realisation | " + " | ".join(f"{points} points" for points in found) + " |"
-    yield "|---" * (len(found) + 1) + "|"
-    for member in sorted(set().union(*found.values())):
-        cells = [", ".join(f"{factor * results[member].numbers[name]:.{digits}f} {unit}"
-                           for name, _, unit, factor, digits in QUANTITIES if name in ("thickness", "settlement", "sa"))
-                 if member in results else "" for results in found.values()]
-        yield f"| {member} | " + " | ".join(cells) + " |"
+    return ["realisation", *(f"{points} points" for points in found)], [
+        [member, *(", ".join(f"{factor * results[member].numbers[name]:.{digits}f} {unit}"
+                             for name, _, unit, factor, digits in QUANTITIES if name in ("thickness", "settlement", "sa"))
+                   if member in results else "" for results in found.values())]
+        for member in sorted(set().union(*found.values()))]
 
 
 SERIES = ((plan.SAME, BLUE, "o-", "same packing at all depths"), (plan.OTHER, RED, "s-", "others at each depth"),
@@ -211,7 +194,8 @@ def viscosities(samples):
     """Surface, largest r_u and settlement with and without the viscosity, member by member."""
     groups = [(name, colour) for name, colour in (("same_p10_m1_v0", ORANGE), ("same_p10_m1_v0.1", BLUE),
                                                   ("same_p10_m1_v1", GREEN)) if name in samples]
-    members = sorted(set.intersection(*({r.run.member for r in samples[name]} for name, _ in groups)))[:3]
+    members = [{r.run.member for r in samples[name]} for name, _ in groups]
+    members = sorted(set.intersection(*members))[:3] if members else []
     if not members:
         return None
     figure, panels = plt.subplots(3, len(members), figsize=(2.9 * len(members) + 0.6, 5.4), sharex=True, sharey="row",
@@ -230,20 +214,16 @@ def viscosities(samples):
     return figure
 
 
-def write(folder, docs):
-    samples = finished(folder)
+def write(store, runs, folder):
+    samples = finished(store, runs)
     if not samples:
-        raise SystemExit(f"{folder}: no run has finished. Start some: column_ensemble.py BIN {folder} run")
-    everything = [r for results in samples.values() for r in results]
-    print(f"{len(everything)} runs, {sum(r.seconds for r in everything) / 60:.0f} min of wall time\n")
-    for rows in (table(samples), scatter(samples), meshes(samples),
-                 pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v0"),
-                 pairs(samples, "same_p10_m1_v0.1", "same_p10_m1_v1")):
-        print("\n".join(rows) + "\n")
-    docs.mkdir(parents=True, exist_ok=True)
+        return
+    write_tables(folder, {"columns": columns_table(samples), "scatter": scatter(samples), "meshes": meshes(samples),
+                          **{f"viscosity_{name}": differences(samples, "same_p10_m1_v0.1", f"same_p10_m1_v{name}")
+                             for name in (0, 1)}})
     plt.rcParams.update(STYLE)
     for name, draw in (("mesh", against_mesh), ("depth", over_depth), ("viscosity", viscosities)):
         figure = draw(samples)
         if figure is not None:
-            figure.savefig(docs / f"{name}.png", dpi=150)
+            figure.savefig(folder / f"{name}.png", dpi=150)
             plt.close(figure)

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The runs of the campaign, the most telling first."""
+"""What is run, the most telling first."""
 import dataclasses
+import pathlib
+
+from isostat.column import ColumnScene
+from studies.columns import SCENES
 
 GRAINS = 300  # of a packing
 LARGE, LARGE_SEEDS = 3000, 2  # one packing of as many grains as ten have
-SEEDS = 40  # asked of the library; those that miss their density are not in it
+SEEDS = 40  # of the library; those that miss their density are not in it
 MIXED = 38  # seeds of which a packing has one by lot, where depths differ
 
 
@@ -12,6 +16,7 @@ MIXED = 38  # seeds of which a packing has one by lot, where depths differ
 class Run:
     """A column of so many points (two in each element), so many packings at each; `mixed`: each depth has others."""
 
+    folder: pathlib.Path  # of the study
     mixed: bool
     points: int
     realisations: int
@@ -19,6 +24,7 @@ class Run:
     viscosity: float = 0.1  # ms, of the skeleton
     length: float = 0  # m; points so near to each other have the same seeds
     grains: int = GRAINS
+    kind, specimen, program = "column", None, "soil_column"
 
     @property
     def sample(self):
@@ -39,11 +45,24 @@ class Run:
     def settings(self):
         """Those of `isostat ensemble`: a member has other seeds, or another lot of the same ones."""
         keys = {"layer.0.cells": self.points // 2, "grains.realisations": self.realisations,
-                "analysis.viscosity": f"{self.viscosity:g} ms"}
+                "grains.library": library_of(self.folder, self.grains),
+                "grains.cache": self.folder / f"in_situ_{self.grains}.h5", "analysis.viscosity": f"{self.viscosity:g} ms"}
         if self.mixed:
             return {**keys, "layer.0.mixed_realisations": MIXED, "layer.0.lot": self.member,
                     **({"layer.0.lot_length": f"{self.length:g} m"} if self.length else {})}
         return {**keys, "layer.0.realisation": self.member * self.realisations}
+
+    def scene(self):
+        if library_of(self.folder, self.grains).is_file():
+            return ColumnScene(SCENES / "column/quick_ensemble.toml", set=self.settings)
+        return None
+
+    def estimated_seconds(self):
+        return 25 * (self.points / 10) ** 1.6 * self.realisations * self.grains / GRAINS
+
+
+def library_of(folder, grains):
+    return folder / f"library_{grains}.h5"
 
 
 # (mixed, realisations, viscosity in ms, length in m); samples with their points and members, the most telling first
@@ -64,9 +83,10 @@ STAGES = [
 ]
 
 
-def runs():
+def runs(folder, n_members):
     """Stage by stage, member by member over the samples of a stage, so that a campaign that ends early has some of
     each."""
-    small = [Run(mixed, points, realisations, member, viscosity, length) for stage in STAGES for member in range(8)
-             for (mixed, realisations, viscosity, length), points, members in stage if member in members]
-    return small + [Run(False, 10, 1, member, grains=LARGE) for member in range(LARGE_SEEDS)]
+    small = [Run(folder, mixed, points, realisations, member, viscosity, length) for stage in STAGES
+             for member in range(n_members) for (mixed, realisations, viscosity, length), points, members in stage
+             if member in members]
+    return small + [Run(folder, False, 10, 1, member, grains=LARGE) for member in range(min(n_members, LARGE_SEEDS))]

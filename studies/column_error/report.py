@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors, tables and the figure of column_error.py."""
+"""Errors, tables and the figure."""
 import csv
 import functools
 import itertools
-import json
 
 import h5py
-import matplotlib
+import isostat
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import ticker
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib import ticker  # noqa: E402
-
-from speed_error.figures import STYLE, front, spread_labels  # noqa: E402
+from studies.columns import parsed
+from studies.speed_error.figures import STYLE, front, spread_labels
+from studies.tables import write_tables
 
 LIQUEFIED = 0.95
 LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
@@ -29,26 +28,26 @@ LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
     "same": ("#000000", "x", "motion 1 ppm larger"),
 }
 QUANTITIES = {  # of the motions that liquefy levels
-    "onset": ("onset", "s", 1, "{:.3f}"),
-    "thick": ("liquefied", "m", 1, "{:.1f}"),
-    "peak": ("peak surface acceleration", "m/s2", 1, "{:.2f}"),
-    "arias": ("integral of its square", "m2/s3", 1, "{:.2f}"),
-    "ru": ("final r_u, mean over depth", "-", 1, "{:.3f}"),
+    "onset": ("onset, s", "{:.3f}"),
+    "thick": ("liquefied, m", "{:.1f}"),
+    "peak": ("peak surface acceleration, m/s2", "{:.2f}"),
+    "arias": ("integral of its square, m2/s3", "{:.2f}"),
+    "ru": ("final r_u, mean over depth, -", "{:.3f}"),
 }
+QUANTITY_HEADS = [text for text, _ in QUANTITIES.values()]
 
 
 @functools.lru_cache(maxsize=None)
 def read(folder):
     """Histories, profiles and cost of a run."""
-    with open(folder / "history.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    data = {name: np.array([float(r[column]) for r in rows]) for name, column in
-            (("t", "time (s)"), ("v", "surface_vx (m/s)"), ("a", "surface_ax (m/s2)"), ("top", "max_ru (-)"))}
+    history = isostat.read(folder).history
+    data = {name: history[column] for name, column in
+            (("t", "time"), ("v", "surface_vx"), ("a", "surface_ax"), ("top", "max_ru"))}
     with h5py.File(folder / "profiles.h5", "r") as file:
         order = np.argsort(file["depth"])
         data.update(time=np.array(file["time"]), depth=np.array(file["depth"])[order],
                     ru=np.array(file["ru"])[:, order])
-    times = json.loads((folder / "times.json").read_text(encoding="utf-8"))
+    times = parsed(folder, "times")
     data["steps"] = times["packing_steps"]
     data["per_call"] = times["packing_steps"] / times["packing_calls"]
     data["seconds"] = times["all_packings"]
@@ -131,7 +130,7 @@ class Runs:
                                   if c.level == level and c.grains == grains and c.cells == 10 and c.realisations == 1))
 
     def groups(self, level, of):
-        """Ensembles of the defaults by number of grains or of levels."""
+        """Ensembles of the defaults by number of grains or of cells."""
         keys = sorted({getattr(c, of) for c, _ in self.all if c.level == level and c.label == "default"})
         return {key: list(self.of(level, **{of: key}).values()) for key in keys}
 
@@ -171,18 +170,8 @@ class Runs:
         return rows
 
 
-def numerics_table(runs, level, seeds, grains=250):
-    if not seeds:
-        return
-    strong = level != "weak"
-    head = ["setting", "steps a call", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
-    if strong:
-        head += ["quantities, over their scatter"]
-        head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
-    else:
-        head += ["bias of the final r_u, %", "largest r_u"]
-    print(f"\n<!-- numerics, {level}, {grains} grains, seeds {seeds} -->\n\n"
-          f"| {' | '.join(head)} |\n|" + "---|" * len(head))
+def numerics_table(runs, level, seeds, grains):
+    strong, rows_of_table = level != "weak", []
     for _, label in runs.labels(level, grains):
         rows = runs.errors(level, label, grains, seeds)
         if not rows:
@@ -191,14 +180,14 @@ def numerics_table(runs, level, seeds, grains=250):
         folders = [f for s, f in runs.of(level, label, grains).items() if s in seeds]
         shown = label + ("" if len(rows) == len(seeds) else f" ({len(rows)} of the seeds)")
         cells = [shown, f"{mean['per_call'][0]:.0f}", f"{mean['cost'][0] / 1e6:.0f}", f"{mean['seconds'][0]:.1f}"]
-        cells += ["–"] * 2 if label == "reference" else [percent(*mean[key]) for key in ("v", "r")]
-        if strong:
-            cells.append("–" if label == "reference" else f"{mean['distance'][0]:.2f}")
-            cells += quantity_cells(folders, spread=False)
-        else:
-            cells += ["–" if label == "reference" else percent(*mean["bias"])]
-            cells.append(" and ".join(f"{read(f)['ru'].max():.2f}" for f in folders))
-        print("| " + " | ".join(cells) + " |")
+        last = [f"{mean['distance'][0]:.2f}"] if strong else [percent(*mean["bias"])]
+        cells += ["–"] * 3 if label == "reference" else [*(percent(*mean[key]) for key in ("v", "r")), *last]
+        cells += quantity_cells(folders, spread=False) if strong else [
+            " and ".join(f"{read(f)['ru'].max():.2f}" for f in folders)]
+        rows_of_table.append(cells)
+    return ["setting", "steps a call", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %",
+            *(["quantities, over their scatter", *QUANTITY_HEADS] if strong else
+              ["bias of the final r_u, %", "largest r_u"])], rows_of_table
 
 
 def twins(runs, level):
@@ -206,21 +195,20 @@ def twins(runs, level):
     pairs = {"default, motion 1 ppm larger": ("motion 1 ppm larger", "default"),
              "reference, motion 1 ppm larger": ("reference, 1 ppm larger", "reference"),
              "packings in situ with I = 5e-4": ("I 5e-4, own packings", "I 5e-4")}
-    print(f"\n<!-- twins, {level} -->\n\n"
-          "| twins | seeds | surface velocity, % | r_u, % | quantities, over their scatter |\n"
-          "|---|---|---|---|---|")
+    rows = []
     for text, (one, other) in pairs.items():
         one, other = runs.of(level, one), runs.of(level, other)
         both = sorted(set(one) & set(other))
         if both:
             v, r = np.transpose([differences(one[s], other[s]) for s in both])
             apart = "–" if level == "weak" else f"{np.mean([runs.distance(level, one[s], other[s]) for s in both]):.2f}"
-            print(f"| {text} | {len(both)} | {percent(*mean_and_error(v))} | {percent(*mean_and_error(r))} | {apart} |")
+            rows.append([text, len(both), percent(*mean_and_error(v)), percent(*mean_and_error(r)), apart])
+    return ["twins", "seeds", "surface velocity, %", "r_u, %", "quantities, over their scatter"], rows
 
 
 def quantity_cells(folders, spread=True):
     cells, values = [], [quantities(f) for f in folders]
-    for q, (_, _, _, form) in QUANTITIES.items():
+    for q, (_, form) in QUANTITIES.items():
         x = [v[q] for v in values if np.isfinite(v[q])]
         cells.append(form.format(np.mean(x)) if x else "none")
         if len(x) > 1 and spread:
@@ -230,69 +218,64 @@ def quantity_cells(folders, spread=True):
 
 def size_table(runs, level):
     """Scatter between seeds by number of grains, and the mean against that of the largest packings."""
-    groups = runs.groups(level, "grains")
+    groups, rows = runs.groups(level, "grains"), []
     if len(groups) < 2:
-        return
+        return [], []
     largest = groups[max(groups)]
     groups["3 × 250"] = list(runs.of(level, "mean of 3").values())
-    head = ["grains", "seeds", "10⁶ grain-steps", "s", "velocity: scatter, %", "r_u: scatter, %"]
-    head += ["velocity: mean against the largest, %", "r_u: mean against the largest, %"] if level == "weak" else \
-        [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()]
-    print(f"\n<!-- grains, {level} -->\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
     for key, folders in groups.items():
         if not folders:
             continue
         cost = np.mean([read(f)["steps"] for f in folders]) * (key if isinstance(key, int) else 250) / 1e6
-        cells = [f"{key:,}" if isinstance(key, int) else key, str(len(folders)), f"{cost:.0f}",
+        cells = [f"{key:,}" if isinstance(key, int) else key, len(folders), f"{cost:.0f}",
                  f"{np.mean([read(f)['seconds'] for f in folders]):.1f}"]
         cells += [percent(x) for x in (scatter(folders) if len(folders) > 1 else (np.nan, np.nan))]
         if level != "weak":
             cells += quantity_cells(folders)
         else:
             cells += ["–"] * 2 if folders is largest else [percent(x) for x in drift(folders, largest)]
-        print("| " + " | ".join(cells) + " |")
+        rows.append(cells)
+    return ["grains", "seeds", "10⁶ grain-steps", "s", "velocity: scatter, %", "r_u: scatter, %",
+            *(QUANTITY_HEADS if level != "weak" else
+              ["velocity: mean against the largest, %", "r_u: mean against the largest, %"])], rows
 
 
 def onset_table(runs, level, grains):
     """How much later than in the reference of the same seed a level liquefies, by setting."""
-    slow = runs.of(level, "reference", grains)
-    head = ["setting", "seeds", "steps a call", "10⁶ grain-steps", "onset, s", "later than in the reference, s",
-            "largest, s", "surface peak, %"]
-    if slow:
-        print(f"\n<!-- onset, {level}, {grains} grains -->\n\n| {' | '.join(head)} |\n|" + "---|" * len(head))
-    for _, label in runs.labels(level, grains) if slow else []:
+    table = []
+    for _, label in runs.labels(level, grains):
         rows = runs.errors(level, label, grains)
         if not rows:
             continue
         late, peak, onset, calls, cost = ([r[k] for r in rows] for k in ("late", "peak", "onset", "per_call", "cost"))
         value, error = mean_and_error(late)
-        cells = [label, str(len(rows)), f"{np.mean(calls):.0f}", f"{np.mean(cost) / 1e6:.0f}", f"{np.mean(onset):.3f}"]
+        cells = [label, len(rows), f"{np.mean(calls):.0f}", f"{np.mean(cost) / 1e6:.0f}", f"{np.mean(onset):.3f}"]
         cells += ["–"] * 3 if label == "reference" else [
             f"{value:+.3f}" + (f" ± {error:.3f}" if np.isfinite(error) else ""), f"{max(late, key=abs):+.3f}",
             percent(*mean_and_error(peak))]
-        print("| " + " | ".join(cells) + " |")
+        table.append(cells)
+    return ["setting", "seeds", "steps a call", "10⁶ grain-steps", "onset, s", "later than in the reference, s",
+            "largest, s", "surface peak, %"], table
 
 
 def mesh_table(runs, level):
     """Differences from the finest mesh with the same seeds."""
-    meshes = sorted({c.cells for c, _ in runs.all if c.level == level and c.label == "default"})
-    finest = runs.of(level, cells=meshes[-1]) if meshes else {}
+    meshes, rows = sorted(runs.groups(level, "cells")), []
     if len(meshes) < 2:
-        return
-    head = ["levels", "seeds", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %"]
-    head += [f"{text}, {unit}" for text, unit, _, _ in QUANTITIES.values()] if level != "weak" else []
-    print(f"\n<!-- mesh, {level} -->\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+        return [], []
+    finest = runs.of(level, cells=meshes[-1])
     for mesh in meshes:
         own = runs.of(level, cells=mesh)
         both = sorted(set(own) & set(finest))
         if not both:
             continue
         v, r = np.transpose([differences(own[s], finest[s]) for s in both])
-        cells = [str(mesh), str(len(both)), f"{np.mean([read(own[s])['steps'] for s in both]) * 250 / 1e6:.0f}",
+        cells = [mesh, len(both), f"{np.mean([read(own[s])['steps'] for s in both]) * 250 / 1e6:.0f}",
                  f"{np.mean([read(own[s])['seconds'] for s in both]):.1f}"]
         cells += ["–"] * 2 if mesh == meshes[-1] else [percent(*mean_and_error(v)), percent(*mean_and_error(r))]
-        cells += quantity_cells([own[s] for s in both]) if level != "weak" else []
-        print("| " + " | ".join(cells) + " |")
+        rows.append(cells + (quantity_cells([own[s] for s in both]) if level != "weak" else []))
+    return ["levels", "seeds", "10⁶ grain-steps", "s", "surface velocity, %", "r_u, %",
+            *(QUANTITY_HEADS if level != "weak" else [])], rows
 
 
 def grouped(points, wide):
@@ -381,19 +364,24 @@ def write_csv(runs, path):
                           *quantities(folder).values()])
 
 
-def write(there, table, figure):
-    runs = Runs(there)
-    write_csv(runs, table)
-    for level in ("weak", "moderate", "strong"):
+def tables(runs):
+    found = {}
+    for level in dict.fromkeys(case.level for case, _ in runs.all):
         for grains in (250, 1000):
-            for seeds in runs.seeds(level, grains):
-                numerics_table(runs, level, seeds, grains)
+            for kind, seeds in zip(("numerics", "brink"), runs.seeds(level, grains)):
+                found[f"{kind}_{level}_{grains}"] = numerics_table(runs, level, seeds, grains)
             if level != "weak":
-                onset_table(runs, level, grains)
-        twins(runs, level)
-        size_table(runs, level)
-        mesh_table(runs, level)
+                found[f"onset_{level}_{grains}"] = onset_table(runs, level, grains)
+        found |= {f"twins_{level}": twins(runs, level), f"grains_{level}": size_table(runs, level),
+                  f"mesh_{level}": mesh_table(runs, level)}
         if level != "weak" and len(runs.of(level)) > 2:
-            print(f"\n<!-- two seeds differ by {runs.between_seeds(level):.2f} standard deviations -->")
+            found[f"seeds_{level}"] = ["two seeds differ by, standard deviations"], [[f"{runs.between_seeds(level):.2f}"]]
+    return found
+
+
+def write(store, planned, folder):
+    runs = Runs([(run, store.folder(run)) for run in planned if store.is_done(run)])
+    write_csv(runs, folder / "runs.csv")
+    write_tables(folder, tables(runs))
     if runs.of("weak", "reference") and runs.of("strong", "reference"):
-        draw(runs, figure)
+        draw(runs, folder / "error.png")

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Columns that are solved by Isostat and by others, and how far apart two motions are. For column_others_test.py,
-column_published_test.py and benchmarks/column_others.py."""
+"""Columns that are solved by Isostat and by others, and how far apart two motions are.
+
+For the study column_others, tests/apps/column_others_test.py and tests/apps/column_published_test.py.
+"""
 import pathlib
 
 import numpy as np
 from scipy import signal
 
-from column_layers import Layers
-from column_masing import ShearBeam
+from studies.column_layers import Layers
+from studies.column_masing import ShearBeam
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[1]
 RECORD = ROOT / "apps/scenes/motions/simulated_m6.5_20km_x.at2"
 HEIGHT, DENSITY, VELOCITY, STRENGTH_RATIO, SURCHARGE, GRAVITY, REFERENCE = 20.0, 1900.0, 200.0, 0.55, 20e3, 9.81, 100e3
 DEPTHS = (10.1, 19.9)
@@ -84,33 +86,43 @@ def published():
     return profile, *table.T
 
 
-def published_scene(folder, corner, per_wave, duration):
-    """The same profile as a scene of soil_column, in a folder that gets its tables and the motion: a smooth pulse of
-    acceleration, whose spectrum falls from 1 at 0 Hz to 0.64 at `corner`. Neighbours that are equal are one layer, and
-    those that are equal to the half-space belong to it.
-
-    corner   highest frequency, Hz      per_wave   elements for the shortest wave, at least      duration   s
-    """
-    profile, *_ = published()
-    rock, layers = profile[-1, 1:], []
-    for thickness, *soil in profile:
+def published_layers():
+    """Rows of that profile, by wave speed in five parts. Neighbours that are equal are one layer, and those that are
+    equal to the half-space belong to it."""
+    layers = []
+    for thickness, *soil in published()[0]:
         if layers and layers[-1][1:] == soil:
             layers[-1][0] += thickness
         else:
             layers.append([thickness, *soil])
     layers = np.array(layers[:-1])
-    scene = f'[base]\nkind = "compliant"\ndensity = "{rock[1]} kg/m3"\nshear_velocity = "{rock[0]} m/s"\n'
     edges = [0, 1100, 1400, 1900, 2600, np.inf]
-    for k, (slow, fast) in enumerate(zip(edges, edges[1:])):
-        rows = layers[(layers[:, 1] >= slow) & (layers[:, 1] < fast)]
+    return [layers[(layers[:, 1] >= slow) & (layers[:, 1] < fast)] for slow, fast in zip(edges, edges[1:])]
+
+
+def write_published(folder, corner):
+    """Tables of the profile, and the motion: a smooth pulse of acceleration, whose spectrum falls from 1 at 0 Hz to 0.64
+    at `corner`, Hz."""
+    for k, rows in enumerate(published_layers()):
         np.savetxt(folder / f"layers_{k}.csv", rows, fmt="%.10g", delimiter=",", comments="",
                    header="thickness (m),shear_velocity (m/s),density (kg/m3)")
-        scene += (f'[[layer]]\ntable = "layers_{k}.csv"\ncell_size = "{rows[:, 1].min() / corner / per_wave} m"\n'
-                  'material = "elastic"\npoisson_ratio = 0.0\n')
     width = 0.15 / corner
     time = np.arange(0, 16 * width, 1e-4)
     np.savetxt(folder / "pulse.txt", np.column_stack([time, np.exp(-((time / width - 8) ** 2) / 2)]))
-    return scene + ('[water]\ndrainage = "dry"\n[[motion]]\nkind = "record"\nfile = "pulse.txt"\nunit = "m/s2"\n'
+
+
+def published_scene(folder, corner, per_wave, duration):
+    """The same profile as a scene of soil_column, whose tables and motion write_published() has put into a folder.
+
+    corner   highest frequency, Hz      per_wave   elements for the shortest wave, at least      duration   s
+    """
+    rock = published()[0][-1, 1:]
+    scene = f'[base]\nkind = "compliant"\ndensity = "{rock[1]} kg/m3"\nshear_velocity = "{rock[0]} m/s"\n'
+    for k, rows in enumerate(published_layers()):
+        scene += (f'[[layer]]\ntable = "{folder}/layers_{k}.csv"\ncell_size = "{rows[:, 1].min() / corner / per_wave} m"\n'
+                  'material = "elastic"\npoisson_ratio = 0.0\n')
+    return scene + (f'[water]\ndrainage = "dry"\n[[motion]]\nkind = "record"\nfile = "{folder}/pulse.txt"\n'
+                    'unit = "m/s2"\n'
                     f'[analysis]\nviscosity = "0 ms"\nduration = "{duration} s"\n[output]\nhistory_interval = "1 ms"\n')
 
 
