@@ -12,7 +12,7 @@ from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named
 
 REPORT = "report.html"
-KEPT = ("liquefaction_resistance", "calibrate", "column_ensemble")  # the same command goes on with what is missing
+KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command goes on with what is missing
 RESUMED = ("element_test", "soil_column")  # --resume goes on from a checkpoint
 FIGURE_LINE = re.compile(r"^(\w+)\.png\s+(\S.*(?:\n[ ]{8,}\S.*)*)", re.M)
 

@@ -65,7 +65,7 @@ def rve_replay(results, _replay):
                     f"increments; rms difference {100 * s['shear_error']:.3g} % of tau.")]
 
 
-def liquefaction_resistance(results, campaign):
+def resistance(results, campaign):
     status = [run[3] for run in campaign.runs] if campaign else []
     counts = [f"{status.count(word)} {text}" for word, text in (
         ("liquefied", "liquefied"), ("censored", "did not liquefy within their cycles"),
@@ -122,8 +122,7 @@ def column_ensemble(results, _ensemble):
 
 
 OF_PROGRAM = {judge.__name__: judge for judge in (element_test, soil_column, biaxial, rve_replay,
-                                                  liquefaction_resistance, calibrate, micromechanics,
-                                                  column_ensemble)}
+                                                  resistance, calibrate, micromechanics, column_ensemble)}
 
 
 def of_run(results, drawn):

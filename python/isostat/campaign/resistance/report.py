@@ -74,4 +74,4 @@ def report(campaign: Campaign, outcomes: list[Outcome], folder: pathlib.Path, fi
     write_replacing(folder / "resistance.csv", table_text(outcomes))
     write_replacing(folder / "resistance.json", json.dumps(numbers, indent=2) + "\n")
     any_ended = any(outcome.status not in ("missing", "failed") for outcome in outcomes)
-    command.leave(folder, summary_text(campaign, outcomes, fit), "liquefaction_resistance", figures and any_ended)
+    command.leave(folder, summary_text(campaign, outcomes, fit), "resistance", figures and any_ended)

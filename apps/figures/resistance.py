@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the liquefaction resistance that `liquefaction_resistance` found.
+"""Draws the liquefaction resistance that `isostat resistance` found.
 
-    python3 -m figures liquefaction_resistance RESULTS
+    python3 -m figures resistance RESULTS
 
 resistance.png   cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that
                  did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
@@ -94,7 +94,7 @@ def resistance(campaign):
 
 
 class Campaign:
-    """What liquefaction_resistance left in a folder."""
+    """What `isostat resistance` left in a folder."""
 
     def __init__(self, folder):
         self.runs = read_runs(folder / "resistance.csv")
