@@ -4,7 +4,7 @@ drained tests beside the laboratory. And what they leave open: resistance curves
 other ways, slower tests and usual ones.
 
     isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
-    isostat study paper --quick                                     smaller strains, fewer states (12 CPU minutes)
+    isostat study paper --quick                                     one seed, fewer states (5 CPU minutes)
     isostat study paper --parts resistance critical ways paces      what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
     isostat study paper --figures docs/results/paper                figures and claims anew from tables
@@ -18,7 +18,7 @@ from isostat.campaign import study
 from studies.paper import claims, figures, plan, tables, variants
 from studies.tables import read_csv, write_csv
 
-DEFAULTS, QUICK = {"seeds": 3}, {}
+DEFAULTS, QUICK = {"seeds": 3}, {"seeds": 1}
 MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
 
 
