@@ -101,8 +101,8 @@ def published_layers():
 
 
 def write_published(folder, corner):
-    """Tables of the profile, and the motion: a smooth pulse of acceleration, whose spectrum falls from 1 at 0 Hz to 0.64
-    at `corner`, Hz."""
+    """Tables of the profile, and the motion: a smooth pulse of acceleration, whose spectrum falls from 1 at 0 Hz
+    to 0.64 at `corner`, Hz."""
     for k, rows in enumerate(published_layers()):
         np.savetxt(folder / f"layers_{k}.csv", rows, fmt="%.10g", delimiter=",", comments="",
                    header="thickness (m),shear_velocity (m/s),density (kg/m3)")
@@ -119,7 +119,8 @@ def published_scene(folder, corner, per_wave, duration):
     rock = published()[0][-1, 1:]
     scene = f'[base]\nkind = "compliant"\ndensity = "{rock[1]} kg/m3"\nshear_velocity = "{rock[0]} m/s"\n'
     for k, rows in enumerate(published_layers()):
-        scene += (f'[[layer]]\ntable = "{folder}/layers_{k}.csv"\ncell_size = "{rows[:, 1].min() / corner / per_wave} m"\n'
+        size = rows[:, 1].min() / corner / per_wave
+        scene += (f'[[layer]]\ntable = "{folder}/layers_{k}.csv"\ncell_size = "{size} m"\n'
                   'material = "elastic"\npoisson_ratio = 0.0\n')
     return scene + (f'[water]\ndrainage = "dry"\n[[motion]]\nkind = "record"\nfile = "{folder}/pulse.txt"\n'
                     'unit = "m/s2"\n'

@@ -84,6 +84,7 @@ def report(store, planned, folder):
     columns = {name: Column(path) for name, path in found.items()}
     write_tables(folder, {"damping": (
         ["damping", "above 25 Hz, x and y", "peak, m/s2", "S_a(0.023, 0.1, 0.3, 1 s) along x, m/s2", "along y",
-         "peak strain", "largest r_u", "steps"], [row(name, columns[name], parsed(path)) for name, path in found.items()])})
+         "peak strain", "largest r_u", "steps"],
+        [row(name, columns[name], parsed(path)) for name, path in found.items()])})
     if len(found) == len(CASES):
         draw(columns, folder / "surface.png")

@@ -46,7 +46,8 @@ class Run:
         """Those of `isostat ensemble`: a member has other seeds, or another lot of the same ones."""
         keys = {"layer.0.cells": self.points // 2, "grains.realisations": self.realisations,
                 "grains.library": library_of(self.folder, self.grains),
-                "grains.cache": self.folder / f"in_situ_{self.grains}.h5", "analysis.viscosity": f"{self.viscosity:g} ms"}
+                "grains.cache": self.folder / f"in_situ_{self.grains}.h5",
+                "analysis.viscosity": f"{self.viscosity:g} ms"}
         if self.mixed:
             return {**keys, "layer.0.mixed_realisations": MIXED, "layer.0.lot": self.member,
                     **({"layer.0.lot_length": f"{self.length:g} m"} if self.length else {})}

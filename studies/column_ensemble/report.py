@@ -117,7 +117,8 @@ def meshes(samples):
     found = {points: results for points, results in found.items() if results}
     return ["realisation", *(f"{points} points" for points in found)], [
         [member, *(", ".join(f"{factor * results[member].numbers[name]:.{digits}f} {unit}"
-                             for name, _, unit, factor, digits in QUANTITIES if name in ("thickness", "settlement", "sa"))
+                             for name, _, unit, factor, digits in QUANTITIES
+                             if name in ("thickness", "settlement", "sa"))
                    if member in results else "" for results in found.values())]
         for member in sorted(set().union(*found.values()))]
 

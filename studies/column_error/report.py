@@ -375,7 +375,8 @@ def tables(runs):
         found |= {f"twins_{level}": twins(runs, level), f"grains_{level}": size_table(runs, level),
                   f"mesh_{level}": mesh_table(runs, level)}
         if level != "weak" and len(runs.of(level)) > 2:
-            found[f"seeds_{level}"] = ["two seeds differ by, standard deviations"], [[f"{runs.between_seeds(level):.2f}"]]
+            found[f"seeds_{level}"] = (
+                ["two seeds differ by, standard deviations"], [[f"{runs.between_seeds(level):.2f}"]])
     return found
 
 

@@ -70,7 +70,8 @@ def runs(options):
     cases = {("air", s, law): {"layer": f"saturation = {s}", "water": water} for s in SATURATIONS
              for law, water in AIR.items() if (s, law) != (1, "Boyle")}
     cases |= {("cavitation", name): {
-        "k": "0", "water": AIR[law], "layer": 'contraction = 0\ndilation = 1\ncritical_pressure = "2 MPa"', "duration": 4,
+        "k": "0", "water": AIR[law], "duration": 4,
+        "layer": 'contraction = 0\ndilation = 1\ncritical_pressure = "2 MPa"',
         "motion": SHAKE.replace("0.1 g", "0.6 g").replace("8 s", "4 s"), "safety": 0.4}
         for name, law in (("no air", "constant"), ("air dissolved", "Boyle, Henry"))}
     cases |= {("drainage", k, viscosity): {"k": k, "water": f"relative_viscosity = {viscosity}", "duration": 30}
