@@ -51,7 +51,7 @@ def engine(name: str | None = None, jobs: int = 1) -> Iterator[concurrent.future
             client = distributed.Client(**where, timeout="30 s")
         except (OSError, ValueError) as error:
             raise _core.InputError(f"--engine {name}: no Dask scheduler answers there ({error}). Start one with "
-                                   "dask-scheduler, and workers with dask-worker.") from error
+                                   "`dask scheduler`, and workers with `dask worker`.") from error
         with client, client.get_executor(pure=False) as cluster:
             yield cluster
     else:
