@@ -125,6 +125,10 @@ class SnapshotTest(ToleranceTest):
         for bad in ({"density": 0}, {"density": float("nan")}):
             with self.subTest(bad), self.assertRaisesRegex(isostat.InputError, "density"):
                 make(CENTRES, [R] * 3, box=BOX, **bad)
+        for bad in ({"ids": [1, 1, 2]}, {"ids": [0, 1]}, {"ids": [-1, 0, 1]}, {"velocities": CENTRES[:2]},
+                    {"spins": CENTRES * float("nan")}, {"spins": [1, 2, 3]}):
+            with self.subTest(bad), self.assertRaisesRegex(isostat.InputError, f"^{next(iter(bad))}: must be"):
+                make(CENTRES, [R] * 3, box=BOX, **bad)
         for radius, words in ((float("inf"), "sphere 0"), (5.0, "smaller than the spheres")):
             with self.subTest(radius), self.assertRaisesRegex(isostat.InputError, words):
                 make(CENTRES, [radius] * 3, box=BOX)

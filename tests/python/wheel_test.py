@@ -17,6 +17,7 @@ OFFLINE = ("--no-index", "--no-deps", "--disable-pip-version-check", "--quiet")
 
 PROGRAM = """
 import isostat, pathlib
+import isostat.campaign.resistance  # every folder of the package is in the wheel
 assert pathlib.Path(isostat.__file__).is_relative_to(pathlib.Path.cwd() / "site"), isostat.__file__
 scene = isostat.Scene(title="drained", grading={"grains": 500, "cloud_edge": "3.7 mm"},
                       contact={"friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5}},

@@ -93,8 +93,8 @@ def read_foreign(path, how):
     with np.errstate(all="ignore"):
         volume = (np.linalg.det(found.cell) if found.cell is not None else np.prod(box[1] - box[0])) * how.scale**3
     if not (volume > 0 and math.isfinite(volume)):
-        refuse(path, 0, f"the {'box' if found.cell is None else 'periodic cell'} has a volume of {volume} m3; expected a finite "
-                        "one above 0")
+        refuse(path, 0, f"the {'box' if found.cell is None else 'periodic cell'} has a volume of {volume} m3; expected a "
+                        "finite one above 0")
 
     def scaled(lengths):
         return None if lengths is None else how.scale * lengths
@@ -122,7 +122,8 @@ def read_any(file, how):
             notes = [*notes, str(error)]
     density = specimen.snapshot.density
     if how.density_named and abs(density - how.density) > 1e-3 * how.density:
-        notes.append(f"The file says a grain density of {density:g} kg/m3, which is taken: {how.density:g} kg/m3 has no effect.")
+        notes.append(f"The file says a grain density of {density:g} kg/m3, which is taken: {how.density:g} kg/m3 has no "
+                     "effect.")
     return specimen, notes
 
 
@@ -158,14 +159,14 @@ def write_any(path, specimen, kind):
                      "forces, so let a stage `rebalance` come first.")
     if packing.density != QUARTZ and kind != "lammps-data":
         notes.append(_core._in_python(
-            f"The grain density, {number_text(packing.density)} kg/m3, is not kept by this format: name it where the file is read, "
-            f"--density \"{number_text(packing.density)} kg/m3\"."))
+            f"The grain density, {number_text(packing.density)} kg/m3, is not kept by this format: name it where the file is "
+            f"read, --density \"{number_text(packing.density)} kg/m3\"."))
     if kind.startswith("lammps") and not lammps.fits(packing):
         notes.append("LAMMPS wants the first edge of a cell along x and the second in the plane xy: the packing is turned into "
                      "this position, which costs the last digits.")
     if kind == "yade" and packing.cell is not None:
-        notes.append("YADE's text has no place for a periodic cell: it is in the comment `# cell`, which Isostat reads and YADE "
-                     "does not; give O.cell.hSize there.")
+        notes.append("YADE's text has no place for a periodic cell: it is in the comment `# cell`, which Isostat reads and "
+                     "YADE does not; give O.cell.hSize there.")
     if kind == "vtp":
         _core.write_vtp(path, packing, overwrite=True)
     else:
@@ -215,11 +216,11 @@ def read_packing(path: str | os.PathLike[str], *, length_unit: str = "m", densit
     """A packing as a Specimen, whatever wrote it: HDF5 of Isostat, LAMMPS dump or data file (units si, atom_style sphere), text
     of YADE, CSV, VTP, or a folder of tables with contact history.
 
-    Refuses what cannot be meant (spheres in mm read as metres, deep overlaps, spheres outside the box) unless `anyway`; what had
-    to be assumed is a warning.
+    Refuses what cannot be meant (spheres in mm read as metres, deep overlaps, spheres outside the box) unless `anyway`; what
+    had to be assumed is a warning.
 
-    length_unit: of the file, "mm" ... density: kg/m3, where the file does not say it. domain: "periodic-cell" where the file has
-    a box that repeats itself. law: of the contacts; None: the default law.
+    length_unit: of the file, "mm" ... density: kg/m3, where the file does not say it. domain: "periodic-cell" where the file
+    has a box that repeats itself. law: of the contacts; None: the default law.
     """
     path = path_text("path", path)
     specimen, notes = read_any(path, reading(length_unit, density, domain, law, anyway))
@@ -230,8 +231,8 @@ def read_packing(path: str | os.PathLike[str], *, length_unit: str = "m", densit
 def write_packing(path: str | os.PathLike[str], specimen: _core.Specimen, *, format: str = "", overwrite: bool = False) -> None:
     """Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp.
 
-    format: "specimen", "lammps-dump", "lammps-data", "yade", "csv" or "vtp", where the ending is another. What the format cannot
-    hold is a warning. A file that is there is replaced only with `overwrite`.
+    format: "specimen", "lammps-dump", "lammps-data", "yade", "csv" or "vtp", where the ending is another. What the format
+    cannot hold is a warning. A file that is there is replaced only with `overwrite`.
     """
     path = path_text("path", path)
     given("specimen", specimen, _core.Specimen, "an isostat.Specimen")

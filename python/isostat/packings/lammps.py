@@ -182,7 +182,8 @@ class Data:
             found.velocities, found.spins = np.zeros((2, len(atoms), 3))
             for atom, *motion, line in self.rows["Velocities"]:
                 if atom not in place:
-                    refuse(self.path, line, f"velocity of atom {text(atom)}, which is not in the section Atoms; expected it there")
+                    refuse(self.path, line, f"velocity of atom {text(atom)}, which is not in the section Atoms; expected it "
+                                            "there")
                 found.velocities[place[atom]], found.spins[place[atom]] = motion[:3], motion[3:]
         return found
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Spheres as a file of another program lists them, their columns, and what is refused.   tested: tests/python/packings_test.py"""
+"""Spheres as a file lists them, their columns, and what is refused.   tested: tests/python/packings_test.py"""
 import dataclasses
 import math
 import re

@@ -85,8 +85,8 @@ def read(path, lines, _scale, _domain):
         arrays.refuse(f"{n} points, but {promised} are promised; is the file cut off?")
     of_points = {name: arrays.named(data.find("Piece/PointData"), name) for name in WIDTHS}
     if n != len(of_points["radius"]) or any(len(values) not in (0, n * WIDTHS[name]) for name, values in of_points.items()):
-        arrays.refuse(f"{n} points with {len(of_points['radius'])} radii; expected point data `radius` (m), one for each point, "
-                      "and as many of id, velocity, spin, density and mass if there are any")
+        arrays.refuse(f"{n} points with {len(of_points['radius'])} radii; expected point data `radius` (m), one for each "
+                      "point, and as many of id, velocity, spin, density and mass if there are any")
     radii, ids, *motion, densities, masses = (
         (values.reshape(n, 3) if WIDTHS[name] == 3 else values) if len(values) else None for name, values in of_points.items())
     spheres = Spheres(path, centres[:3 * n].reshape(n, 3), np.array([]) if radii is None else radii, ids, *motion, densities,
@@ -94,8 +94,8 @@ def read(path, lines, _scale, _domain):
     spheres.check_ids(0)
     box, cell = (arrays.named(data.find("FieldData"), name) for name in ("box", "cell"))
     if len(cell) not in (0, 9) or len(box) not in (0, 6):
-        arrays.refuse(f"field data `box` of {len(box)} or `cell` of {len(cell)} numbers; expected 6 (lower and upper corner, m) "
-                      "or 9 (three edges, m)")
+        arrays.refuse(f"field data `box` of {len(box)} or `cell` of {len(cell)} numbers; expected 6 (lower and upper corner, "
+                      "m) or 9 (three edges, m)")
     if len(cell):
         with np.errstate(all="ignore"):
             if not 0 < np.linalg.det(cell.reshape(3, 3)) < np.inf:

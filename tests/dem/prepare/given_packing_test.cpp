@@ -163,8 +163,8 @@ TEST(GivenPacking, SceneIsWrittenWithoutDefaultsOfWhatThePackingHas)
     return to_toml(parse_scene(head + name + "\n[[stage]]\nkind = \"" + kind + "\"\n", "s"));
   };
   const auto holds = [](const std::string &text, const char *key) { return text.find(key) != std::string::npos; };
-  const std::string stored = written("\"a.h5#s0001\"", "hold"), foreign = written("\"a.csv\"", "rebalance");
-  for (const std::string &text : {stored, foreign})
+  const std::string stored = written("\"a.h5#s0001\"", "hold"), rebalanced = written("\"a.h5\"", "rebalance");
+  for (const std::string &text : {stored, rebalanced})
     {
       for (const char *key : {"seed", "truncate", "cloud_edge"})
         EXPECT_FALSE(holds(text, key)) << key << "\n" << text;
