@@ -61,12 +61,12 @@ class SceneMistakes(AppTest):
             name, *command = program.split()
             if not (BIN / name).exists():
                 continue
-            ratios = ["--ratios", "0.2"] if "resistance" in command else []
+            more = {"resistance": ["--ratios", "0.2"], "ensemble": ["-n", "2"]}.get(command[0], [])
             for n in (-1, 1025):
-                result = self.run_app(name, *command, "none.toml", *ratios, "--jobs", n)
+                result = self.run_app(name, *command, "none.toml", *more, "--jobs", n)
                 self.assertEqual(result.returncode, 2, program)
                 self.assertRegex(result.stderr, "0 (to|-) 1024|0, 1024]")  # CLI11 of Debian 12 and of 13, Python
-            result = self.run_app(name, *command, "none.toml", *ratios, "--jobs", 0)
+            result = self.run_app(name, *command, "none.toml", *more, "--jobs", 0)
             self.assertEqual(result.returncode, 2, program)
             self.assertIn("none.toml", result.stderr)
             self.assertRegex(self.run_app(name, *command, "--help").stdout,

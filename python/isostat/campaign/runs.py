@@ -142,7 +142,7 @@ def stop() -> None:
     """Asks the programs that this process has started to end with a checkpoint."""
     for process in list(_at_work):
         with contextlib.suppress(ProcessLookupError):
-            process.send_signal(signal.SIGTERM)
+            os.kill(process.pid, signal.SIGTERM)  # send_signal() might reap it before execute() does
 
 
 def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
@@ -169,8 +169,9 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
         for run in runs:
             run.scene.parent.mkdir(parents=True, exist_ok=True)
             run.scene.write_text(run.text, encoding="utf-8")
-            futures[executor.submit(execute, run)] = run
-        pending = set(futures)
+            future = executor.submit(execute, run)
+            futures[future] = run
+            pending.add(future)
         while pending:
             if not wait(interval):
                 waiting([futures[future] for future in pending if future.running()])
