@@ -5,7 +5,6 @@ tested: tests/python/column_test.py
 """
 import abc
 import io
-import os
 
 import numpy as np
 

@@ -3,7 +3,6 @@
 """isostat study: every study says what it would run; a tiny one runs, is stopped, goes on, fails, reports."""
 import pathlib
 import signal
-import unittest
 
 from support import BIN, TIME_LIMIT, AppTest, main, tiny_scene, wait_until
 

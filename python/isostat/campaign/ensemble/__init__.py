@@ -9,12 +9,11 @@ tested: tests/apps/column_ensemble_test.py
 """
 import argparse
 import concurrent.futures
-import contextlib
 import pathlib
 
 from isostat import _core
 from isostat.campaign import command
-from isostat.campaign.ensemble.members import Member, ensemble_members, read_scene, validated_text
+from isostat.campaign.ensemble.members import ensemble_members, read_scene, validated_text
 from isostat.campaign.ensemble.report import report
 from isostat.campaign.ensemble.results import read_member
 from isostat.campaign.folder import CampaignFolder
