@@ -5,7 +5,8 @@ other ways, slower tests and usual ones.
 
     isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
     isostat study paper --quick                                     one seed, fewer states (5 CPU minutes)
-    isostat study paper --parts resistance critical ways paces      what the figures leave open (170 CPU minutes)
+    isostat study paper --parts resistance critical ways paces --tables docs/results/paper
+                                                                    what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
     isostat study paper --figures docs/results/paper                figures and claims anew from tables
 

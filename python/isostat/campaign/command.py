@@ -18,6 +18,9 @@ SCENES = next((folder for parent in pathlib.Path(__file__).parents[2:7]
                if (folder := parent / "share/isostat").is_dir()), pathlib.Path("apps"))
 
 
+WITHOUT_REPORT = 3  # exit code of `report leave`
+
+
 def shipped(folder: str, name: str) -> str:
     """A file as it is named, or else the installed one of this name."""
     installed = str(SCENES / folder / name)
@@ -105,7 +108,8 @@ class Progress:
 
     def say(self, line: str) -> None:
         if not self.quiet:
-            print(self.state() + line, file=sys.stderr, flush=True)
+            with contextlib.suppress(BrokenPipeError):  # who reads may have ended
+                print(self.state() + line, file=sys.stderr, flush=True)
 
     def waiting(self, runs) -> None:
         """What runs at work said last: for complete()."""
@@ -136,5 +140,7 @@ def drawn(folder: pathlib.Path, program: str) -> str:
         write_replacing(folder / "figures.log", done.stdout + done.stderr)
         if done.returncode == 0:
             return f"figures in {folder / 'figures'}, all on one page in {folder / 'report.html'}"
+        if done.returncode == WITHOUT_REPORT:
+            return f"figures in {folder / 'figures'}, without a report: {done.stderr.strip().splitlines()[-1]}"
         return f"figures were not drawn: {(done.stderr.strip().splitlines() or [str(done.returncode)])[-1]}"
     raise KeyboardInterrupt

@@ -4,9 +4,12 @@ import concurrent.futures
 import contextlib
 import importlib
 import os
+import signal
 from collections.abc import Iterator
 
 from isostat import _core
+from isostat.calls import STOPPING
+from isostat.campaign.runs import stop
 
 ENGINE_TEXT = ("where runs are done: local, processes of this machine (default); mpi, ranks above 0 of mpirun or srun, "
                "which is the default under mpirun; or the address of a Dask scheduler, tcp://HOST:8786 or its file "
@@ -36,16 +39,23 @@ def engine(name: str | None = None, jobs: int = 1) -> Iterator[concurrent.future
     Ranks above 0 work inside of the `with` statement until rank 0 leaves it, and get None.   Raises InputError
     """
     if name is None:
-        name = "mpi" if int(os.environ.get("OMPI_COMM_WORLD_SIZE", "1")) > 1 else "local"
+        ranks = os.environ.get("OMPI_COMM_WORLD_SIZE") or os.environ.get("PMI_SIZE") or "1"
+        name = "mpi" if int(ranks) > 1 else "local"
     if name == "local":
         with concurrent.futures.ThreadPoolExecutor(jobs or len(os.sched_getaffinity(0))) as threads:
             yield threads  # each waits for a process
     elif name == "mpi":
         futures = library("mpi4py.futures", "python3-mpi4py")
+        if library("mpi4py.MPI", "python3-mpi4py").COMM_WORLD.rank > 0:
+            for number in (signal.SIGINT, *STOPPING):  # they end its run; rank 0 ends the ranks
+                signal.signal(number, lambda *_: stop())
         with futures.MPICommExecutor() as ranks:
             yield ranks
     elif "://" in name or name.endswith(".json"):
         distributed = library("distributed", "python3-distributed")
+        if name.endswith(".json") and not os.path.isfile(name):
+            raise _core.InputError(f"--engine {name}: is not there. Give the file of `dask scheduler --scheduler-file "
+                                   f"{name}`.")
         where = {"scheduler_file": name} if name.endswith(".json") else {"address": name}
         try:
             client = distributed.Client(**where, timeout="30 s")
@@ -55,4 +65,4 @@ def engine(name: str | None = None, jobs: int = 1) -> Iterator[concurrent.future
         with client, client.get_executor(pure=False) as cluster:
             yield cluster
     else:
-        raise _core.InputError(f"--engine {name}: is none. Give {ENGINE_TEXT.partition(': ')[2]}.")
+        raise _core.InputError(f"--engine {name}: is not an engine. Give {ENGINE_TEXT.partition(': ')[2]}.")

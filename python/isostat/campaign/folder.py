@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The folder of a campaign, to which the same command comes back.   tested: tests/apps/resistance_test.py"""
 import contextlib
-import errno
-import fcntl
 import os
 import pathlib
 import shlex
@@ -12,18 +10,18 @@ import time
 import typing
 
 from isostat import _core
-from isostat.campaign.runs import wait_until_free
+from isostat.campaign.locks import wait_for_lock, wait_until_free
 
 FIRST_FILES = (".lock", "provenance.txt", "scene.toml")  # of a call that was killed before its scene was there
-PATIENCE = 5  # s, for a program that is about to leave
-_locks: list[typing.BinaryIO] = []  # of this process, until it ends
+PATIENCE, RUNS_END = 5, 60  # s, for a program that is about to leave, for a run that writes a checkpoint
+_locks: dict[pathlib.Path, typing.BinaryIO] = {}  # of this process, until it ends
 
 
 def write_replacing(path: pathlib.Path, text: str) -> None:
     """Writes a file aside and renames it: whoever reads it finds all of it.   Raises RunFailure"""
     aside = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        aside.write_text(text, encoding="utf-8")
+        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
         os.replace(aside, path)
     except OSError as error:
         raise _core.RunFailure(f"{path}: cannot be written: {error.strerror}.") from error
@@ -41,7 +39,7 @@ def first_difference(text: str, other: str) -> str:
 
 def refuse_other(path: pathlib.Path, text: str, owner: str) -> None:
     """Raises InputError where a file holds another text: the folder is of another `owner`, "scene" or "calibration"."""
-    kept = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else text
+    kept = path.read_bytes().decode("utf-8", "replace") if path.is_file() else text
     if kept != text:
         raise _core.InputError(f"{path}: belongs to another {owner}: it has `{first_difference(kept, text)}` where this "
                                f"one has `{first_difference(text, kept)}`. Choose another --output, or --overwrite to "
@@ -65,17 +63,12 @@ class CampaignFolder:
         self.check(kept, owner, overwrite)
         if only_check:
             return
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            _locks.append(open(self.path / ".lock", "ab"))  # pylint: disable=consider-using-with
-        except OSError as error:
-            raise _core.InputError(f"{self.path}: the output folder cannot be made or written to ({error.strerror}). "
-                                   "Give a path you may write to with --output.") from error
         self._hold()
+        self.check(kept, owner, overwrite)  # another command may have been faster
         if overwrite:
             self._empty()
         calls = self.path / "provenance.txt"
-        before = calls.read_text(encoding="utf-8") + "\n" if calls.is_file() else ""
+        before = calls.read_text(encoding="utf-8", errors="replace") + "\n" if calls.is_file() else ""
         write_replacing(calls, before + provenance(command or shlex.join([os.path.basename(sys.argv[0]), *sys.argv[1:]])))
         # scene.toml first: a folder with other files but without it is refused, even by the command that made it
         for name, text in sorted(kept.items(), key=lambda item: item[0] != "scene.toml"):
@@ -96,23 +89,24 @@ class CampaignFolder:
             refuse_other(self.path / name, text, owner)
 
     def _hold(self):
-        end = time.monotonic() + PATIENCE
-        while True:
-            try:
-                return fcntl.flock(_locks[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                if time.monotonic() > end:
-                    raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
-                                           "--output.") from None
-                time.sleep(0.1)
-            except OSError as error:
-                if error.errno in (errno.ENOLCK, errno.ENOTSUP):
-                    return None  # a file system without locks: nobody is told
-                raise
+        place = self.path.resolve()
+        if place in _locks:  # of an earlier call in this process
+            return
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            lock = open(self.path / ".lock", "ab")  # pylint: disable=consider-using-with
+        except OSError as error:
+            raise _core.InputError(f"{self.path}: the output folder cannot be made or written to ({error.strerror}). "
+                                   "Give a path you may write to with --output.") from error
+        if not wait_for_lock(lock, PATIENCE):
+            lock.close()
+            raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
+                                   "--output.")
+        _locks[place] = lock
 
     def _empty(self):
         for lock in self.path.glob("*/**/.lock"):
-            wait_until_free(lock.parent)  # of a run whose campaign was killed
+            wait_until_free(lock.parent, RUNS_END)  # of a run whose campaign was killed
         names = [entry.name for entry in self.path.iterdir() if entry.name not in FIRST_FILES]
         for name in [*names, "scene.toml", "provenance.txt"]:  # last what tells that these are results
             path = self.path / name

@@ -39,6 +39,8 @@ class FunctionRun(Run):
     def result(self) -> dict[str, Any]:
         return json.loads((self.results / "result.json").read_text(encoding="utf-8"))
 
+    is_of_this_scene = False  # it begins anew
+
     @property
     def is_finished(self) -> bool:
         with contextlib.suppress(OSError, ValueError, KeyError):

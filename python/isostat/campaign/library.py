@@ -128,7 +128,7 @@ def prepare(requests: list[Request], folder: pathlib.Path, cache: pathlib.Path, 
         nonlocal n_ended
         n_ended += 1
         if code:
-            said = run.last_line.removeprefix("error: ").removeprefix("failed: ")
+            said = run.reason.removeprefix("error: ").removeprefix("failed: ")
             failures[runs[run]] = code, said or f"exit code {code}, see {run.log}"
         progress.say(f"  {runs[run].name}: {'FAILED' if code else 'ready'}, {seconds:.0f} s")
 

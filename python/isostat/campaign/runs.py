@@ -1,34 +1,41 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of the programs, each in a process of its own and kept in a folder of its own.
 
-tested: tests/apps/campaign_engines_test.py, tests/apps/resistance_test.py
+tested: tests/python/campaign_test.py, tests/apps/campaign_engines_test.py
 """
 import concurrent.futures
 import contextlib
 import dataclasses
-import fcntl
 import json
+import math
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from isostat import _core
+from isostat.campaign.locks import wait_for_lock, wait_until_free
 
 LAUNCHED = ("OMPI_", "PMIX_", "PMI_", "SLURM_")  # what a launcher tells its ranks: programs that these start are none
 PATIENCE = 60  # s, for a process that another call left in a folder: it stops with a checkpoint when its parent ends
+BAD_INPUT, STOPPED = 2, 130  # exit codes
 CRASHED = 126  # exit codes from here on: stopped, killed or crashed
+OWN_FILES = ("scene.toml", "provenance.txt", "result.json", ".lock", ".writable")  # one of them is in every folder of a run
 _at_work: set[subprocess.Popen[bytes]] = set()
+_stopping = threading.Event()
 
 
 def program(name: str) -> str:
     """The path of a program of this installation.   Raises InputError"""
-    folders = [pathlib.Path(sys.argv[0]).parent, *(parent / "bin" for parent in pathlib.Path(__file__).parents[2:7])]
+    folders = [parent / "bin" for parent in pathlib.Path(__file__).parents[2:7]]
+    if pathlib.Path(sys.argv[0]).name == "isostat":
+        folders.append(pathlib.Path(sys.argv[0]).parent)
     for folder in folders:
         if os.access(folder / name, os.X_OK) and (folder / name).is_file():
             return str((folder / name).absolute())
@@ -40,7 +47,8 @@ def program(name: str) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """A scene that a program runs, and where: FOLDER/scenes/NAME.toml, FOLDER/runs/NAME/, FOLDER/logs/NAME.log and .cpu."""
+    """A scene that a program runs, and where: FOLDER/scenes/NAME.toml, FOLDER/runs/NAME/, FOLDER/logs/NAME.log, .cpu and
+    .lock."""
 
     name: str
     text: str  # of the scene, every key resolved
@@ -67,10 +75,16 @@ class Run:
     def is_finished(self) -> bool:
         """True if its folder holds the results of this scene, to its end."""
         try:
-            return ((self.results / "summary.json").is_file()
-                    and (self.results / "scene.toml").read_text(encoding="utf-8") == self.text)
+            return (self.results / "summary.json").is_file() and self.is_of_this_scene
         except OSError:
             return False
+
+    @property
+    def is_of_this_scene(self) -> bool:
+        """Whether what is in its folder can be gone on with."""
+        with contextlib.suppress(OSError):
+            return (self.results / "scene.toml").read_text(encoding="utf-8") == self.text
+        return False
 
     @property
     def cpu_seconds(self) -> float:
@@ -87,6 +101,16 @@ class Run:
             return next((line for line in reversed(lines) if line.strip()), "")
         return ""
 
+    @property
+    def reason(self) -> str:
+        """Why it failed, as its program said."""
+        with contextlib.suppress(OSError):
+            lines = self.log.read_text(encoding="utf-8", errors="replace").rstrip().split("\n")
+            for k in reversed(range(len(lines))):
+                if lines[k].startswith(("error: ", "failed: ")):
+                    return "; ".join(line.strip() for line in lines[k:])
+        return self.last_line
+
 
 def read_summary(results: pathlib.Path) -> dict[str, Any]:
     """summary.json of a run that has finished.   Raises InputError (a damaged file)"""
@@ -96,50 +120,75 @@ def read_summary(results: pathlib.Path) -> dict[str, Any]:
         raise _core.InputError(f"{results / 'summary.json'}: is damaged ({error}).") from error
 
 
-def wait_until_free(folder: pathlib.Path) -> None:
-    """Until no process works in a results folder, or patience ends: then its program says what is the matter."""
-    end = time.monotonic() + PATIENCE
-    with contextlib.suppress(FileNotFoundError, NotADirectoryError), open(folder / ".lock", "rb+") as file:
-        while time.monotonic() < end:
-            with contextlib.suppress(BlockingIOError):
-                return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            time.sleep(0.1)
-
-
 def execute(run: Run) -> tuple[int, float]:
     """Does a run, or the rest of it where there is a checkpoint, in this process' place: what an engine is given.
 
-    The program ends with a checkpoint when the thread that called this ends.
+    Waits for whoever does it already; what that one has finished is not done again. The program ends with a checkpoint
+    when the thread that called this ends.
     Returns its exit code, or 128 + the signal that ended it, and the seconds it took.
     """
     start = time.monotonic()
-    wait_until_free(run.results)
-    resumed = any((run.results / "checkpoint").glob("*.h5"))
-    if not resumed:
-        shutil.rmtree(run.results, ignore_errors=True)
     for file in (run.results, run.log):
         file.parent.mkdir(parents=True, exist_ok=True)
+    with open(run.log.with_suffix(".lock"), "ab") as lock:
+        if not wait_for_lock(lock, math.inf, _stopping.is_set):
+            return STOPPED, 0
+        if run.is_finished:
+            return 0, 0
+        if not wait_until_free(run.results, PATIENCE):
+            return refuse(run, "another program is at work in it. Wait for it."), 0
+        if has_other_files(run.results):
+            return refuse(run, "is not emptied, because it holds no results. Move it away."), 0
+        resumed = run.is_of_this_scene and any((run.results / "checkpoint").glob("*.h5"))
+        code = start_program(run, resumed)
+        if resumed and code == BAD_INPUT:  # its checkpoint is damaged
+            code = start_program(run, False)
+    return code, time.monotonic() - start
+
+
+def has_other_files(folder: pathlib.Path) -> bool:
+    """Whether a folder may be somebody's own. A run that was killed as it began leaves files aside."""
+    names = [entry.name for entry in folder.iterdir() if not entry.name.endswith(".tmp")] if folder.is_dir() else []
+    return bool(names) and not set(OWN_FILES) & set(names)
+
+
+def refuse(run: Run, why: str) -> int:
+    run.log.unlink(missing_ok=True)
+    run.log.write_text(f"error: {run.results}: {why}\n", encoding="utf-8")
+    return BAD_INPUT
+
+
+def start_program(run: Run, resumed: bool) -> int:
+    """Its exit code; what the folder holds is removed unless the program goes on with it."""
+    if not resumed:
+        shutil.rmtree(run.results, ignore_errors=True)
+        run.log.with_suffix(".cpu").unlink(missing_ok=True)
     run.log.unlink(missing_ok=True)  # it may be a link to a file of somebody
     command = ["setpriv", "--pdeathsig", "TERM", "--", *run.command(resumed)]
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(LAUNCHED) or name.startswith("OMPI_ALLOW_RUN_AS_ROOT")}
-    environment |= {"OMP_NUM_THREADS": str(run.threads), "OPENBLAS_NUM_THREADS": "1"}
+    environment |= {"OPENBLAS_NUM_THREADS": "1"} | ({"OMP_NUM_THREADS": str(run.threads)} if run.threads else {})
+    if _stopping.is_set():
+        return STOPPED
     with open(run.log, "xb") as log:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
                                    env=environment, process_group=0)
     _at_work.add(process)
     try:
+        if _stopping.is_set():
+            os.kill(process.pid, signal.SIGTERM)
         _, status, usage = os.wait4(process.pid, 0)
     finally:
         _at_work.discard(process)
     process.returncode = code = os.waitstatus_to_exitcode(status)
-    spent = usage.ru_utime + usage.ru_stime + (run.cpu_seconds if resumed else 0)
+    spent = usage.ru_utime + usage.ru_stime + run.cpu_seconds
     run.log.with_suffix(".cpu").write_text(f"{spent:.2f}\n", encoding="ascii")
-    return (code if code >= 0 else 128 - code), time.monotonic() - start
+    return code if code >= 0 else 128 - code
 
 
 def stop() -> None:
-    """Asks the programs that this process has started to end with a checkpoint."""
+    """Asks the programs that this process has started to end with a checkpoint; it starts no others."""
+    _stopping.set()
     for process in list(_at_work):
         with contextlib.suppress(ProcessLookupError):
             os.kill(process.pid, signal.SIGTERM)  # send_signal() might reap it before execute() does
@@ -153,7 +202,11 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
 
     ended     told of each run that has ended: its exit code and the seconds it took
     waiting   told of those at work, whenever nothing has ended for `interval` seconds
+
+    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the engine has lost one.
     """
+    _stopping.clear()
+    stopped = []
     futures: dict[concurrent.futures.Future[tuple[int, float]], Run] = {}
     pending = set()
 
@@ -162,7 +215,10 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
         nonlocal pending
         done, pending = concurrent.futures.wait(pending, seconds, concurrent.futures.FIRST_COMPLETED)
         for future in [future for future in futures if future in done]:
-            ended(futures[future], *future.result())
+            code, seconds = result_of(future, futures[future])
+            if code == STOPPED:
+                stopped.append(futures[future])
+            ended(futures[future], code, seconds)
         return bool(done)
 
     try:
@@ -182,3 +238,16 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
         while pending and time.monotonic() < end:
             wait(1)
         raise
+    if stopped:
+        raise _core.RunFailure(f"{len(stopped)} runs were stopped by somebody else, the first of them {stopped[0].name}; "
+                               "the same command goes on")
+
+
+def result_of(future: concurrent.futures.Future[tuple[int, float]], run: Run) -> tuple[int, float]:
+    try:
+        return future.result()
+    except (KeyboardInterrupt, _core.InputError, _core.RunFailure, OSError):
+        raise
+    except BaseException as error:  # of the engine: every library has its own
+        raise _core.RunFailure(f"{run.name}: the engine has lost it ({type(error).__name__}). What has ended is kept, the "
+                               "same command goes on.") from error

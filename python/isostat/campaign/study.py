@@ -33,6 +33,7 @@ from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete
 from isostat.running import as_scene
 
+FREE_OPTIONS = ("jobs", "engine", "output", "overwrite", "quiet", "no_figures", "dry_run", "tables")  # change no table
 QUICK_SECONDS = 20  # of CPU by estimate: of runs that `--quick` leaves in
 
 
@@ -110,7 +111,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
     failed = []
 
     def ended(run, code, seconds):
-        progress.say(f"  {run.name}: {'done' if code == 0 else f'exit code {code}: {run.last_line}'}, {seconds:.0f} s")
+        progress.say(f"  {run.name}: {'done' if code == 0 else f'exit code {code}: {run.reason}'}, {seconds:.0f} s")
         if code not in (0, 130):
             failed.append(run)
 
@@ -125,14 +126,18 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         print(f"tables and figures in {folder}")
     if failed:
         raise _core.RunFailure(f"{len(failed)} of {len(planned)} runs failed, the first of them {failed[0].name}: "
-                               f"{failed[0].last_line}. The others are kept, the same command tries again.")
+                               f"{failed[0].reason}. The others are kept, the same command tries again.")
 
 
 def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
     """Where tables and figures go: into the page's folder only if they are those of the whole study."""
+    if options.tables:
+        return options.tables
     page = studies_folder().parent / "docs/results" / getattr(study, "PAGE", options.name)
-    of_page = is_complete and not options.quick and page.is_dir()
-    return options.tables or (page if of_page else options.output / "tables")
+    whole = vars(parse([], options.name, study))
+    asked = {key: value for key, value in vars(options).items() if key not in FREE_OPTIONS}
+    of_page = is_complete and page.is_dir() and all(whole[key] == value for key, value in asked.items())
+    return page if of_page else options.output / "tables"
 
 
 def load(name: str) -> Any:
@@ -153,7 +158,7 @@ def parse(words: list[str], name: str, study: Any) -> argparse.Namespace:
     line.add_argument("--quick", action="store_true", help="a small part of it, in minutes")
     line.add_argument("--dry-run", action="store_true", help="only say how many runs there are, and how long they take")
     line.add_argument("--tables", type=pathlib.Path, help="folder of tables and figures (default: docs/results/NAME of the "
-                      "repository when all is done, else tables below the results)")
+                      "repository when all is done with default options, else tables below the results)")
     getattr(study, "add_options", lambda _: None)(line)
     line.set_defaults(name=name, **study.DEFAULTS)
     if "--quick" in words:

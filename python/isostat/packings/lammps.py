@@ -146,6 +146,8 @@ class Data:
             self.refuse("a general triclinic box; expected xlo xhi and xy xz yz")
         if words[1:] == ["atoms"]:
             self.n_atoms = self.numbers(words[:1])[0]
+        elif words[-3:] == ["xy", "xz", "yz"] and len(words) != 6:
+            self.refuse("tilts of the cell that are not three numbers; expected xy xz yz behind three")
         elif names == ["xy", "xz", "yz"]:
             self.tilt = self.numbers(words[:half])
         for k, axis in enumerate("xyz"):

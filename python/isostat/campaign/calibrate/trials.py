@@ -124,11 +124,11 @@ class Trials:
         def ended(run, code, _):
             nonlocal crashed
             if code >= CRASHED:
-                crashed = f"{run.results}: ended with code {code}: {run.last_line}"
+                crashed = f"{run.results}: ended with code {code}: {run.reason}"
                 return
             self.runs_done += 1
             if code:
-                write_replacing(beside(run.results, "failed"), run.last_line)
+                write_replacing(beside(run.results, "failed"), run.reason)
             left[trial_of[run]] -= 1
             if not left[trial_of[run]]:
                 self.computed += 1

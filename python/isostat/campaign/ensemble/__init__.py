@@ -26,7 +26,7 @@ def do_runs(runs: list[Run], executor: concurrent.futures.Executor, quiet: bool,
 
     def ended(run, code, seconds):
         if code not in (0, 130):
-            failures[run.name] = f"exit code {code}: {run.last_line}"
+            failures[run.name] = f"exit code {code}: {run.reason}"
         progress.say(f"  {run.name}: {'done' if code == 0 else 'not finished'}, {seconds:.0f} s")
 
     complete(executor, [run for run in runs if not run.is_finished], ended, progress.waiting)

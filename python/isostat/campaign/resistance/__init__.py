@@ -42,7 +42,7 @@ def do_runs(campaign: Campaign, runs: list[tuple[Run, Outcome]], folder: pathlib
     def specimen_ended(run, code, seconds):
         for outcome in outcomes.values() if code not in (0, 130) else ():
             if outcome.seed == specimens[run] and outcome.status == "missing":
-                outcome.status, outcome.note = "failed", f"exit code {code}: {run.last_line}"
+                outcome.status, outcome.note = "failed", f"exit code {code}: {run.reason}"
         progress.say(f"  {run.name}: {'ready' if code == 0 else 'FAILED'}, {seconds:.0f} s")
 
     def run_ended(run, code, seconds):

@@ -30,7 +30,7 @@ def parse_ratios(text: str) -> list[float]:
         if not 0 < ratio <= 1:
             raise _core.InputError(f"--ratios {text}: \"{word}\" is not a number in (0, 1]. Give cyclic stress ratios "
                                    "between commas, e.g. --ratios 0.10,0.15,0.20.")
-        if ratio in ratios:
+        if f"{ratio:g}" in [f"{other:g}" for other in ratios]:  # as runs are named
             raise _core.InputError(f"--ratios {text}: {ratio:g} stands twice. For more tests at a ratio raise "
                                    "--realisations.")
         ratios.append(ratio)
@@ -125,6 +125,6 @@ class Campaign:
             if code == 0:
                 outcome.read(run.results, len(self.stages) - 1, self.kind, self.max_strain)
             elif code != 130:
-                outcome.status, outcome.note = "failed", f"exit code {code}: {run.last_line}"
+                outcome.status, outcome.note = "failed", f"exit code {code}: {run.reason}"
         except _core.InputError as error:  # its files are damaged
             outcome.status, outcome.note = "failed", str(error)
