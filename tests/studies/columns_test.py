@@ -56,7 +56,7 @@ class StudiesOfColumns(AppTest):
                 module, options = self.loaded(name)
                 runs, tables = module.runs(options), options.output / "tables"
                 tables.mkdir()
-                module.report(study.Store(options.output, runs), runs, tables)
+                module.report(study.Store(options.output), runs, tables)
 
     def test_prepare_comes_first(self):
         """And not at all with --dry-run; `--quick` leaves out long runs, and what needs a specimen that takes long."""
@@ -74,6 +74,7 @@ class StudiesOfColumns(AppTest):
                                        report=lambda store, runs, folder: called.append(runs))
         options = self.loaded("column_dissipation")[1]
         options.quick = options.dry_run = True
+        options.tables = self.folder / "tables"
         with engines.engine("local") as executor, contextlib.redirect_stdout(io.StringIO()) as said:
             study.do_runs(module, options, executor)
             self.assertIn("0 runs, 0 to do", said.getvalue())
@@ -107,7 +108,7 @@ class StudiesOfColumns(AppTest):
         with engines.engine("local") as executor, contextlib.redirect_stdout(io.StringIO()) as said:
             study.do_runs(types.SimpleNamespace(runs=lambda _: few, report=module.report), options, executor)
         self.assertIn("4 runs, 4 to do", said.getvalue())
-        self.assertTrue(all(map(study.Store(options.output, few).is_done, few)), "nothing is left to do")
+        self.assertTrue(all(map(study.Store(options.output).is_done, few)), "nothing is left to do")
         rows = (options.tables / "dilation.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(len(rows), 4)
         self.assertRegex(rows[1], r"elastic,0\.00e\+00 m/s2,1\.\d\de\+00 m/s2")
