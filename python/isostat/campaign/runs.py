@@ -16,10 +16,11 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from isostat import _core
+from isostat.calls import STOPPING
 from isostat.campaign.locks import wait_for_lock, wait_until_free
 
 LAUNCHED = ("OMPI_", "PMIX_", "PMI_", "SLURM_")  # what a launcher tells its ranks: programs that these start are none
@@ -194,6 +195,31 @@ def stop() -> None:
             os.kill(process.pid, signal.SIGTERM)  # send_signal() might reap it before execute() does
 
 
+@contextlib.contextmanager
+def signals_noted() -> Iterator[threading.Event]:
+    """Signals that end a program only set a flag: an exception within concurrent.futures would leave its locks held. A
+    second one kills, as ever."""
+    noted = threading.Event()
+
+    def note(number, _):
+        if noted.is_set():
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+        noted.set()
+
+    is_main = threading.current_thread() is threading.main_thread()
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *STOPPING)} if is_main else {}
+    try:
+        for number, handler in before.items():
+            if handler not in (signal.SIG_IGN, None):
+                signal.signal(number, note)
+        yield noted
+    finally:
+        for number, handler in before.items():
+            if handler is not None:
+                signal.signal(number, handler)
+
+
 def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
              ended: Callable[[Run, int, float], None] = lambda run, code, seconds: None,
              waiting: Callable[[list[Run]], None] = lambda runs: None, interval: float = 30) -> None:
@@ -203,17 +229,18 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
     ended     told of each run that has ended: its exit code and the seconds it took
     waiting   told of those at work, whenever nothing has ended for `interval` seconds
 
-    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the engine has lost one.
+    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the engine has lost one;
+    KeyboardInterrupt.
     """
     _stopping.clear()
     stopped = []
     futures: dict[concurrent.futures.Future[tuple[int, float]], Run] = {}
     pending = set()
 
-    def wait(seconds):
-        """Tells of what has ended; returns whether anything has."""
+    def tell_of_ended():
+        """Waits a little; returns whether anything has ended."""
         nonlocal pending
-        done, pending = concurrent.futures.wait(pending, seconds, concurrent.futures.FIRST_COMPLETED)
+        done, pending = concurrent.futures.wait(pending, 0.5, concurrent.futures.FIRST_COMPLETED)
         for future in [future for future in futures if future in done]:
             code, seconds = result_of(future, futures[future])
             if code == STOPPED:
@@ -221,23 +248,30 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
             ended(futures[future], code, seconds)
         return bool(done)
 
-    try:
-        for run in runs:
-            run.scene.parent.mkdir(parents=True, exist_ok=True)
-            run.scene.write_text(run.text, encoding="utf-8")
-            future = executor.submit(execute, run)
-            futures[future] = run
-            pending.add(future)
-        while pending:
-            if not wait(interval):
-                waiting([futures[future] for future in pending if future.running()])
-    except BaseException:
-        pending = {future for future in pending if not future.cancel()}
-        stop()
-        end = time.monotonic() + PATIENCE  # runs of other machines go on, and are found finished by the next call
-        while pending and time.monotonic() < end:
-            wait(1)
-        raise
+    with signals_noted() as interrupted:
+        try:
+            for run in runs:
+                run.scene.parent.mkdir(parents=True, exist_ok=True)
+                run.scene.write_text(run.text, encoding="utf-8")
+                future = executor.submit(execute, run)
+                futures[future] = run
+                pending.add(future)
+            last = time.monotonic()
+            while pending:
+                if interrupted.is_set():
+                    raise KeyboardInterrupt
+                if tell_of_ended():
+                    last = time.monotonic()
+                elif time.monotonic() - last > interval:
+                    waiting([futures[future] for future in pending if future.running()])
+                    last = time.monotonic()
+        except BaseException:
+            pending = {future for future in pending if not future.cancel()}
+            stop()
+            end = time.monotonic() + PATIENCE  # runs of other machines go on, and are found finished by the next call
+            while pending and time.monotonic() < end:
+                tell_of_ended()
+            raise
     if stopped:
         raise _core.RunFailure(f"{len(stopped)} runs were stopped by somebody else, the first of them {stopped[0].name}; "
                                "the same command goes on")
