@@ -283,7 +283,7 @@ TEST(Assembly, FailureNamesStepAndGrain)
   Snapshot fast = packing_at_pressure();
   for (std::uint32_t &id : fast.grains.id)
     id += 5000; // the number in the specimen, not the place in memory
-  fast.grains.set_linear_velocity(321, Vec3(0, 500, 0));
+  fast.grains.set_linear_velocity(321, Vec3(0, 2000, 0));
   EXPECT_THAT(failure_of(fast, 0), HasSubstr("step 40: grain 5321 moves at"));
 
   Snapshot undefined = packing_at_pressure();
