@@ -23,7 +23,7 @@ done
 
 # Specimens of 300 grains, then the column that is made of them; the scene looks for them in results/.
 build/release/bin/isostat library apps/scenes/rve_library.toml --output results/quick_library.h5 --append \
-  --pressures "20 kPa,100 kPa" --set contact.young="1 GPa" --set grading.grains=300 --set grading.cloud_edge="3.107 mm"
+  --pressures "20 kPa,100 kPa" --set contact.young="1 GPa" --set grading.grains=300
 build/release/bin/soil_column apps/scenes/column/quick_grains_10m.toml --output results/demo_column --overwrite
 
 echo "figures:"
