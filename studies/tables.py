@@ -18,6 +18,15 @@ def write_tables(folder, tables):
         print(f"\n{name}\n\n{markdown(header, rows)}")
 
 
+def report_of(results_of, draw):
+    """The report() of a study: tables and figures of results_of(store, planned)."""
+    def report(store, planned, folder):
+        results = results_of(store, planned)
+        write_tables(folder, results.tables())
+        draw(results, folder)
+    return report
+
+
 def markdown(header, rows):
     """A table of texts."""
     lines = ["| " + " | ".join(row) + " |" for row in (header, *rows)]

@@ -4,16 +4,11 @@
 Every setting is run on the same specimens.
 """
 from studies.free_grains import figures, plan, tables
-from studies.tables import write_tables
+from studies.tables import report_of
 
 DEFAULTS, QUICK = {"seeds": 20}, {"seeds": 1}
+report = report_of(tables.Results, figures.draw)
 
 
 def runs(options):
     return plan.runs(options.seeds)
-
-
-def report(store, planned, folder):
-    results = tables.Results(store, planned)
-    write_tables(folder, results.tables())
-    figures.draw(results, folder)

@@ -18,13 +18,9 @@ _locks: dict[pathlib.Path, typing.BinaryIO] = {}  # of this process, until it en
 
 
 def write_replacing(path: pathlib.Path, text: str) -> None:
-    """Writes a file aside and renames it: whoever reads it finds all of it.   Raises RunFailure"""
-    aside = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    try:
-        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
-        os.replace(aside, path)
-    except OSError as error:
-        raise _core.RunFailure(f"{path}: cannot be written: {error.strerror}.") from error
+    """Writes a file aside, brings it to the disk and renames it, as the programs do: whoever reads it finds all of it. A
+    path in the text that is not UTF-8 is spelt out.   Raises RunFailure"""
+    _core._write_replacing(path, text.encode("utf-8", "backslashreplace"))
 
 
 def is_first(name: str) -> bool:

@@ -22,6 +22,7 @@ from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder
 from isostat.campaign.runs import Run, complete
+from isostat.campaign.scenes import below_campaign
 from isostat.scene import Scene
 
 DENSITIES = {"relative_density": "D_r {}", "void_ratio": "e {}", "preparation_friction": "prepared at {}"}
@@ -46,10 +47,7 @@ class Request:
         """A run that puts it into the cache."""
         sections = self.scene.to_dict()
         sections.pop("stage", None)
-        sections["output"] |= {"folder": "runs", "snapshots": "none", "paraview": False}
-        cache = pathlib.Path(sections["specimen"]["cache"])
-        if not cache.is_absolute():
-            sections["specimen"]["cache"] = str("../.." / cache)
+        below_campaign(sections)
         return Run.below(folder, self.name.replace(", ", "_").replace(" ", ""), Scene(sections))
 
 

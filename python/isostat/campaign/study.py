@@ -82,12 +82,15 @@ class Store:
         return self.run(planned).cpu_seconds
 
 
-def estimate(store: Store, planned: list[Any]) -> float:
-    """CPU seconds that are left: those estimated, at the speed of what has been run."""
-    done = [run for run in planned if store.is_done(run)]
+def what_is_left(store: Store, planned: list[Any]) -> tuple[list[Any], float]:
+    """The runs that have not ended, and their CPU seconds: those estimated, at the speed of what has been run."""
+    done: list[Any] = []
+    left: list[Any] = []
+    for run in planned:
+        (done if store.is_done(run) else left).append(run)
     estimated = sum(run.estimated_seconds() for run in done)
     speed = sum(map(store.cpu_seconds, done)) / estimated if estimated else 1
-    return (speed or 1) * sum(run.estimated_seconds() for run in planned if not store.is_done(run))
+    return left, (speed or 1) * sum(run.estimated_seconds() for run in left)
 
 
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
@@ -101,14 +104,18 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         missing = {run.specimen for run in long if run.kind == "prepare"}
         planned = [run for run in planned if run not in long and getattr(run, "specimen", None) not in missing]
     store = Store(options.output)
-    left = [run for run in planned if not store.is_done(run)]
-    print(f"{len(planned)} runs, {len(left)} to do, some {estimate(store, planned) / 60:.0f} CPU minutes", flush=True)
+    left, seconds_left = what_is_left(store, planned)
+    print(f"{len(planned)} runs, {len(left)} to do, some {seconds_left / 60:.0f} CPU minutes", flush=True)
     if options.dry_run:
         return
-    progress = command.Progress(
-        lambda: f"{sum(map(store.is_done, planned))} of {len(planned)} runs, ETA "
-        f"{command.duration_text(estimate(store, planned) / max(1, options.jobs))}", options.quiet)
     failed = []
+
+    def state():
+        to_do, seconds = what_is_left(store, planned)
+        return (f"{len(planned) - len(to_do)} of {len(planned)} runs, ETA "
+                f"{command.duration_text(seconds / max(1, options.jobs))}")
+
+    progress = command.Progress(state, options.quiet)
 
     def ended(run, code, seconds):
         progress.say(f"  {run.name}: {'done' if code == 0 else f'exit code {code}: {run.reason}'}, {seconds:.0f} s")

@@ -8,10 +8,10 @@ from typing import Any
 from isostat import _core
 from isostat.campaign.calibrate.keys import DENSITIES, number_text, unknown_text
 from isostat.campaign.calibrate.plan import concerns
+from isostat.campaign.scenes import POWERS, in_si
 from isostat.scene import Scene
 
 NUMBERS = ("number", "length", "pressure", "stress rate", "angle", "rate", "time", "time interval", "density")
-POWERS = {"kPa": 3, "MPa": 6, "GPa": 9, "mm": -3, "ns": -9}  # of ten, that units of keys are
 SET_ELSEWHERE = {"grading.seed": "[specimens]", "grading.grains": "[specimens]", "grading.cloud_edge": "[specimens]",
                  "specimen.pressure": "[[curve]]"}
 
@@ -26,15 +26,6 @@ def kinds() -> dict[str, str]:
         elif row := re.match(r"\| `([\w.]+)` \| (.*?) \|", line):
             found[section + row[1]] = row[2]
     return found
-
-
-def in_si(text: str) -> float:
-    """Of a quantity or number as scenes write it: "10 mm", "0.3"; degrees of an angle."""
-    number, _, unit = text.partition(" ")
-    digits, _, exponent = number.partition("e")
-    if unit == "tan":  # of an angle that no number of degrees gives to the bit
-        return math.degrees(math.atan(float(number)))
-    return float(f"{digits}e{int(exponent or 0) + POWERS.get(unit, 0)}")
 
 
 class Parameter:

@@ -6,8 +6,9 @@ from typing import Any
 
 from isostat import _core
 from isostat.campaign.calibrate.keys import DENSITIES, number_text
-from isostat.campaign.calibrate.parameter import Parameter, in_si
+from isostat.campaign.calibrate.parameter import Parameter
 from isostat.campaign.calibrate.plan import concerns
+from isostat.campaign.scenes import OF_A_RUN, in_si
 from isostat.scene import Scene
 
 
@@ -74,7 +75,7 @@ class SceneMaker:
         if self.plan.specimens.inertial_number:
             keys["motion.inertial_number"] = self.plan.specimens.inertial_number
         return self.test(keys, curve, f"{curve.name}, seed {seed}",
-                         {"folder": "runs", "snapshots": "none", "paraview": False},
+                         OF_A_RUN,
                          cache="../../specimens")  # one for all trials
 
     def full_test(self, values: list[float], curve: Any) -> Scene:

@@ -10,10 +10,10 @@ import pathlib
 from isostat import _core
 from isostat.campaign.resistance.outcome import Kind, Outcome
 from isostat.campaign.runs import Run
+from isostat.campaign.scenes import below_campaign, in_si
 from isostat.scene import Scene
 
 ENOUGH = 0.04  # of gamma, beyond which nothing is left to be seen
-PASCALS = {"Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
 KINDS = {"undrained-cyclic": Kind("triaxial", "q_amp / (2 p0')", "eps_y", 1.5),
          "undrained-cyclic-simple-shear": Kind("simple shear", "tau_amp / sigma'_v0", "gamma_xy", 1)}
 AT_REST = ("compress", "k0-compress", "rebalance", "hold", "friction", "repeat")  # stages that do not shear
@@ -61,10 +61,7 @@ class Campaign:
         until["strain"] = self.max_strain = min(until["strain"], ENOUGH / self.kind.gamma_factor)
         self.liquefaction_ratio = cyclic["liquefaction_ratio"]
         shared["grading"]["seed"] = 1
-        shared["output"] |= {"folder": "runs", "snapshots": "none", "paraview": False}
-        cache = pathlib.Path(shared["specimen"]["cache"])
-        if not cache.is_absolute():  # beside the folder of the campaign, as that of any run
-            shared["specimen"]["cache"] = str("../.." / cache)
+        below_campaign(shared)
         self.shared = shared
 
     def _cyclic(self) -> Kind:
@@ -90,8 +87,7 @@ class Campaign:
         if not isotropic and self.kind.test == "triaxial":
             raise _core.InputError(f"{self.title}: consolidated without lateral strain; CSR = q_amp / (2 p0') of a "
                                    "triaxial test needs isotropic consolidation. Take it, or cyclic simple shear.")
-        number, unit = pressure.split()
-        return float(number) * PASCALS[unit]
+        return in_si(pressure)
 
     def scene(self, seed: int, ratio: float | None = None) -> Scene:
         """Of a run; without a ratio one that only prepares its specimen."""
