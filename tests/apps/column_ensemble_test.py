@@ -388,11 +388,24 @@ ground_z = ["4 m", "3 m"]
         profiles = (kept / "profiles.h5").read_bytes()
         (kept / "profiles.h5").write_bytes(profiles[:1000])
         assert_failed("out/members/r01: is damaged", "Remove it")
+        shutil.rmtree(kept)
+        kept.mkdir()
+        (kept / "thesis.txt").write_text("mine", encoding="utf-8")
+        assert_failed("exit code 2", "holds no results", "the same command tries again")
+        (kept / "thesis.txt").unlink()
+        self.assert_done(self.run_ensemble(*arguments))
+        self.assertEqual((self.folder / "out/summary.txt").read_text(encoding="utf-8"), whole)
+
+    def test_a_damaged_checkpoint(self):
+        """The member begins anew, to the same results."""
+        arguments = (self.write_records(), "--records", "first.txt,second.txt", "-o", "out", "-q")
+        self.assert_done(self.run_ensemble(*arguments))
+        whole = (self.folder / "out/summary.txt").read_text(encoding="utf-8")
+        kept = self.folder / "out/members/r01"
         (kept / "summary.json").unlink()
         for file in (kept / "checkpoint").iterdir():
             file.write_bytes(b"no checkpoint")
-        assert_failed("exit code 2", "the same command tries again")
-        self.assert_done(self.run_ensemble(*arguments, "--overwrite"))
+        self.assert_done(self.run_ensemble(*arguments))
         self.assertEqual((self.folder / "out/summary.txt").read_text(encoding="utf-8"), whole)
 
 
