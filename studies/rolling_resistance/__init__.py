@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which resistance to rolling and twisting gives both the critical slope and the cycles of the paper at D_r = 0.64.
+
+One box of each seed is prepared under the law of the paper; from that same box the tests are run under the others.
+"""
+import dataclasses
+import pathlib
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import isostat
+from studies.drawing import BLUE, ORANGE, STYLE, legend_below
+from studies.history import History
+from studies.tables import write_tables
+
+DEFAULTS, QUICK = {"seeds": 5}, {"seeds": 1}
+FEW, MANY = 2000, 10_000  # grains; the seed of MANY is the first
+PAGE = "paper"
+LIMITS = (0.5, 0.1, 0.05, 0.02, 0)  # eta_r; 0: no moments at all
+CYCLES = 60
+SLOPE, ONSET = 1.335, 17  # of the paper: M in compression, cycles at q = 60 kPa
+STAGES = {"cyclic": {"kind": "undrained-cyclic", "deviator_amplitude": "60 kPa",
+                     "until": {"cycles": CYCLES, "reversals_after_liquefaction": 0}},
+          "compression": {"kind": "undrained-monotonic", "strain": 0.2, "strain_rate": "7.7 1/s"}}  # I = 4e-4
+SECONDS = {"prepare": 20, "cyclic": 15, "compression": 60}  # of FEW
+
+
+def contact(limit, twisting):
+    law = {"young": "10 GPa", "stiffness_ratio": 0.3, "friction": "18 deg"}
+    if limit:
+        law["rolling"] = {"stiffness": 0.3, "limit": limit}
+    return law | ({"twisting": {"stiffness": 0.3}} if twisting else {})
+
+
+def prepare_box(results, grains, seed):
+    """The box of a seed, under the law of the paper."""
+    made = isostat.prepare(isostat.Scene(
+        contact=contact(0.5, True),
+        grading={"curve": "karlsruhe-fine-sand", "grains": grains, "seed": seed,
+                 "cloud_edge": f"{10 * (grains / 10000) ** (1 / 3):.12g} mm"},
+        specimen={"domain": "rigid-box", "pressure": "200 kPa", "relative_density": 0.64, "e_min": 0.568,
+                  "e_max": 0.841}), cache=results.parent / "specimens", threads=1)
+    isostat.write_specimen(results / "specimen.h5", made, overwrite=True)
+    return {"void_ratio": made.numbers["void_ratio"]}
+
+
+@dataclasses.dataclass(frozen=True)
+class Specimen:
+    output: pathlib.Path  # folder of the study
+    grains: int
+    seed: int
+    kind = "prepare"
+    function = staticmethod(prepare_box)
+
+    @property
+    def name(self):
+        return f"specimen_n{self.grains}_s{self.seed}"
+
+    @property
+    def specimen(self):
+        return self
+
+    @property
+    def file(self):
+        return self.output / "runs" / self.name / "specimen.h5"
+
+    def arguments(self):
+        return {"grains": self.grains, "seed": self.seed}
+
+    def estimated_seconds(self):
+        return estimate(self.kind, self.grains)
+
+
+@dataclasses.dataclass(frozen=True)
+class Test:
+    kind: str  # cyclic, compression
+    specimen: Specimen
+    limit: float
+    twisting: bool
+
+    @property
+    def name(self):
+        return (f"{self.kind}_{self.limit:g}_{'twisting' if self.twisting else 'free'}_n{self.specimen.grains}"
+                f"_s{self.specimen.seed}")
+
+    def scene(self):
+        if not self.specimen.file.is_file():
+            return None
+        return isostat.Scene(title=self.name, contact=contact(self.limit, self.twisting), stage=[STAGES[self.kind]],
+                             specimen={"domain": "rigid-box", "file": str(self.specimen.file)},
+                             output={"snapshots": "none", "paraview": False})
+
+    def estimated_seconds(self):
+        return estimate(self.kind, self.specimen.grains)
+
+
+def estimate(kind, grains):
+    return SECONDS[kind] * (grains / FEW) ** 1.33
+
+
+def runs(options):
+    boxes = [Specimen(options.output, FEW, seed) for seed in range(1, options.seeds + 1)]
+    boxes[1:1] = [] if options.quick else [Specimen(options.output, MANY, 1)]
+    return boxes + [Test(kind, box, limit, twisting) for box in boxes for limit in LIMITS for twisting in (True, False)
+                    for kind in STAGES]
+
+
+def found(store, run):
+    """The number of cycles (infinite if there was no onset), or q/p' averaged over the last tenth of the strain."""
+    history = History(store.folder(run))
+    if run.kind == "cyclic":
+        onset = history.summary["liquefaction"]
+        return onset["cycle"] if onset else np.inf
+    late = history.eps_y > 0.9 * history.eps_y[-1]
+    return float(np.mean(history.q[late] / history.p[late]))
+
+
+def report(store, planned, folder):
+    values = {}
+    for run in planned:
+        if run.kind != "prepare" and store.is_done(run):
+            law = values.setdefault((run.specimen.grains, run.limit, run.twisting), {})
+            law.setdefault(run.kind, []).append(found(store, run))
+    write_tables(folder, {"rolling_resistance": (
+        ["grains", "eta_r", "twisting", "q/p' at 18 to 20 %", "s.e.", "seeds", f"liquefied in {CYCLES} cycles",
+         "cycles, median"],
+        [row(*case, **one) for case, one in values.items()])})
+    draw(values, folder / "rolling_resistance.png")
+
+
+def row(grains, limit, twisting, compression=(), cyclic=()):
+    n = len(compression)
+    error = f"{np.std(compression, ddof=1) / np.sqrt(n):.3f}" if n > 1 else ""
+    median = np.median(cyclic) if len(cyclic) else np.nan
+    return [grains, f"{limit:g}", "yes" if twisting else "no", f"{np.mean(compression):.3f}" if n else "", error, n,
+            f"{np.isfinite(cyclic).sum()} of {len(cyclic)}", f"{median:.1f}" if np.isfinite(median) else f"> {CYCLES}"]
+
+
+def draw(values, path):
+    """Each law as a point: its slope and its cycles, beside the paper's."""
+    plt.rcParams.update(STYLE)
+    figure, axes = plt.subplots(figsize=(5.4, 4.2), layout="constrained")
+    for grains, marker in ((FEW, "o"), (MANY, "s")):
+        for twisting, colour in ((True, BLUE), (False, ORANGE)):
+            points = [(limit, np.mean(one["compression"]), min(np.median(one["cyclic"]), CYCLES))
+                      for (n, limit, twists), one in values.items()
+                      if (n, twists) == (grains, twisting) and len(one) == 2]
+            if points:
+                axes.plot([p[1] for p in points], [p[2] for p in points], marker + "-", color=colour, mfc="none",
+                          lw=0.8, label=f"{grains} grains, {'with' if twisting else 'no'} twisting")
+            for limit, *point in points:
+                axes.annotate(f"{limit:g}", point, (3, 4), textcoords="offset points", fontsize=7, color=colour)
+    axes.plot(SLOPE, ONSET, "*", color="#1a1a1a", ms=11, label="reference study")
+    axes.axhline(CYCLES, color="#999999", lw=0.6, ls="--")
+    axes.set(xlabel="q/p' in compression at 18 to 20 % strain (-)", yscale="log",
+             ylabel=f"Cycles to liquefaction at q = 60 kPa (dashed: none in {CYCLES})")
+    legend_below(figure, axes, 2, 0.17)
+    figure.savefig(path)
+    plt.close(figure)
