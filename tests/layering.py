@@ -74,9 +74,10 @@ INNER = {
         "motion": set(),
         "libraries": set(),
         "linear": set(),
+        "ranks": set(),
         "space": {"material", "linear"},
         "water": {"material", "linear", "space"},
-        "solve": {"material", "motion", "linear", "space", "water"},
+        "solve": {"material", "motion", "linear", "ranks", "space", "water"},
     },
     "coupling": {
         "placement": set(),

@@ -2,12 +2,9 @@
 #include "apps/biaxial/files.hpp"
 
 #include "apps/deposit/instant.hpp"
-#include "base/error.hpp"
-#include "base/files/hdf5.hpp"
 #include "base/files/replace_file.hpp"
-#include "base/files/vtk_xml.hpp"
-#include "base/record/file_format.hpp"
 #include "dem/measure/summary.hpp"
+#include "fem/space/vtu.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -20,44 +17,12 @@ namespace fs = std::filesystem;
 
 double shear_strain(const Gradient &h) { return std::hypot(h[0] - h[8], h[2] + h[6]); }
 
-void add_array(pugi::xml_node parent, const char *type, const std::string &name, int components,
-               const std::string &text)
+std::vector<double> along(int axis, const std::vector<Place> &places)
 {
-  pugi::xml_node array = parent.append_child("DataArray");
-  array.append_attribute("type") = type;
-  array.append_attribute("Name") = name.c_str();
-  array.append_attribute("NumberOfComponents") = components;
-  array.append_attribute("format") = "ascii";
-  array.text() = text.c_str();
-}
-
-/// Corners of an element, each an element's own: place and displacement as text, in the order of VTK.
-void add_corners(const Discretisation<2> &space, const Vector &u, std::string &places, std::string &displacements)
-{
-  constexpr unsigned order[] = {0, 1, 3, 2};
-  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
-    for (unsigned corner : order)
-      {
-        const auto [x, y, z] = space.corner[4 * cell + corner];
-        const unsigned *dofs = &space.cell_dofs[3 * (cell * space.n_nodes + corner)];
-        places += fmt::format("{:.9g} 0 {:.9g} ", x, z);
-        for (int c = 0; c < 3; ++c)
-          displacements += fmt::format("{:.9g} ", u.local_element(dofs[c]));
-      }
-}
-
-void add_cells(pugi::xml_node cells, std::size_t n)
-{
-  std::string connectivity, offsets, types;
-  for (std::size_t k = 0; k < n; ++k)
-    {
-      connectivity += fmt::format("{} {} {} {} ", 4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3);
-      offsets += fmt::format("{} ", 4 * k + 4);
-      types += "9 ";
-    }
-  add_array(cells, "Int64", "connectivity", 1, connectivity);
-  add_array(cells, "Int64", "offsets", 1, offsets);
-  add_array(cells, "UInt8", "types", 1, types);
+  std::vector<double> all;
+  for (const Place &place : places)
+    all.push_back(place[axis]);
+  return all;
 }
 } // namespace
 
@@ -71,45 +36,41 @@ PointState point_state(const Gradient &gradient, const Stress &stress)
   return state;
 }
 
-BlockFiles::BlockFiles(fs::path folder, const Discretisation<2> &space, const BlockMaterial &material, bool undrained,
-                       std::size_t n_maps)
-    : folder_(std::move(folder)), space_(space), material_(material),
-      pictures_((make_folder(folder_ / "paraview"), folder_ / "paraview/block.pvd"), n_maps),
-      quantities_{{"shear_strain", "-", &PointState::shear},
-                  {"volumetric_strain", "-", &PointState::volumetric},
-                  {"p", "Pa", &PointState::p},
-                  {"q", "Pa", &PointState::q},
-                  {"void_ratio", "-", &PointState::void_ratio},
-                  {"redundancy", "-", &PointState::redundancy}}
+std::vector<BlockFiles::Quantity> BlockFiles::quantities(const BlockMaterial &material, bool undrained)
 {
+  std::vector<Quantity> all = {{"shear_strain", "-", &PointState::shear},
+                               {"volumetric_strain", "-", &PointState::volumetric},
+                               {"p", "Pa", &PointState::p},
+                               {"q", "Pa", &PointState::q},
+                               {"void_ratio", "-", &PointState::void_ratio},
+                               {"redundancy", "-", &PointState::redundancy}};
   if (material.nonlocal)
-    quantities_.push_back({"mean_shear_strain", "-", &PointState::mean_shear});
+    all.push_back({"mean_shear_strain", "-", &PointState::mean_shear});
   if (undrained)
-    quantities_.push_back({"pore_pressure", "Pa", &PointState::pore_pressure});
-  rows_.resize(quantities_.size());
-  if (n_maps > 0)
-    read_h5(n_maps);
+    all.push_back({"pore_pressure", "Pa", &PointState::pore_pressure});
+  return all;
 }
 
-void BlockFiles::read_h5(std::size_t n_maps)
+SeriesLayout BlockFiles::layout() const
 {
-  const hdf5::File file = hdf5::File::open(folder_ / "maps.h5");
-  const hdf5::Group root = file.root();
-  const auto read = [&](const char *name, std::size_t length) {
-    std::vector<double> values = root.read<double>(name);
-    if (values.size() < length)
-      throw InputError(fmt::format("{}: `{}` has {} numbers, but {} are of before the checkpoint. Start anew with "
-                                   "--overwrite.",
-                                   (folder_ / "maps.h5").string(), name, values.size(), length));
-    values.resize(length);
-    return values;
-  };
-  strains_ = read("axial_strain", n_maps);
-  for (std::size_t k = 0; k < rows_.size(); ++k)
-    rows_[k] = read(quantities_[k].name, n_maps * space_.n_points());
+  SeriesLayout layout{.format = "isostat-block-maps",
+                      .of = "axial_strain",
+                      .unit = "-",
+                      .constants = {{"x", "m", along(0, space_.position)}, {"z", "m", along(2, space_.position)}},
+                      .series = {}};
+  for (const Quantity &quantity : quantities_)
+    layout.series.push_back({quantity.name, quantity.unit, space_.n_points()});
+  return layout;
 }
 
-void BlockFiles::map(double axial_strain, const Statics &statics)
+BlockFiles::BlockFiles(const fs::path &folder, const Discretisation<2> &space, const BlockMaterial &material,
+                       bool undrained, std::size_t n_maps)
+    : pictures_folder_(folder / "paraview"), space_(space), material_(material),
+      quantities_(quantities(material, undrained)), maps_(folder / "maps.h5", layout(), n_maps),
+      pictures_((make_folder(pictures_folder_), pictures_folder_ / "block.pvd"), n_maps)
+{}
+
+std::vector<PointState> BlockFiles::points(const Statics &statics) const
 {
   std::vector<Gradient> gradients;
   gradients_of(space_, statics.displacement(), gradients);
@@ -130,61 +91,27 @@ void BlockFiles::map(double axial_strain, const Statics &statics)
       point.void_ratio = grains.void_ratio;
       point.redundancy = grains.network.redundancy_index();
     }
-  for (std::size_t k = 0; k < rows_.size(); ++k)
-    for (const PointState &point : points)
-      rows_[k].push_back(point.*quantities_[k].value);
-  strains_.push_back(axial_strain);
-  write_h5();
-  const std::string name = fmt::format("block_{:05d}.vtu", strains_.size() - 1);
-  write_vtu(folder_ / "paraview" / name, statics.displacement(), points);
-  pictures_.append(axial_strain, name);
+  return points;
 }
 
-void BlockFiles::write_h5() const
+void BlockFiles::map(double axial_strain, const Statics &statics)
 {
-  auto file = hdf5::File::create(folder_ / "maps.h5");
-  hdf5::Group root = file.root();
-  set_format(root, "isostat-block-maps", 1);
-  std::vector<double> x, z;
-  for (const auto &place : space_.position)
-    {
-      x.push_back(place[0]);
-      z.push_back(place[2]);
-    }
-  root.write("x", x, "m");
-  root.write("z", z, "m");
-  root.write("axial_strain", strains_, "-");
-  for (std::size_t k = 0; k < rows_.size(); ++k)
-    root.write(quantities_[k].name, rows_[k], quantities_[k].unit, space_.n_points());
-  file.commit();
-}
-
-void BlockFiles::write_vtu(const fs::path &path, const Vector &displacement,
-                           const std::vector<PointState> &points) const
-{
-  pugi::xml_document document;
-  pugi::xml_node piece = vtk_file(document, "UnstructuredGrid").append_child("UnstructuredGrid").append_child("Piece");
-  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(4 * space_.n_cells());
-  piece.append_attribute("NumberOfCells") = static_cast<unsigned long long>(space_.n_cells());
-  std::string places, displacements;
-  add_corners(space_, displacement, places, displacements);
-  add_array(piece.append_child("Points"), "Float64", "position", 3, places);
-  add_cells(piece.append_child("Cells"), space_.n_cells());
-  add_array(piece.append_child("PointData"), "Float64", "displacement", 3, displacements);
-  pugi::xml_node data = piece.append_child("CellData");
-  const std::size_t n = space_.points_per_cell();
+  const std::vector<PointState> points = this->points(statics);
+  std::vector<double> row;
+  std::vector<PointField> fields;
   for (const Quantity &quantity : quantities_)
     {
-      std::string text;
-      for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
-        {
-          double sum = 0;
-          for (std::size_t q = cell * n; q < (cell + 1) * n; ++q)
-            sum += points[q].*quantity.value;
-          text += fmt::format("{:.9g} ", sum / static_cast<double>(n));
-        }
-      add_array(data, "Float64", quantity.name, 1, text);
+      std::vector<double> &values = fields.emplace_back(quantity.name, std::vector<double>{}).values;
+      for (const PointState &point : points)
+        values.push_back(point.*quantity.value);
+      row.insert(row.end(), values.begin(), values.end());
     }
-  save_xml(document, path);
+  const std::string name = fmt::format("block_{:05d}.vtu", maps_.n_rows());
+  maps_.append(axial_strain, row);
+  maps_.flush();
+  const Vector &u = statics.displacement();
+  const std::vector<double> displacement(u.begin(), u.begin() + u.locally_owned_size());
+  write_vtu(pictures_folder_ / name, space_, {axial_strain, maps_.n_rows()}, {{"displacement", displacement}}, fields);
+  pictures_.append(axial_strain, name);
 }
 } // namespace isostat

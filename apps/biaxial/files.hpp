@@ -2,7 +2,7 @@
 #pragma once
 #include "apps/biaxial/material.hpp"
 #include "base/files/pvd.hpp"
-#include "base/record/recorder.hpp"
+#include "base/record/series_file.hpp"
 #include "fem/solve/statics.hpp"
 
 #include <filesystem>
@@ -24,18 +24,17 @@ PointState point_state(const Gradient &gradient, const Stress &stress);
 
 /// Maps of a block at some instants: maps.h5 with the points' `x`, `z` (m) and, a row for each instant, `axial_strain`
 /// and all of PointState (`mean_shear_strain` only where the material is nonlocal, `pore_pressure` where the block is
-/// undrained); paraview/block.pvd with the
-/// displacement at the corners of the elements and the elements' means.
+/// undrained); paraview/block.pvd with the displacement of the nodes and the elements' means.
 /// tested: tests/apps/biaxial_test.py
 class BlockFiles
 {
 public:
   /// @param n_maps  that an earlier call has left, and this one goes on from
   /// @throws InputError  there are fewer
-  BlockFiles(std::filesystem::path folder, const Discretisation<2> &space, const BlockMaterial &material,
+  BlockFiles(const std::filesystem::path &folder, const Discretisation<2> &space, const BlockMaterial &material,
              bool undrained, std::size_t n_maps = 0);
   void map(double axial_strain, const Statics &statics);
-  std::size_t n_maps() const { return strains_.size(); }
+  std::size_t n_maps() const { return maps_.n_rows(); }
 
 private:
   /// What is shown of the points.
@@ -44,17 +43,15 @@ private:
     const char *name, *unit;
     double PointState::*value;
   };
-  void read_h5(std::size_t n_maps);
-  void write_h5() const;
-  void write_vtu(const std::filesystem::path &path, const Vector &displacement,
-                 const std::vector<PointState> &points) const;
+  static std::vector<Quantity> quantities(const BlockMaterial &material, bool undrained);
+  SeriesLayout layout() const;
+  std::vector<PointState> points(const Statics &statics) const;
 
-  std::filesystem::path folder_;
+  std::filesystem::path pictures_folder_;
   const Discretisation<2> &space_;
   const BlockMaterial &material_;
-  PvdCollection pictures_;
-  std::vector<double> strains_;
   std::vector<Quantity> quantities_;
-  std::vector<std::vector<double>> rows_; ///< of each quantity
+  SeriesFile maps_;
+  PvdCollection pictures_;
 };
 } // namespace isostat

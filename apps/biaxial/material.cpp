@@ -5,26 +5,21 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <random>
 
 namespace isostat
 {
 namespace
 {
-/// Specimen of every point. The lot is the same on every machine: no distribution of the standard library is used.
+/// Specimen of every point. Those of the weak zone have no lot.
 std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretisation<2> &space)
 {
-  std::mt19937_64 lot(1);
   std::vector<SpecimenRequest> all;
   for (const auto &place : space.position)
     {
-      const std::uint64_t drawn = lot() % scene.mixed_realisations;
-      const bool weak = in_weak_zone(scene, place);
-      SpecimenRequest &request = all.emplace_back(weak ? scene.weak.grains : scene.soil.grains);
+      SpecimenRequest &request =
+          all.emplace_back(in_weak_zone(scene, place) ? scene.weak.grains : drawn(scene.soil.grains, place));
       if (!request.relative_density)
         request.relative_density = scene.soil.grains.relative_density;
-      if (!weak)
-        request.realisation += drawn;
     }
   return all;
 }
@@ -92,10 +87,7 @@ BlockMaterial block_material(const BiaxialScene &scene, const Discretisation<2> 
   if (scene.has_grains())
     {
       RveMaterialSettings settings = scene.grains;
-      check_seeds(settings.library, scene.soil.grains,
-                  scene.soil.grains.realisation + scene.mixed_realisations - 1 + settings.realisations,
-                  fmt::format("soil.realisation = {}, soil.mixed_realisations = {}", scene.soil.grains.realisation,
-                              scene.mixed_realisations));
+      check_seeds(settings.library, scene.soil.grains, settings.realisations, "soil", "soil");
       settings.undrained = false;
       settings.threads = threads;
       auto grains = std::make_unique<RveMaterial>(requests(scene, space), settings, MPI_COMM_SELF);

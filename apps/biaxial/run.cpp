@@ -8,6 +8,7 @@
 #include "apps/deposit/instant.hpp"
 #include "base/error.hpp"
 #include "base/record/progress.hpp"
+#include "base/record/recorder.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -69,10 +69,6 @@ constexpr Key block_keys[] = {
 };
 
 constexpr Key test_keys[] = {
-  {.path = "soil.mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .kinds = grains,
-   .text = "Each point has one of this many seeds, from `realisation` on, by lot; 1: all points have the same.",
-   .field = [](BiaxialScene &s) -> Field { return &s.mixed_realisations; }},
-
   {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
    .range = not_negative,
    .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation; Gauss "
@@ -176,6 +172,7 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
 {
   if (scene.has_grains())
     check_packings(document, "soil", scene.grains);
+  check_lot(document, "soil", scene.soil.grains, scene.grains.realisations, "soil.realisations");
   if (scene.soil.material == LayerMaterial::iwan)
     check_iwan(document, "soil", scene.soil.iwan);
   if (scene.soil.material == LayerMaterial::mohr_coulomb)
@@ -221,6 +218,7 @@ const SceneSchema &biaxial_schema()
              [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
       splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
       splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
+      splice("soil", lot_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
       test_keys,
       water_keys,
       splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),

@@ -73,8 +73,7 @@ struct BiaxialScene
   BiaxialMesh mesh;
   ColumnLayer soil; ///< its material; no thickness or weight
   RveMaterialSettings grains;
-  std::uint64_t mixed_realisations = 1; ///< seeds of which each point has one by lot
-  NonlocalParameters nonlocal;          ///< of all of the soil; length 0: it is local
+  NonlocalParameters nonlocal; ///< of all of the soil; length 0: it is local
   WeakZone weak;
   BlockWater water;
   BiaxialTest test;

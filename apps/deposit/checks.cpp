@@ -167,23 +167,6 @@ void check_depths(const SceneDocument &document, const ColumnScene &scene, const
                                        number_text(height), i + 1, number_text(depths[i])));
 }
 
-void check_drawn_packings(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
-{
-  const SpecimenRequest &grains = scene.layers[i].grains;
-  const auto key = [&](const char *name) { return fmt::format("layer.{}.{}", i, name); };
-  if (grains.mixed > 1 && grains.mixed < scene.grains.realisations)
-    document.refuse(key("mixed_realisations"),
-                    fmt::format("must be 1 or at least grains.realisations, {}, because the packings of a point "
-                                "differ. Give more seeds.",
-                                scene.grains.realisations));
-  constexpr const char *no_lot = "has no effect if mixed_realisations is 1, as all points have the same seed. Give "
-                                 "mixed_realisations, or remove it.";
-  if (grains.mixed == 1 && grains.lot != 0)
-    document.refuse(key("lot"), no_lot);
-  if (grains.mixed == 1 && grains.lot_length > 0)
-    document.refuse(key("lot_length"), no_lot);
-}
-
 void check_grains(const SceneDocument &document, const ColumnScene &scene)
 {
   if (!scene.has_grains())
@@ -194,7 +177,8 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
   if (scene.needs_common_library())
     check_packings(document, "grains", scene.grains);
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
-    check_drawn_packings(document, scene, i);
+    check_lot(document, fmt::format("layer.{}", i), scene.layers[i].grains, scene.grains.realisations,
+              "grains.realisations");
   check_depths(document, scene, "grains.path_depths", scene.grain_output.path_depths);
   check_depths(document, scene, "grains.snapshot_depths", scene.grain_output.snapshot_depths);
 }

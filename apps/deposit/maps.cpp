@@ -34,20 +34,23 @@ void for_each_corner(const FiniteElementSpace &space, const F &f)
       f(4 * cell + corner, space.cell_dofs[3 * (cell * space.n_nodes + corner)]);
 }
 
-ProfileFile::Further of_a_box(const FiniteElementSpace &space, bool packings)
+SeriesLayout layout_of(const FiniteElementSpace &space, std::span<const double> vertical_stress,
+                       std::span<const double> velocities, bool packings)
 {
   std::vector<Place> corners;
   for_each_corner(space, [&](std::size_t corner, unsigned) { corners.push_back(space.corner[corner]); });
-  ProfileFile::Further further{.series = {{"displacement_x", "m", corners.size()},
-                                          {"displacement_z", "m", corners.size()},
-                                          {"sigma_x", "Pa", space.n_points()}},
-                               .constants = {{"x", "m", along(0, space.position)},
-                                             {"z", "m", along(2, space.position)},
-                                             {"corner_x", "m", along(0, corners)},
-                                             {"corner_z", "m", along(2, corners)}}};
+  SeriesLayout layout = profile_layout(depths(space), {vertical_stress.begin(), vertical_stress.end()},
+                                       {velocities.begin(), velocities.end()});
+  for (const char *name : {"displacement_x", "displacement_z"})
+    layout.series.push_back({name, "m", corners.size()});
+  layout.series.push_back({"sigma_x", "Pa", space.n_points()});
   if (packings)
-    further.series.push_back({"redundancy", "-", space.n_points()});
-  return further;
+    layout.series.push_back({"redundancy", "-", space.n_points()});
+  layout.constants.push_back({"x", "m", along(0, space.position)});
+  layout.constants.push_back({"z", "m", along(2, space.position)});
+  layout.constants.push_back({"corner_x", "m", along(0, corners)});
+  layout.constants.push_back({"corner_z", "m", along(2, corners)});
+  return layout;
 }
 } // namespace
 
@@ -55,7 +58,7 @@ BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &sp
                  std::span<const double> vertical_stress, std::span<const double> velocities, std::size_t resume_rows,
                  bool packings)
     : space_(space), vertical_stress_(vertical_stress), points_(space.n_points()),
-      file_(path, depths(space), vertical_stress, velocities, resume_rows, of_a_box(space, packings))
+      file_(path, layout_of(space, vertical_stress, velocities, packings), resume_rows)
 {
   std::iota(points_.begin(), points_.end(), 0);
 }

@@ -4,7 +4,7 @@
 
 namespace isostat
 {
-/// The whole of a box at instants, in maps.h5: what ProfileFile has, of every point of the mesh, their `x` and `z` (m),
+/// The whole of a box at instants, in maps.h5: what profiles.h5 has, of every point of the mesh, their `x` and `z` (m),
 /// and of each element's corners (anticlockwise) `corner_x`, `corner_z` (m) and, at each instant, `displacement_x`,
 /// `displacement_z` (m). With packings `redundancy`, the index I_R of every point, not-a-number where there is none.
 /// tested: tests/apps/box_test.py
@@ -12,7 +12,7 @@ class BoxMaps
 {
 public:
   /// @param vertical_stress, velocities  of every point, Pa, m/s   @pre the mesh is not shared out
-  /// @throws as ProfileFile
+  /// @throws as SeriesFile
   BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &space, std::span<const double> vertical_stress,
           std::span<const double> velocities, std::size_t resume_rows, bool packings);
 
@@ -24,6 +24,6 @@ private:
   const FiniteElementSpace &space_;
   std::span<const double> vertical_stress_;
   std::vector<std::size_t> points_; ///< all
-  ProfileFile file_;
+  SeriesFile file_;
 };
 } // namespace isostat

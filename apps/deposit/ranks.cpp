@@ -5,6 +5,7 @@
 #include "apps/common/interrupt.hpp"
 #include "base/error.hpp"
 #include "fem/libraries.hpp"
+#include "fem/ranks/failure.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -47,59 +48,10 @@ int guarded_on_ranks(const std::function<void()> &program)
 
 void on_first_rank(const std::function<void()> &task)
 {
-  enum
-  {
-    done,
-    failed,
-    bad_input
-  };
-  int outcome = done;
-  std::string what;
-  if (ranks().first())
-    try
-      {
-        task();
-      }
-    catch (const InputError &error)
-      {
-        outcome = bad_input;
-        what = error.what();
-      }
-    catch (const std::exception &error)
-      {
-        outcome = failed;
-        what = error.what();
-      }
-  MPI_Bcast(&outcome, 1, MPI_INT, 0, MPI_COMM_WORLD);
-  if (outcome == bad_input)
-    throw InputError(what);
-  if (outcome == failed)
-    throw RunFailure(what);
+  fail_together(MPI_COMM_WORLD, ranks().first() ? failure_of(task) : std::nullopt);
 }
 
-void together(const std::function<void()> &task)
-{
-  const Ranks all = ranks();
-  int lowest = all.size;
-  std::string what;
-  try
-    {
-      task();
-    }
-  catch (const std::exception &error)
-    {
-      lowest = all.rank;
-      what = error.what();
-    }
-  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-  if (lowest == all.size)
-    return;
-  auto length = static_cast<int>(what.size());
-  MPI_Bcast(&length, 1, MPI_INT, lowest, MPI_COMM_WORLD);
-  what.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(what.data(), length, MPI_CHAR, lowest, MPI_COMM_WORLD);
-  throw RunFailure(what);
-}
+void together(const std::function<void()> &task) { fail_together(MPI_COMM_WORLD, failure_of(task)); }
 
 bool on_any_rank(bool here)
 {

@@ -22,8 +22,8 @@ int guarded_on_ranks(const std::function<void()> &program);
 /// `task` on the first rank; the others wait. What it throws is thrown on all ranks.   Collective.
 void on_first_rank(const std::function<void()> &task);
 
-/// `task` on every rank, without any call to another one. What it throws on one, the lowest of these, is thrown on all
-/// as RunFailure.   Collective.
+/// `task` on every rank, without any call to another one. What it throws on one, the lowest of these, is thrown on all.
+/// Collective.
 void together(const std::function<void()> &task);
 
 /// True on all ranks if it is on one.   Collective.

@@ -169,6 +169,12 @@ constexpr Key ground_keys[] = {
    .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
 };
 
+constexpr Key own_sand_keys[] = {
+  {.path = "layer.library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5", .kinds = grains,
+   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
+   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.library; }},
+};
+
 constexpr Key loading_keys[] = {
   {.path = "base.kind", .kind = Kind::choice, .value = "rigid", .choices = base_choices,
    .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion is "
@@ -343,8 +349,8 @@ const SceneSchema &column_schema()
              [](ColumnScene &, ColumnLayer &l) -> MohrCoulombParameters & { return l.mohr_coulomb; }),
       splice("layer", specimen_keys(), grains,
              [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
-      splice("layer", drawn_specimen_keys(), grains,
-             [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
+      own_sand_keys,
+      splice("layer", lot_keys(), grains, [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
       loading_keys,
       splice("motion", ground_motion_keys(), 0, [](ColumnScene &, ColumnMotion &m) -> ColumnMotion & { return m; }),
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),

@@ -36,19 +36,6 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t l
     }
 }
 
-/// The lot depends on the place of the point alone, that of its block, or in micrometres: not on the numbering of the
-/// mesh, nor on ranks.
-SpecimenRequest drawn(SpecimenRequest request, const Place &place)
-{
-  const auto at = [&](int axis) {
-    const double length = request.lot_length;
-    return static_cast<std::uint64_t>(length > 0 ? std::floor(place[axis] / length) : std::round(1e6 * place[axis]));
-  };
-  const auto u = uniform(request.lot, RandomStream::packings, at(2), at(0) << 32 ^ at(1));
-  request.drawn = static_cast<std::size_t>(u[0] * static_cast<double>(request.mixed));
-  return request;
-}
-
 /// See SoilMaterial::seeds.
 std::vector<std::vector<std::size_t>> drawn_seeds(const ColumnScene &scene,
                                                   const std::vector<SpecimenRequest> &requests)
@@ -141,6 +128,17 @@ void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
                                    name));
 }
 } // namespace
+
+SpecimenRequest drawn(SpecimenRequest request, const Place &place)
+{
+  const auto at = [&](int axis) {
+    const double length = request.lot_length;
+    return static_cast<std::uint64_t>(length > 0 ? std::floor(place[axis] / length) : std::round(1e6 * place[axis]));
+  };
+  const auto u = uniform(request.lot, RandomStream::packings, at(2), at(0) << 32 ^ at(1));
+  request.drawn = static_cast<std::size_t>(u[0] * static_cast<double>(request.mixed));
+  return request;
+}
 
 std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user)
 {

@@ -55,6 +55,10 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 /// @throws RunFailure  stress not reached
 SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user);
 
+/// The lot of a point depends on its place alone, that of its block, or in micrometres: not on the numbering of the mesh,
+/// nor on ranks.   @param place  m
+SpecimenRequest drawn(SpecimenRequest request, const Place &place);
+
 /// The material of one layer that is not of grains, without stress.
 /// @throws std::out_of_range  a user's material that is missing
 std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user);

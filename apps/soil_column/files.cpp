@@ -19,16 +19,19 @@ std::vector<double> chosen(const std::vector<double> &values, const std::vector<
   return some;
 }
 
-/// Displacement and, of what moves, velocity of the nodes of a line, along x, y and z.
-ProfileFile::Further of_nodes(const ColumnLine &line, bool moves)
+/// Points of a line, and displacement and, of what moves, velocity of its nodes, along x, y and z.
+SeriesLayout layout_of(const ColumnLine &line, const std::vector<double> &vertical_stress,
+                       const std::vector<double> &velocities, bool moves)
 {
-  ProfileFile::Further further{.series = {}, .constants = {{"node_depth", "m", line.node_depths}}};
+  SeriesLayout layout =
+      profile_layout(line.point_depths, chosen(vertical_stress, line.points), chosen(velocities, line.points));
+  layout.constants.push_back({"node_depth", "m", line.node_depths});
   for (const char axis : {'x', 'y', 'z'})
-    further.series.push_back({fmt::format("node_displacement_{}", axis), "m", line.nodes.size()});
+    layout.series.push_back({fmt::format("node_displacement_{}", axis), "m", line.nodes.size()});
   for (const char axis : {'x', 'y', 'z'})
     if (moves)
-      further.series.push_back({fmt::format("node_velocity_{}", axis), "m/s", line.nodes.size()});
-  return further;
+      layout.series.push_back({fmt::format("node_velocity_{}", axis), "m/s", line.nodes.size()});
+  return layout;
 }
 } // namespace
 
@@ -49,9 +52,9 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
 {
   recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"), scene_text_);
   if (line_)
-    profiles_ = std::make_unique<ProfileFile>(
-        folder_ / "profiles.h5", line_->point_depths, chosen(history_.vertical_stress(), line_->points),
-        chosen(velocities, line_->points), counter(resumed, "profiles"), of_nodes(*line_, moves_));
+    profiles_ = std::make_unique<SeriesFile>(folder_ / "profiles.h5",
+                                             layout_of(*line_, history_.vertical_stress(), velocities, moves_),
+                                             counter(resumed, "profiles"));
   if (line_ && box_)
     maps_ = std::make_unique<BoxMaps>(folder_ / "maps.h5", space_, history_.vertical_stress(), velocities,
                                       counter(resumed, "profiles"), packings_);

@@ -50,7 +50,7 @@ private:
   ColumnHistory<dim> history_;
   std::optional<ColumnLine> line_;
   std::unique_ptr<Recorder> recorder_;
-  std::unique_ptr<ProfileFile> profiles_;
+  std::unique_ptr<SeriesFile> profiles_;
   std::unique_ptr<BoxMaps> maps_; ///< of a box
   std::unique_ptr<PvdCollection> pvd_;
 };

@@ -26,27 +26,17 @@ ElementBatch::ElementBatch(const Realisations &points, const ElementSettings &se
   std::iota(all_.begin(), all_.end(), std::size_t{0});
 }
 
-std::optional<Exchange::Failure> ElementBatch::run_mine(const std::function<void(std::size_t)> &work) const
+std::optional<RankFailure> ElementBatch::run_mine(const std::function<void(std::size_t)> &work) const
 {
-  std::optional<Exchange::Failure> first;
+  std::optional<RankFailure> first;
   std::mutex one_at_a_time;
-  const auto failed = [&](std::size_t id, const char *what, bool bad_input) {
-    const std::lock_guard lock(one_at_a_time);
-    if (!first || id < first->element)
-      first = Exchange::Failure{id, points_.label(id) + ": " + what, bad_input};
-  };
   for_each_piece(threads_, order_.size(), [&](std::size_t k) {
-    try
+    const std::size_t id = order_[k];
+    if (std::optional<RankFailure> failure = failure_of([&] { work(id); }, id, points_.label(id) + ": "))
       {
-        work(order_[k]);
-      }
-    catch (const InputError &error)
-      {
-        failed(order_[k], error.what(), true);
-      }
-    catch (const std::exception &error)
-      {
-        failed(order_[k], error.what(), false);
+        const std::lock_guard lock(one_at_a_time);
+        if (!first || id < first->order)
+          first = std::move(failure);
       }
   });
   return first;
@@ -59,20 +49,7 @@ void ElementBatch::for_each(const std::function<void(std::size_t)> &work) const
 
 void ElementBatch::together(const std::function<void()> &work) const
 {
-  std::optional<Exchange::Failure> failure;
-  try
-    {
-      work();
-    }
-  catch (const InputError &error)
-    {
-      failure = {size(), fmt::format("rve: {}", error.what()), true};
-    }
-  catch (const std::exception &error)
-    {
-      failure = {size(), fmt::format("rve: {}", error.what()), false};
-    }
-  exchange_.stop_together(failure);
+  exchange_.stop_together(failure_of(work, size(), "rve: "));
 }
 
 void ElementBatch::make(const std::function<Rve(std::size_t)> &maker)
@@ -107,7 +84,7 @@ void ElementBatch::trial(std::span<const Gradient> of_points)
 {
   check_made();
   has_trial_ = false;
-  std::optional<Exchange::Failure> mine = run_mine([&](std::size_t id) { run(id, of_points[points_.point_of(id)]); });
+  std::optional<RankFailure> mine = run_mine([&](std::size_t id) { run(id, of_points[points_.point_of(id)]); });
   share(std::span(rows_));
   if (std::ranges::any_of(rows_, &ElementRow::failed)) // every rank sees the same rows
     {

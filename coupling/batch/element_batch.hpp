@@ -89,7 +89,7 @@ public:
   std::size_t place(const Owners &owners, std::span<const double> costs);
 
 private:
-  std::optional<Exchange::Failure> run_mine(const std::function<void(std::size_t id)> &work) const;
+  std::optional<RankFailure> run_mine(const std::function<void(std::size_t id)> &work) const;
   void run(std::size_t id, const Gradient &increment);
   void check_owners(const Owners &owners) const;
 

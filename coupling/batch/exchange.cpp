@@ -44,33 +44,6 @@ void Exchange::share_bytes(std::span<const std::size_t> ids, const Owners &owner
     std::copy_n(&all[width * static_cast<std::size_t>(next[owners[id]]++)], width, &rows[width * id]);
 }
 
-void Exchange::stop_together(const std::optional<Failure> &mine) const
-{
-  constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
-  const std::uint64_t own = mine ? mine->element : none;
-  std::uint64_t first = own;
-  int speaker = 0;
-  Failure failure = mine.value_or(Failure{});
-  if (size_ > 1)
-    {
-      MPI_Allreduce(&own, &first, 1, MPI_UINT64_T, MPI_MIN, comm_);
-      if (first == none)
-        return;
-      const int candidate = own == first ? rank_ : size_;
-      MPI_Allreduce(&candidate, &speaker, 1, MPI_INT, MPI_MIN, comm_);
-      Bytes text(failure.message.size() + 1, std::byte{failure.bad_input});
-      std::memcpy(text.data() + 1, failure.message.data(), failure.message.size());
-      broadcast(text, speaker);
-      failure.bad_input = text[0] != std::byte{0};
-      failure.message.assign(reinterpret_cast<const char *>(text.data()) + 1, text.size() - 1);
-    }
-  if (first == none)
-    return;
-  if (failure.bad_input)
-    throw InputError(failure.message);
-  throw RunFailure(failure.message);
-}
-
 void Exchange::broadcast(Bytes &bytes, int root) const
 {
   if (size_ == 1)

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "coupling/placement/placement.hpp"
+#include "fem/ranks/failure.hpp"
 
-#include <cstdint>
-#include <mpi.h>
-#include <optional>
-#include <string>
 #include <type_traits>
 
 namespace isostat
@@ -35,16 +32,8 @@ public:
     share_bytes(ids, owners, sizeof(Row), std::as_writable_bytes(rows));
   }
 
-  /// An element that failed, on the rank where it did.
-  struct Failure
-  {
-    std::uint64_t element = 0; ///< the lowest one of this rank
-    std::string message;
-    bool bad_input = false; ///< of the user's making
-  };
-  /// If any rank has a failure, every rank throws that of the lowest element.
-  /// @throws InputError, RunFailure  the same message everywhere
-  void stop_together(const std::optional<Failure> &mine) const;
+  /// See fail_together(); failures count by their element.
+  void stop_together(const std::optional<RankFailure> &mine) const { fail_together(comm_, mine); }
 
   /// `bytes` of `root` on every rank.
   void broadcast(Bytes &bytes, int root) const;

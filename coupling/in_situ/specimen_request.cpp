@@ -63,11 +63,16 @@ std::vector<LibraryEntry> list_specimens(const std::filesystem::path &path)
   return {{"specimen", specimen.provenance, specimen.numbers}};
 }
 
-void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t n_seeds,
-                 const std::string &what)
+void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t per_point,
+                 const std::string &section, const std::string &packings)
 {
   constexpr double any_stress = 1e5;
-  request.realisation = n_seeds - 1;
+  std::string what = fmt::format("{}.realisation = {}", section, request.realisation);
+  if (request.mixed > 1)
+    what += fmt::format(", {}.mixed_realisations = {}", section, request.mixed);
+  else if (per_point > 1)
+    what += fmt::format(", {}.realisations = {}", packings, per_point);
+  request.realisation = request.n_seeds(per_point) - 1;
   try
     {
       nearest_entry(list_specimens(library), request, any_stress, any_stress);

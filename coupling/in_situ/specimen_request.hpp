@@ -44,12 +44,12 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
 /// tested: tests/python/library_test.py
 std::vector<LibraryEntry> list_specimens(const std::filesystem::path &path);
 
-/// Before any work: whether a library has so many seeds of the density of a request.
-/// @param what  who needs them, at the head of the message
+/// Before any work: whether a library has the seeds of a request, for points of so many packings.
+/// @param section, packings  where a scene says the request and the number, for the message
 /// @throws InputError  as nearest_entry(), naming the library
 /// tested: tests/coupling/in_situ/specimen_request_test.cpp
-void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t n_seeds,
-                 const std::string &what);
+void check_seeds(const std::filesystem::path &library, SpecimenRequest request, std::size_t per_point,
+                 const std::string &section, const std::string &packings);
 
 /// The packing from which a specimen is brought to its stress in situ.
 struct StartingSpecimen

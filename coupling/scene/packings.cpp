@@ -4,6 +4,8 @@
 #include "base/scene/document.hpp"
 #include "base/scene/ranges.hpp"
 
+#include <fmt/format.h>
+
 namespace isostat
 {
 namespace
@@ -45,14 +47,11 @@ constexpr Key specimens[] = {
    .field = [](SpecimenRequest &r) -> Field { return &r.realisation; }},
 };
 
-constexpr Key drawn_specimens[] = {
-  {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5",
-   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.library; }},
+constexpr Key lots[] = {
   {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "Each Gauss point has one of this many seeds, from `realisation` on, by lot (with several `grains.realisations` as "
+   .text = "Each Gauss point has one of this many seeds, from `realisation` on, by lot (with several `realisations` as "
            "many that differ); 1: all points have the same, brought to the stress of their depth. "
-           "1, or at least `grains.realisations`.",
+           "1, or at least `realisations`.",
    .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},
   {.path = "lot", .kind = Kind::integer, .value = "0",
    .text = "Another number draws other seeds of the `mixed_realisations`. "
@@ -75,12 +74,28 @@ SceneFragment<RveMaterialSettings> packing_keys()
 }
 
 SceneFragment<SpecimenRequest> specimen_keys() { return {specimens}; }
-SceneFragment<SpecimenRequest> drawn_specimen_keys() { return {drawn_specimens}; }
+SceneFragment<SpecimenRequest> lot_keys() { return {lots}; }
 
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings)
 {
   if (packings.library.empty())
     document.refuse(section + ".library", "is missing; soil of grains is made of its specimens. Give library = "
                                           "\"library.h5\", made by isostat library.");
+}
+
+void check_lot(const SceneDocument &document, const std::string &section, const SpecimenRequest &request,
+               std::size_t per_point, const std::string &realisations)
+{
+  const auto refuse = [&](const char *key, const std::string &why) { document.refuse(section + "." + key, why); };
+  if (request.mixed > 1 && request.mixed < per_point)
+    refuse("mixed_realisations",
+           fmt::format("must be 1 or at least {}, {}, because the packings of a point differ. Give more seeds.",
+                       realisations, per_point));
+  constexpr const char *no_lot = "has no effect if mixed_realisations is 1, as all points have the same seed. Give "
+                                 "mixed_realisations, or remove it.";
+  if (request.mixed == 1 && request.lot != 0)
+    refuse("lot", no_lot);
+  if (request.mixed == 1 && request.lot_length > 0)
+    refuse("lot_length", no_lot);
 }
 } // namespace isostat

@@ -14,11 +14,16 @@ class SceneDocument;
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
 SceneFragment<SpecimenRequest> specimen_keys();
-/// Sands of several kinds, and points that draw their specimens: library, mixed_realisations, lot, lot_length.
-SceneFragment<SpecimenRequest> drawn_specimen_keys();
+/// Points that draw their specimens: mixed_realisations, lot, lot_length.
+SceneFragment<SpecimenRequest> lot_keys();
 
 /// What the table of keys cannot say: soil of grains needs a library.
 /// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
 /// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/biaxial_test.py
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);
+/// @param section  of the request, "layer.0"   @param per_point  packings of a point, by the key `realisations`
+/// @throws InputError  fewer mixed seeds than a point has packings, a lot without any
+/// tested: tests/apps/deposit/scene_error_test.cpp
+void check_lot(const SceneDocument &document, const std::string &section, const SpecimenRequest &request,
+               std::size_t per_point, const std::string &realisations);
 } // namespace isostat

@@ -2,6 +2,7 @@
 #include "fem/solve/solver_state.hpp"
 
 #include "base/error.hpp"
+#include "fem/ranks/failure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,25 +26,6 @@ bool on_any_rank(const FiniteElementSpace &space, bool here)
   if (space.shared_out())
     MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_C_BOOL, MPI_LOR, space.communicator());
   return here;
-}
-
-/// Throws what failed on the lowest rank, on all of them.   @param what  empty: nothing failed here
-void stop_together(const FiniteElementSpace &space, std::string what)
-{
-  if (space.shared_out())
-    {
-      const int rank = rank_in(space);
-      int failed = what.empty() ? std::numeric_limits<int>::max() : rank;
-      MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, space.communicator());
-      if (failed == std::numeric_limits<int>::max())
-        return;
-      unsigned long length = what.size();
-      MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, failed, space.communicator());
-      what.resize(length);
-      MPI_Bcast(what.data(), static_cast<int>(length), MPI_CHAR, failed, space.communicator());
-    }
-  if (!what.empty())
-    throw InputError(what);
 }
 } // namespace
 
@@ -152,16 +134,7 @@ MaterialState FieldReader::own_points() const
 
 void FieldReader::unpack(Material &material) const
 {
-  std::string failure;
-  try
-    {
-      material.unpack(own_points());
-    }
-  catch (const InputError &error)
-    {
-      failure = error.what();
-    }
-  stop_together(space_, std::move(failure));
+  fail_together(space_.communicator(), failure_of([&] { material.unpack(own_points()); }));
 }
 
 double FieldReader::number(const char *name) const

@@ -91,6 +91,9 @@ class CampaignTest(FolderTest):
         campaign.CampaignFolder(folder, kept)  # the same process comes back, with the bytes that it left
         with self.assertRaisesRegex(isostat.InputError, "belongs to another scene"):
             campaign.CampaignFolder(folder, kept | {"lab.csv": "1,3\r\n"})
+        with self.assertRaisesRegex(isostat.InputError, "no_such: is not in this installation"):
+            campaign.CampaignFolder(folder, kept, overwrite=True, program="no_such")
+        self.assertEqual((folder / "lab.csv").read_bytes(), b"1,2\r\n")  # nothing was removed
         with open(folder / ".lock", "rb+") as file:
             self.assertFalse(try_lock(file))
 

@@ -11,6 +11,7 @@ import typing
 
 from isostat import _core
 from isostat.campaign.locks import wait_for_lock, wait_until_free
+from isostat.campaign.runs import program as path_of
 
 FIRST_FILES = (".lock", "provenance.txt", "scene.toml")  # of a call that was killed before its scene was there
 PATIENCE, RUNS_END = 5, 60  # s, for a program that is about to leave, for a run that writes a checkpoint
@@ -49,13 +50,16 @@ class CampaignFolder:
     owner      who a folder with other texts belongs to
     overwrite  what the folder holds is removed first; it must be that of a campaign
     only_check the folder is not made, held or written to
+    program    that does the runs: it must be there before anything is removed
 
-    Raises InputError: a file, a folder of something else, of another scene, at work, or that cannot be written.
+    Raises InputError: no such program, a file, a folder of something else, of another scene, at work, or that cannot be written.
     """
 
     def __init__(self, path: str | os.PathLike[str], kept: dict[str, str], *, owner: str = "scene",
-                 overwrite: bool = False, command: str | None = None, only_check: bool = False):
+                 overwrite: bool = False, command: str | None = None, only_check: bool = False,
+                 program: str = "element_test"):
         self.path = pathlib.Path(path)
+        path_of(program)
         self.check(kept, owner, overwrite)
         if only_check:
             return

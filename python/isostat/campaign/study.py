@@ -20,7 +20,9 @@ tested: tests/apps/study_test.py, tests/studies/columns_test.py
 import argparse
 import concurrent.futures
 import contextlib
+import hashlib
 import importlib
+import json
 import os
 import pathlib
 import sys
@@ -28,7 +30,7 @@ from typing import Any
 
 from isostat import _core
 from isostat.campaign import command
-from isostat.campaign.folder import CampaignFolder
+from isostat.campaign.folder import CampaignFolder, write_replacing
 from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete
 from isostat.running import as_scene
@@ -130,17 +132,46 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         folder = tables_folder(study, options, all(map(store.is_done, planned)))
         folder.mkdir(parents=True, exist_ok=True)
         study.report(store, planned, folder)
+        if folder == page_of(study, options):
+            stamp(options.name, study)
         print(f"tables and figures in {folder}")
     if failed:
         raise _core.RunFailure(f"{len(failed)} of {len(planned)} runs failed, the first of them {failed[0].name}: "
                                f"{failed[0].reason}. The others are kept, the same command tries again.")
 
 
+def fingerprint(name: str, study: Any) -> str:
+    """SHA-256 of what a whole study runs: its scenes with every default, or what it says of those that need something
+    prepared."""
+    options = parse([], name, study)
+    options.output = pathlib.Path("/nowhere")  # scenes name files in it
+    texts = []
+    for planned in study.runs(options):
+        try:
+            text = as_run(options.output, planned).text
+        except _core.InputError:
+            text = repr(planned)
+        texts.append(text.replace(str(studies_folder().parent), ""))
+    return hashlib.sha256("\n".join(sorted(texts)).encode()).hexdigest()
+
+
+def stamp(name: str, study: Any) -> None:
+    """Notes by which program, and from what scenes, a page was made: tests/studies/stamps_test.py finds it stale."""
+    path = studies_folder() / "stamps.json"
+    stamps = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    stamps[name] = {"revision": _core.__version__, "scenes": fingerprint(name, study)}
+    write_replacing(path, json.dumps(dict(sorted(stamps.items())), indent=1) + "\n")
+
+
+def page_of(study: Any, options: argparse.Namespace) -> pathlib.Path:
+    return studies_folder().parent / "docs/results" / getattr(study, "PAGE", options.name)
+
+
 def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) -> pathlib.Path:
     """Where tables and figures go: into the page's folder only if they are those of the whole study."""
     if options.tables:
         return options.tables
-    page = studies_folder().parent / "docs/results" / getattr(study, "PAGE", options.name)
+    page = page_of(study, options)
     whole = vars(parse([], options.name, study))
     asked = {key: value for key, value in vars(options).items() if key not in FREE_OPTIONS}
     of_page = is_complete and page.is_dir() and all(whole[key] == value for key, value in asked.items())

@@ -62,11 +62,12 @@ TEST(SpecimenRequest, NeedsSeedsForAllPackingsOrForTheLot)
 TEST_F(Library, MustHaveSoManySeeds)
 {
   test::write_library(folder / "library.h5");
-  EXPECT_NO_THROW(check_seeds(folder / "library.h5", {0.5, 0}, 1, "me"));
+  EXPECT_NO_THROW(check_seeds(folder / "library.h5", {0.5, 0}, 1, "soil", "grains"));
   EXPECT_THAT(message_of<InputError>([&] {
-                check_seeds(folder / "library.h5", {0.5, 0}, 99, "me");
+                check_seeds(folder / "library.h5", {0.5, 0}, 99, "soil", "grains");
               }),
-              AllOf(testing::StartsWith("me: "), HasSubstr("library.h5"), HasSubstr("the soil needs 99")));
+              AllOf(testing::StartsWith("soil.realisation = 0, grains.realisations = 99: "), HasSubstr("library.h5"),
+                    HasSubstr("the soil needs 99")));
 }
 
 TEST_F(Library, ReadsEachSpecimenOnce)

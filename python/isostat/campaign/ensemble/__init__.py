@@ -38,7 +38,7 @@ def find_ensemble(options: argparse.Namespace, executor: concurrent.futures.Exec
     runs = {member.name: member.run(folder, options.threads) for member in members}
     failures: dict[str, str] = {}
     held = CampaignFolder(folder, {"scene.toml": scene.with_(**{"output.folder": "members"}).text},
-                          overwrite=options.overwrite)
+                          overwrite=options.overwrite, program="soil_column")
     try:
         do_runs(list(runs.values()), executor, options.quiet, failures)
     finally:
