@@ -33,6 +33,13 @@ def described():
     return sections
 
 
+def version(section):
+    """The schema_version that the page names for a format: 1 where it names none."""
+    text = PAGE.read_text(encoding="utf-8").split(f"\n## `{section}`\n")[1].split("\n## ")[0]
+    named = re.search(r"\bVersion (\d+)\.", text)
+    return int(named[1]) if named else 1
+
+
 def general(name):
     """Names of repeated items as the page has them: dK_gamma_xz, drive/servo@step_k, ENTRY/snapshot/..."""
     name = re.sub(r"^(s\d{4}|i[0-9a-f]{16})(?=/|@|$)", "ENTRY", name)
@@ -56,6 +63,7 @@ class FileFormats(GrainColumnTest):
             self.assertLessEqual(ROOT, set(file.attrs), path)
             section = file.attrs["format"]
             self.assertIn(section, page, f"{path}: its format is not in {PAGE.name}")
+            self.assertEqual(file.attrs["schema_version"], version(section), f"{path}: version of {section}")
             items = {"": file}
             file.visititems(lambda name, item: items.__setitem__(name, item))
             for name, item in items.items():
