@@ -51,7 +51,7 @@ struct Relaxed
 ///
 /// Dynamic relaxation with kinetic damping (Cundall 1976; Barnes 1999, Int. J. Space Struct. 14, 89,
 /// doi:10.1260/0266351991494722): grains move under fictitious masses in proportion to the stiffness they feel,
-/// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr) over their contacts, so that all of them are as quick; where
+/// M_i = dt^2 sum (kn + ks), J_i = dt^2 sum (ks R^2 + kr + kt) over their contacts, so that all are as quick; where
 /// the kinetic energy passes a peak, F.v <= 0, all of them are stopped. Dashpots in the contacts, 5 % of critical, take
 /// the motion of grains that rattle between others. Grains that touch nothing stay with the cell.
 /// A strain of `increment` is spread over n = 100 iterations, others in proportion (at least one). In a cell grains are

@@ -33,11 +33,21 @@ def described():
     return sections
 
 
+def version(section):
+    """The schema_version that the page names for a format: 1 where it names none."""
+    text = PAGE.read_text(encoding="utf-8").split(f"\n## `{section}`\n")[1].split("\n## ")[0]
+    named = re.search(r"\bVersion (\d+)\.", text)
+    return int(named[1]) if named else 1
+
+
 def general(name):
-    """Names with numbers as the page has them: dK_gamma_xz, ENTRY/snapshot/..."""
+    """Names of repeated items as the page has them: dK_gamma_xz, drive/servo@step_k, ENTRY/snapshot/..."""
     name = re.sub(r"^(s\d{4}|i[0-9a-f]{16})(?=/|@|$)", "ENTRY", name)
     name = re.sub(r"(?<=losses/)\d+(?=/|@|$)|(?<=drive/ends/)\d+(?=/|@|$)", "N", name)
     name = re.sub(r"(?<=history/expansion_)\d+$", "K", name)
+    name = re.sub(r"(?<=control/)(sigma_[xyz]|tau_xy|indicator|losses/N/deviation)(?=@)", "Q", name)
+    name = re.sub(r"^(drive/.*@\w+?)((?:_[xyz])+)$", lambda m: m[1] + "_k" * (len(m[2]) // 2), name)
+    name = re.sub(r"^(assembly@(?:wall_\w+|virial)_)(\d+)$", lambda m: m[1] + "K" * len(m[2]), name)
     return re.sub(r"(?<=history/)([dp])\d+_", r"\1K_", name)
 
 
@@ -53,6 +63,7 @@ class FileFormats(GrainColumnTest):
             self.assertLessEqual(ROOT, set(file.attrs), path)
             section = file.attrs["format"]
             self.assertIn(section, page, f"{path}: its format is not in {PAGE.name}")
+            self.assertEqual(file.attrs["schema_version"], version(section), f"{path}: version of {section}")
             items = {"": file}
             file.visititems(lambda name, item: items.__setitem__(name, item))
             for name, item in items.items():
@@ -62,13 +73,17 @@ class FileFormats(GrainColumnTest):
                     self.assertIn(item.attrs["unit"], unit.split(" or "), f"{path}: {name}")
                     self.assertEqual(item.ndim, shape.count(",") + 1, f"{path}: {name} has the shape {item.shape}")
                 for attribute in set(item.attrs) - {"unit"} - (set() if name else ROOT | {"scene"}):
-                    self.row(page, section, f"{name}@{attribute}", path)
+                    self.row(page, section, general(f"{name}@{attribute}"), path)
 
     def row(self, page, section, name, path):
         inner = packing_of(name)
         table = page["packing"] if inner else page[section]
         if "provenance@" in name or "numbers@" in name and "specimen" in section:
             table, inner = page["isostat-specimen"], name.removeprefix("ENTRY/")
+        if section == "isostat-checkpoint" and name.startswith("specimen@"):
+            table, inner = page["isostat-specimen"], name.replace("specimen@", "numbers@")
+        if name.startswith("history/dK_") and name not in table:
+            inner = name.replace("dK_", "")
         self.assertIn(inner or name, table, f"{path}: not in {PAGE.name}, section {section}")
         return table[inner or name]
 
@@ -87,7 +102,7 @@ class FileFormats(GrainColumnTest):
             with open(path, encoding="utf-8") as file:
                 for column in next(csv.reader(file)):
                     name, unit = re.fullmatch(r"(\S+) \((.*)\)", column).groups()
-                    listed = page["isostat-history"][general("history/" + name)]
+                    listed = self.row(page, "isostat-history", general("history/" + name), path)
                     self.assertIn(unit, listed[1].split(" or "), f"{path}: {name}")
 
     def make_files(self):
