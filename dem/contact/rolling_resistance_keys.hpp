@@ -3,8 +3,8 @@
 // tested: tests/dem/scene/scene_test.cpp
 #pragma once
 #include "base/scene/ranges.hpp"
-#include "dem/contact/law_parameters.hpp"
 #include "dem/contact/rolling_resistance.hpp"
+#include "dem/law/parameters.hpp"
 
 #include <algorithm>
 #include <array>

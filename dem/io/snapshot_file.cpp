@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/record/file_format.hpp"
-#include "dem/contact/law_parameters.hpp"
+#include "dem/law/parameters.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/law.hpp"
 #include "dem/domain/rigid_box.hpp"
+#include "dem/law/law.hpp"
 #include "dem/state/contact_list.hpp"
 #include "dem/state/packing.hpp"
 

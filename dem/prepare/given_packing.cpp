@@ -2,7 +2,7 @@
 #include "dem/prepare/given_packing.hpp"
 
 #include "base/error.hpp"
-#include "dem/contact/law_parameters.hpp"
+#include "dem/law/parameters.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/grading.hpp"
 #include "dem/prepare/relative_density.hpp"

@@ -4,10 +4,10 @@
 #include "base/error.hpp"
 #include "base/files/hash.hpp"
 #include "base/stopwatch.hpp"
-#include "dem/contact/law_parameters.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
+#include "dem/law/parameters.hpp"
 #include "dem/measure/stress.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -8,9 +8,9 @@
 #include "base/fields.hpp"
 #include "base/files/bytes.hpp"
 #include "base/files/hash.hpp"
-#include "dem/contact/law_parameters.hpp"
 #include "dem/domain/lattice.hpp"
 #include "dem/drive/rate_control.hpp"
+#include "dem/law/parameters.hpp"
 #include "dem/state/state_fault.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/law.hpp"
 #include "dem/drive/programme.hpp"
+#include "dem/law/law.hpp"
 
 #include <algorithm>
 #include <cstdint>

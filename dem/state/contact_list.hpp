@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/history.hpp"
 #include "dem/domain/periodic_cell.hpp"
+#include "dem/law/history.hpp"
 #include "dem/state/packing.hpp"
 #include "dem/state/partition.hpp"
 

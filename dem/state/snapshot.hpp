@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/law.hpp"
 #include "dem/domain/homogeneous_motion.hpp"
 #include "dem/domain/periodic_cell.hpp"
 #include "dem/domain/rigid_box.hpp"
+#include "dem/law/law.hpp"
 #include "dem/state/packing.hpp"
 
 namespace isostat

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/state/state_fault.hpp"
 
-#include "dem/contact/history.hpp"
 #include "dem/domain/lattice.hpp"
+#include "dem/law/history.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 namespace isostat
 {
 /// PETSc's matrices and vectors as values that clean up after themselves. Only the files of the two linear systems see
-/// this header: those of fem/water's pressures and fem/solve/statics_system.cpp.
+/// this header: those of fem/water's pressures and fem/solve/statics/system.cpp.
 /// tested: tests/fem/water/pressure_system_test.cpp, tests/fem/solve/statics_test.cpp
 
 /// @throws RunFailure  PETSc reports an error

@@ -20,13 +20,6 @@ int rank_in(const FiniteElementSpace &space)
     MPI_Comm_rank(space.communicator(), &rank);
   return rank;
 }
-
-bool on_any_rank(const FiniteElementSpace &space, bool here)
-{
-  if (space.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_C_BOOL, MPI_LOR, space.communicator());
-  return here;
-}
 } // namespace
 
 FieldWriter::FieldWriter(std::uint64_t step, const Material &material, const FiniteElementSpace &space)
@@ -35,9 +28,9 @@ FieldWriter::FieldWriter(std::uint64_t step, const Material &material, const Fin
   state.step = step;
   state.material = material.pack();
   const auto &points = state.material.points;
-  const bool as_a_whole =
-      points.size() != space.n_points() || std::ranges::any_of(points, &std::vector<std::byte>::empty);
-  if (space.shared_out() && on_any_rank(space, as_a_whole))
+  const bool by_point =
+      points.size() == space.n_points() && std::ranges::none_of(points, &std::vector<std::byte>::empty);
+  if (space.shared_out() && !space.on_every_rank(by_point))
     throw InputError("checkpoint: a material that keeps its points as a whole cannot be saved from a mesh that is "
                      "shared out over ranks");
   if (!points.empty() || space.shared_out())

@@ -122,6 +122,13 @@ void FiniteElementSpace::sum_over_ranks(std::span<double> values) const
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator_);
 }
 
+bool FiniteElementSpace::on_every_rank(bool here) const
+{
+  if (shared_out_)
+    MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_C_BOOL, MPI_LAND, communicator_);
+  return here;
+}
+
 template <int dim>
 Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator)
     : FiniteElementSpace(mesh, supports, dim, communicator),

@@ -28,6 +28,7 @@ public:
 
   /// Each number becomes its sum over the ranks that the mesh is shared out over; where each has all of it, it stays.
   void sum_over_ranks(std::span<double> values) const;
+  bool on_every_rank(bool here) const; ///< the same answer on all of these
 
   /// A zero vector of displacements / of pressures.
   Vector displacement_vector() const { return Vector(displacements_); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes and contact laws.   tested: tests/python/scene_test.py
 #include "dem/scene/scene.hpp"
-#include "dem/contact/law_parameters.hpp"
+#include "dem/law/parameters.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
 

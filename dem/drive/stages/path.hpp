@@ -105,6 +105,7 @@ public:
   bool needs_cell() const override;
   bool shears() const override { return !consolidation; }
   bool drives() const override { return true; }
+  bool is_driven(std::size_t k) const { return static_cast<std::size_t>(drive) == k + 1; }
   bool turns() const { return turn.strain > 0 || turn.high || turn.low; }
   double planned_strain() const override { return turns() ? 0 : end.strain; }
   KeptStresses kept_stresses(const StageContext &c) const override;
@@ -149,22 +150,12 @@ protected:
   double turning_strain(const DriveState &state) const override;
 
 private:
-  bool is_driven(std::size_t k) const { return static_cast<std::size_t>(drive) == k + 1; }
-  std::optional<EndCondition> ends(const StageContext &c, const Observation &seen) const;
-  bool at_rest(const StageContext &c) const;
-  /// Largest |stress - target| over p' when the stage began.
-  double target_error(const StageContext &c) const;
-  void fail_if_hopeless(const StageContext &c, const Observation &seen) const;
   void turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const;
-  void walk(const StageContext &c) const;
   std::uint64_t table_hash() const { return table(), read_.hash; }
-  Vec3 stress_targets(const DriveState &state, const Mat3 &stress) const;
-  double tau_target(const DriveState &state) const;
   std::array<double, 4> prescribed_steps(const StageContext &c, const Observation &seen) const;
   /// Strains of an increment of a static drive.
   StaticComponents static_step(const StageContext &c, const Observation &seen) const;
   void close_step(const StageContext &c, const Observation &seen, Vec3 &step) const;
-  std::array<double, 4> strain_step(const StageContext &c, double driven, double before) const;
   /// No setting, so paths that differ in nothing else are equal.
   struct Read
   {

@@ -34,10 +34,9 @@ std::string misfit(const Path &path, const PathTable &table, std::size_t k)
   const auto strain = static_cast<PathQuantity>(k + static_cast<std::size_t>(PathQuantity::strain_x));
   const auto stress = static_cast<PathQuantity>(k);
   const PathComponent &component = path.components[k];
-  const bool driven = static_cast<std::size_t>(path.drive) == k + 1;
   if (table.prescribes(stress) && component.keep != PathCondition::stress)
     return fmt::format("prescribes {}, but {}.keep is not \"stress\"", name_of(stress), component_names[k]);
-  if (table.prescribes(strain) && (component.keep != PathCondition::strain || driven))
+  if (table.prescribes(strain) && (component.keep != PathCondition::strain || path.is_driven(k)))
     return fmt::format("prescribes {}, but {} is driven or {}.keep is not \"strain\"", name_of(strain),
                        component_names[k], component_names[k]);
   return "";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a path ends, how far it has come, and what it says when it does not get there.
+// Where a path turns and ends, how far it has come, and what it says when it does not get there.
 #include "base/error.hpp"
+#include "dem/drive/stages/cyclic_response.hpp"
 #include "dem/drive/stages/path.hpp"
 #include "dem/drive/stages/stage_end.hpp"
 #include "dem/measure/stress.hpp"
@@ -30,11 +31,11 @@ double volumetric_strain(const StageContext &c)
 {
   return std::abs(std::log(c.assembly.volume() / c.state.progress.volume));
 }
-} // namespace
 
-double Path::target_error(const StageContext &c) const
+/// Largest |stress - target| over p' when the stage began.
+double target_error(const Path &path, const StageContext &c)
 {
-  const KeptStresses kept = kept_stresses(c);
+  const KeptStresses kept = path.kept_stresses(c);
   const Mat3 stress = c.assembly.stress();
   const double p = c.state.progress.stress.mean();
   double worst = 0;
@@ -46,59 +47,99 @@ double Path::target_error(const StageContext &c) const
   return worst;
 }
 
-bool Path::at_rest(const StageContext &c) const
+bool at_rest(const Path &path, const StageContext &c)
 {
-  const bool any_stress =
-      std::any_of(components.begin(), components.end(), [](const PathComponent &k) { return k.follows_stress(); });
+  const bool any_stress = std::any_of(path.components.begin(), path.components.end(),
+                                      [](const PathComponent &k) { return k.follows_stress(); });
   if (!any_stress)
     return true;
   const std::uint64_t steps = c.state.place.steps;
   if (steps % rest_interval != 0)
     return false;
-  const double worst = target_error(c);
+  const double worst = target_error(path, c);
   if (steps > hopeless_steps)
     throw RunFailure(
         fmt::format("step {}: stage 'path' is not in balance after {} steps (stresses off by {:.3g} of p', "
                     "unbalanced {:.3g}, requested {:.3g})",
-                    c.assembly.step(), steps, worst, c.assembly.unbalanced_force_ratio(), balance));
+                    c.assembly.step(), steps, worst, c.assembly.unbalanced_force_ratio(), path.balance));
   std::uint64_t &checks = c.state.servo.balanced_checks;
-  checks = worst < rest_tolerance && c.assembly.unbalanced_force_ratio() < balance ? checks + 1 : 0;
+  checks = worst < rest_tolerance && c.assembly.unbalanced_force_ratio() < path.balance ? checks + 1 : 0;
   return checks >= 2;
 }
 
-std::optional<EndCondition> Path::ends(const StageContext &c, const Observation &seen) const
+std::optional<EndCondition> ends(const Path &path, const StageContext &c, const Observation &seen)
 {
   const PathProgress &progress = c.state.progress;
   const StressInvariants start = invariants(Vec3(-progress.stress));
   const double near = start_tolerance * start.p;
-  if (end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain)
+  if (path.end.strain > 0 && std::abs(c.state.loading.strain) >= path.end.strain)
     return EndCondition::strain;
-  if (passed(end.q, start.q, seen.q, near))
+  if (passed(path.end.q, start.q, seen.q, near))
     return EndCondition::q;
-  if (passed(end.p, start.p, seen.p, near))
+  if (passed(path.end.p, start.p, seen.p, near))
     return EndCondition::p;
-  if (passed(end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
+  if (passed(path.end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
     return EndCondition::stress_ratio;
-  if (end.volumetric_strain > 0 && volumetric_strain(c) >= end.volumetric_strain)
+  if (path.end.volumetric_strain > 0 && volumetric_strain(c) >= path.end.volumetric_strain)
     return EndCondition::volumetric_strain;
-  if (end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * end.cycles)
+  if (path.end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * path.end.cycles)
     return EndCondition::cycles;
-  const PathTable &knots = table();
+  const PathTable &knots = path.table();
   const bool walked = knots.at.empty() || progress.place >= knots.at.back();
-  const bool over = drive == DrivenComponent::none && walked && at_rest(c);
+  const bool over = path.drive == DrivenComponent::none && walked && at_rest(path, c);
   return over ? std::optional(EndCondition::course) : std::nullopt;
 }
 
-void Path::fail_if_hopeless(const StageContext &c, const Observation &seen) const
+void fail_if_hopeless(const Path &path, const StageContext &c, const Observation &seen)
 {
-  const bool cycles_end = end.cycles > 0 && turn.strain > 0; // a load may never be reached
-  const bool ends_for_sure = end.strain > 0 || cycles_end || max_steps > 0;
+  const bool cycles_end = path.end.cycles > 0 && path.turn.strain > 0; // a load may never be reached
+  const bool ends_for_sure = path.end.strain > 0 || cycles_end || path.max_steps > 0;
   if (ends_for_sure || std::abs(c.state.loading.strain) < hopeless_strain)
     return;
   throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain and has not come to its end: {}. "
                                "Give until.strain or max_steps, or values that the specimen can reach.",
                                seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain),
-                               to_text(conditions(figures(c, seen)))));
+                               to_text(path.conditions(path.figures(c, seen)))));
+}
+} // namespace
+
+void Path::turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const
+{
+  DriveState &state = c.state;
+  const double now = load(seen), over = sign(state.loading.direction) * (now - turning_load(state));
+  if (std::isfinite(over))
+    state.undrained.worst_overshoot = std::max(state.undrained.worst_overshoot, over);
+  state.undrained.reversals += 1;
+  state.loading.direction = opposite(state.loading.direction);
+  if (notes_response())
+    turn_response(now, state, over >= 0);
+  load_from_rest(c, now);
+  verdict.notable = true;
+  verdict.event =
+      fmt::format("reversal {} at step {}: driven strain {:.4g} %, p' {:.2f} kPa, load {:.2f} kPa",
+                  state.undrained.reversals, seen.step, 100 * state.loading.strain, seen.p / 1e3, now / 1e3);
+}
+
+Verdict Path::reached(const StageContext &c, const Observation &seen) const
+{
+  Verdict verdict;
+  if (c.state.progress.table != table_hash())
+    throw InputError(
+        fmt::format("stage {} (path): the table {} is not the one that the stage began with. Put that one back, "
+                    "or start anew with --overwrite.",
+                    c.state.place.stage, file));
+  if (shears() && keeps_volume())
+    note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);
+  if (notes_response())
+    follow_response(load(seen), strain(seen), (*turn.high - *turn.low) / 2, mode(), seen.step, c.state, verdict);
+  const double direction = sign(c.state.loading.direction);
+  if (turns() && (direction * load(seen) >= direction * turning_load(c.state) ||
+                  direction * c.state.loading.strain >= direction * turning_strain(c.state)))
+    turn_round(c, seen, verdict);
+  verdict.end = ends(*this, c, seen);
+  if (!verdict.end)
+    fail_if_hopeless(*this, c, seen);
+  return verdict;
 }
 
 StageFigures Path::figures(const StageContext &c, const Observation &seen) const
@@ -106,7 +147,7 @@ StageFigures Path::figures(const StageContext &c, const Observation &seen) const
   StageFigures now = ShearStage::figures(c, seen);
   now.volumetric = volumetric_strain(c);
   now.own_reversals = now.reversals - c.state.progress.reversals;
-  now.stress_error = target_error(c);
+  now.stress_error = target_error(*this, c);
   now.place = table().at.empty() ? 1 : std::min(c.state.progress.place / table().at.back(), 1.0);
   return now;
 }

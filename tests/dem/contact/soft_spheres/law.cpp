@@ -4,8 +4,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "dem/contact/law_parameters.hpp"
 #include "dem/contact/loop-inl.hpp"
+#include "dem/law/parameters.hpp"
 #include "tests/dem/contact/soft_spheres/law.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/law.hpp"
+#include "dem/law/law.hpp"
 
 namespace isostat::test
 {

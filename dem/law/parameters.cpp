@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dem/contact/law_parameters.hpp"
+#include "dem/law/parameters.hpp"
 
 #include <algorithm>
 

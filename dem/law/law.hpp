@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "dem/contact/history.hpp"
+#include "dem/law/history.hpp"
 
 #include <concepts>
 #include <memory>
@@ -59,7 +59,7 @@ struct ContactEnergy
 /// A contact law for spheres of one material: parameters and equations. Everything outside the folder of a law goes by
 /// this interface; one call does a whole chunk of contacts, so the loop over contacts knows its law at compile time.
 /// How to add one: CONTRIBUTING.md.
-/// tested: tests/dem/contact/own_law_test.cpp (a law outside the library: loop, step, scene, files)
+/// tested: tests/dem/law/own_law_test.cpp (a law outside the library: loop, step, scene, files)
 struct ContactLaw
 {
   // What every law has, since stages and preparation change it.
@@ -70,7 +70,7 @@ struct ContactLaw
   virtual const char *name() const = 0; ///< as `contact.law` in scenes
   virtual std::unique_ptr<ContactLaw> clone() const = 0;
   /// The parameters as keys of the section [contact], "young"; fields are doubles and bools, found by law_field
-  /// (law_parameters.hpp). Names in files and bytes, keys of caches and equality of laws follow from this table.
+  /// (parameters.hpp). Names in files and bytes, keys of caches and equality of laws follow from this table.
   virtual std::span<const Key> keys() const = 0;
 
   /// What the present parameters need to remember of a contact.
@@ -107,7 +107,7 @@ protected:
 class Law
 {
 public:
-  Law(); ///< the default law with its default parameters: the first of laws.cpp
+  Law(); ///< the default law with its default parameters: the first of dem/contact/laws.cpp
   template <std::derived_from<ContactLaw> Concrete>
   Law(const Concrete &law) : law_(law.clone())
   {}
@@ -138,10 +138,10 @@ private:
   std::unique_ptr<ContactLaw> law_;
 };
 
-/// Numbers, then switches as 0 or 1, of a law, in the order of for_each_parameter (law_parameters.hpp).
+/// Numbers, then switches as 0 or 1, of a law, in the order of for_each_parameter (parameters.hpp).
 std::vector<double> parameter_values(const ContactLaw &law);
 
-/// All laws that scenes and files may name: those of laws.cpp, then those that a program has registered.
+/// All laws that scenes and files may name: those of dem/contact/laws.cpp, then those that a program has registered.
 std::span<const Law> registered_laws();
 /// Adds a law, with the parameters that it has where a file leaves them out. @pre no scene has been read yet
 void register_law(const Law &law);

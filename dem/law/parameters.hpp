@@ -2,7 +2,7 @@
 // The parameters of a law by name, from its table of keys: what scenes, files, bytes and caches are made of.
 #pragma once
 #include "base/scene/schema.hpp"
-#include "dem/contact/law.hpp"
+#include "dem/law/law.hpp"
 
 namespace isostat
 {
@@ -26,7 +26,7 @@ inline constexpr FieldAccess law_field{detail::LawField<member>{}};
 /// Calls visit(name, double &) for every number and then visit(name, bool &) for every switch of a law: "rolling_limit"
 /// is the key rolling.limit, "feature_rolling" the table rolling. "feature_friction" is no parameter but says whether
 /// friction > 0; set to false, it sets friction to 0.
-/// tested: tests/dem/contact/own_law_test.cpp, tests/dem/io/snapshot_file_test.cpp
+/// tested: tests/dem/law/own_law_test.cpp, tests/dem/io/snapshot_file_test.cpp
 template <typename Visit>
 void for_each_parameter(ContactLaw &law, const Visit &visit)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/solve/statics/mixed_vector.hpp"
 #include "fem/water/biot_integrals.hpp"
 
 namespace isostat
@@ -26,9 +27,9 @@ public:
   /// @throws RunFailure  the tangent is singular: a body that moves freely, or a soil without stiffness
   void set_tangent(std::span<const Stiffness> tangents, double theta);
 
-  /// du, dp of residuals r_u (N), r_p (m3) and of the increments that du, dp hold at held unknowns when called.
-  /// @param moved_u,moved_p  what the residuals lose by the held increments alone
-  void solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u, Vector &moved_p) const;
+  /// Increments of a residual (N; m3), and of the increments that `step` has at held unknowns when called.
+  /// @param moved  what the residual loses by the held increments alone
+  void solve(const MixedVector &residual, MixedVector &step, MixedVector &moved) const;
 
   /// r_p counts in a residual as this force, N/m3: pressure scale over the size of a cell.
   double force_per_volume() const;
@@ -39,8 +40,8 @@ private:
   void preallocate();
   void assemble(std::span<const Stiffness> tangents, double theta);
   void factorise();
-  void load(const Vector &u, double u_factor, const Vector &p, double p_factor) const;
-  void unload(Vector &u, double u_factor, Vector &p, double p_factor) const;
+  void load(MixedVector &x, double p_factor) const;
+  void unload(MixedVector &x, double p_factor) const;
 
   const FiniteElementSpace &space_;
   std::unique_ptr<Matrices> matrices_;

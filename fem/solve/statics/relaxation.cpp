@@ -12,9 +12,9 @@
 // Found. Comput. Math. 15; in mechanics, dynamic relaxation with kinetic damping (Cundall 1976). Strains of every y are
 // tried from the committed state, so a material that remembers its path remembers the straight one to the equilibrium,
 // not the wanderings of the relaxation.
+#include "fem/solve/statics/solvers.hpp"
+
 #include "fem/material/elastic.hpp"
-#include "fem/solve/statics.hpp"
-#include "fem/solve/statics_system.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +25,14 @@ namespace isostat
 {
 namespace
 {
+enum class Outcome
+{
+  at_rest,
+  unfinished,
+  refused, ///< the sub-step's report has the reason
+  diverges
+};
+
 constexpr double stiffest = 8; ///< M over what the waves say, at most
 
 /// Whether M is too soft: |s|^2 in the norm of M grows ten thousandfold, or ten restarts do not go below the least that
@@ -60,82 +68,65 @@ void carry(double carried, Vector &now, Vector &before)
       before.local_element(i) = x;
     }
 }
-} // namespace
 
 /// M: elastic, isotropic, `factor` times the moduli of waves. False if there is none: a part moves freely.
-bool Statics::set_metric(double factor)
+bool set_metric(double factor, StaticsSubstep &substep, const Material &material)
 {
-  std::vector<WaveModuli> moduli(material_.n_points());
-  material_.wave_moduli(moduli);
-  for (std::size_t q = 0; q < moduli.size(); ++q)
-    tangents_[q] = factor * isotropic_stiffness(bulk_modulus(moduli[q]), moduli[q].s);
-  return factorise();
-}
-
-/// r.x over free unknowns. J
-double Statics::work_of_residual(const Vector &x) const
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < is_held_u_.size(); ++i)
-    if (!is_held_u_[i])
-      sum += r_u_.local_element(i) * x.local_element(i);
-  space_.sum_over_ranks({&sum, 1});
-  return sum;
-}
-
-/// True if it found equilibrium; else reason_ says why not.
-bool Statics::relax_substep(double duration)
-{
-  unsigned left = settings_.newton.relaxation_iterations;
-  for (double factor = 1; factor <= stiffest; factor *= 2)
-    {
-      const Relaxation outcome = relax(duration, factor, left);
-      if (outcome != Relaxation::diverges)
-        return outcome == Relaxation::at_rest;
-      material_.rollback();
-    }
-  return false;
+  std::vector<WaveModuli> moduli(material.n_points());
+  material.wave_moduli(moduli);
+  std::vector<Stiffness> metric;
+  for (const WaveModuli &m : moduli)
+    metric.push_back(factor * isotropic_stiffness(bulk_modulus(m), m.s));
+  return substep.set_tangent(metric);
 }
 
 /// One attempt, of at most `left` iterations.
-Statics::Relaxation Statics::relax(double duration, double factor, unsigned &left)
+Outcome attempt(StaticsSubstep &substep, bool may_diverge, unsigned &left)
 {
-  start_substep(duration);
-  if (!set_metric(factor))
-    return Relaxation::gives_up;
-  start_du_ = du_;
-  start_dp_ = dp_;
+  MixedVector before = substep.increment;
   double t = 1;
   bool restarted = false;
   Divergence divergence;
-  for (;;)
+  while (!substep.in_equilibrium())
     {
-      if (left_ == 0 && merit(0) <= settings_.newton.tolerance * trial_scale_)
-        return Relaxation::at_rest;
       if (left == 0)
-        break;
+        return Outcome::unfinished;
       --left;
-      find_step();
-      if (left_ == 0 && divergence.look(work_of_residual(step_u_), restarted) && factor < stiffest)
-        return Relaxation::diverges;
-      du_ += step_u_;
-      dp_ += step_p_;
-      work_u_ = du_;
-      work_u_ -= start_du_;
-      const bool downhill = left_ > 0 || work_of_residual(work_u_) > 0; // the first step moves what is held
+      substep.find_step();
+      if (substep.left == 0 && divergence.look(substep.work(substep.step.u), restarted) && may_diverge)
+        return Outcome::diverges;
+      substep.increment += substep.step;
+      Vector moved = substep.increment.u;
+      moved -= before.u;
+      const bool downhill = substep.left > 0 || substep.work(moved) > 0; // the first step moves what is held
       restarted = !downhill;
-      left_ = 0;
+      substep.left = 0;
       const double next = downhill ? 0.5 * (1 + std::sqrt(1 + 4 * t * t)) : 1, carried = downhill ? (t - 1) / next : 0;
       t = next;
-      carry(carried, du_, start_du_);
-      if (water_)
-        carry(carried, dp_, start_dp_);
-      if (!evaluate())
-        return Relaxation::gives_up;
-      residual_ = merit(0) / trial_scale_;
+      carry(carried, substep.increment.u, before.u);
+      carry(carried, substep.increment.p, before.p);
+      if (!substep.evaluate())
+        return Outcome::refused;
+      substep.report.residual = substep.merit(0) / substep.report.scale;
     }
-  reason_ = {fmt::format("relaxation has not come to rest in {} iterations; more of them may do",
-                         settings_.newton.relaxation_iterations)};
-  return Relaxation::gives_up;
+  return Outcome::at_rest;
+}
+} // namespace
+
+bool solve_by_relaxation(StaticsSubstep &substep, const Material &material, unsigned max_iterations)
+{
+  unsigned left = max_iterations;
+  Outcome outcome = Outcome::diverges;
+  for (double factor = 1; outcome == Outcome::diverges; factor *= 2)
+    {
+      substep.restart();
+      if (!set_metric(factor, substep, material))
+        return false;
+      outcome = attempt(substep, factor < stiffest, left);
+    }
+  return outcome == Outcome::unfinished
+             ? substep.report.fail(
+                   fmt::format("relaxation has not come to rest in {} iterations; more of them may do", max_iterations))
+             : outcome == Outcome::at_rest;
 }
 } // namespace isostat

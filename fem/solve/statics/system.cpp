@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Numbers in brackets are equations of docs/theory_column.md.
-#include "fem/solve/statics_system.hpp"
+#include "fem/solve/statics/system.hpp"
 
 #include "base/error.hpp"
 #include "fem/linear/petsc.hpp"
@@ -28,8 +28,14 @@ void strain_matrix(const CellTables &t, std::size_t point, Eigen::Matrix<double,
 struct StaticsSystem::Matrices
 {
   double pressure_scale = 1, cell_size = 1;
-  std::size_t n_u = 0, n_p = 0;       ///< owned rows
-  std::vector<PetscInt> of_u, of_p;   ///< number in the system of owned and other unknowns
+  std::size_t n_u = 0, n_p = 0;     ///< owned rows
+  std::vector<PetscInt> of_u, of_p; ///< number in the system of owned and other unknowns
+  // of the i-th owned row
+  PetscInt row(std::size_t i) const { return i < n_u ? of_u[i] : of_p[i - n_u]; }
+  double &entry(MixedVector &x, std::size_t i) const
+  {
+    return i < n_u ? x.u.local_element(i) : x.p.local_element(i - n_u);
+  }
   std::vector<unsigned> unused, held; ///< owned rows that no cell has; held ones
   const BiotOperator *water = nullptr;
   std::vector<double> values;            ///< entries in the order of preallocate()
@@ -114,7 +120,7 @@ void StaticsSystem::preallocate()
     }
   for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
     {
-      entries.rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
+      entries.rows.push_back(m.row(i));
       entries.columns.push_back(entries.rows.back());
     }
   m.values.assign(entries.rows.size(), 0.0);
@@ -138,9 +144,8 @@ void StaticsSystem::hold(const std::vector<unsigned> &displacements, const std::
     is_held[i] = true;
   for (unsigned i : displacements)
     is_held[i] = true;
-  if (m.water)
-    for (unsigned i : pressures)
-      is_held[m.n_u + i] = true;
+  for (unsigned i : pressures)
+    is_held[m.n_u + i] = true;
   std::vector<unsigned> held;
   for (unsigned i = 0; i < is_held.size(); ++i)
     if (is_held[i])
@@ -153,11 +158,8 @@ void StaticsSystem::hold(const std::vector<unsigned> &displacements, const std::
 void StaticsSystem::set_tangent(std::span<const Stiffness> tangents, double theta)
 {
   Matrices &m = *matrices_;
-  int same = m.known_theta == theta &&
-             std::equal(tangents.begin(), tangents.end(), m.known_tangents.begin(), m.known_tangents.end());
-  if (space_.shared_out())
-    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, space_.communicator());
-  if (same)
+  const bool same = m.known_theta == theta && std::ranges::equal(tangents, m.known_tangents);
+  if (space_.on_every_rank(same))
     return;
   m.known_tangents.clear();
   assemble(tangents, theta);
@@ -201,7 +203,7 @@ void StaticsSystem::factorise()
   Matrices &m = *matrices_;
   std::vector<PetscInt> rows;
   for (unsigned i : m.held)
-    rows.push_back(i < m.n_u ? m.of_u[i] : m.of_p[i - m.n_u]);
+    rows.push_back(m.row(i));
   Mat matrix = m.with_held.get();
   petsc_check(MatZeroRowsColumns(matrix, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
   MatFactorInfo info;
@@ -223,51 +225,43 @@ void StaticsSystem::factorise()
     throw RunFailure("the tangent is singular: a part moves freely, or a soil has no stiffness");
 }
 
-void StaticsSystem::load(const Vector &u, double u_factor, const Vector &p, double p_factor) const
+void StaticsSystem::load(MixedVector &x, double p_factor) const
 {
   const Matrices &m = *matrices_;
-  double *x;
-  petsc_check(VecGetArrayWrite(m.in.get(), &x));
-  for (std::size_t i = 0; i < m.n_u; ++i)
-    x[i] = u_factor * u.local_element(i);
-  for (std::size_t i = 0; i < m.n_p; ++i)
-    x[m.n_u + i] = p_factor * p.local_element(i);
-  petsc_check(VecRestoreArrayWrite(m.in.get(), &x));
+  double *in;
+  petsc_check(VecGetArrayWrite(m.in.get(), &in));
+  for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
+    in[i] = (i < m.n_u ? 1 : p_factor) * m.entry(x, i);
+  petsc_check(VecRestoreArrayWrite(m.in.get(), &in));
 }
 
-void StaticsSystem::unload(Vector &u, double u_factor, Vector &p, double p_factor) const
+void StaticsSystem::unload(MixedVector &x, double p_factor) const
 {
   const Matrices &m = *matrices_;
-  const double *x;
-  petsc_check(VecGetArrayRead(m.out.get(), &x));
-  for (std::size_t i = 0; i < m.n_u; ++i)
-    u.local_element(i) = u_factor * x[i];
-  for (std::size_t i = 0; i < m.n_p; ++i)
-    p.local_element(i) = p_factor * x[m.n_u + i];
-  petsc_check(VecRestoreArrayRead(m.out.get(), &x));
+  const double *out;
+  petsc_check(VecGetArrayRead(m.out.get(), &out));
+  for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
+    m.entry(x, i) = (i < m.n_u ? 1 : p_factor) * out[i];
+  petsc_check(VecRestoreArrayRead(m.out.get(), &out));
 }
 
 /// (16) with held unknowns: A x = r - A x_held for the others, x = x_held for these.
-void StaticsSystem::solve(const Vector &r_u, const Vector &r_p, Vector &du, Vector &dp, Vector &moved_u,
-                          Vector &moved_p) const
+void StaticsSystem::solve(const MixedVector &residual, MixedVector &step, MixedVector &moved) const
 {
   const Matrices &m = *matrices_;
   const double scale = m.pressure_scale;
-  Vector given_u = space_.displacement_vector(), given_p = space_.pressure_vector(), rhs_u = r_u, rhs_p = r_p;
-  const auto entry = [&](Vector &u, Vector &p, unsigned i) -> double & {
-    return i < m.n_u ? u.local_element(i) : p.local_element(i - m.n_u);
-  };
-  for (unsigned i : m.held) // residuals lose what the held increments alone make: A x_held
-    entry(given_u, given_p, i) = entry(du, dp, i);
-  load(given_u, 1, given_p, 1 / scale);
+  MixedVector given(space_), rhs = residual;
+  for (unsigned i : m.held) // the residual loses what the held increments alone make: A x_held
+    m.entry(given, i) = m.entry(step, i);
+  load(given, 1 / scale);
   petsc_check(MatMult(m.whole.get(), m.in.get(), m.out.get()));
-  unload(moved_u, 1, moved_p, 1 / scale);
-  rhs_u -= moved_u;
-  rhs_p -= moved_p;
+  unload(moved, 1 / scale);
+  rhs.u -= moved.u;
+  rhs.p -= moved.p;
   for (unsigned i : m.held) // their rows say: scale x = scale given
-    entry(rhs_u, rhs_p, i) = entry(given_u, given_p, i) * (i < m.n_u ? scale : 1 / scale);
-  load(rhs_u, 1, rhs_p, scale);
+    m.entry(rhs, i) = m.entry(given, i) * (i < m.n_u ? scale : 1 / scale);
+  load(rhs, scale);
   petsc_check(MatSolve(m.factor.get(), m.in.get(), m.out.get()));
-  unload(du, 1, dp, scale);
+  unload(step, scale);
 }
 } // namespace isostat
