@@ -37,11 +37,12 @@ void run_scene(const SceneOptions &options)
     }
   check_result_folder(request.folder, request.use);
   const BiaxialSummary summary = run_biaxial(request);
-  const std::string times =
-      fmt::format("  time                {}: packings {}, their tangents {}\n", duration_text(summary.wall_seconds),
-                  duration_text(summary.material_seconds), duration_text(summary.tangent_seconds));
-  write_json(request.folder / "summary.json", to_json(summary, request.scene));
-  leave_summary(request.folder, to_text(summary, request.scene), times, "biaxial", !options.no_figures);
+  const std::string times = fmt::format("  time                     {}: packings {}, their tangents {}\n",
+                                        duration_text(summary.wall_seconds), duration_text(summary.material_seconds),
+                                        duration_text(summary.tangent_seconds));
+  const Summary report = report_of(summary, request.scene);
+  write_json(request.folder / "summary.json", report.json());
+  leave_summary(request.folder, report.text(), times, "biaxial", !options.no_figures);
   if (!summary.complete)
     throw RunFailure(summary.failure);
 }

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 
@@ -316,67 +315,57 @@ private:
 
 BiaxialSummary run_biaxial(const BiaxialRequest &request) { return BiaxialRun(request).go(); }
 
-std::string to_text(const BiaxialSummary &s, const BiaxialScene &scene)
+namespace
 {
-  std::string text = scene.title + "\n";
-  text += fmt::format("  block               {} x {} m, {} x {} elements of degree {}, {} points, {}\n",
-                      scene.mesh.width, scene.mesh.height, scene.mesh.cells_across, scene.mesh.cells_up,
-                      scene.mesh.degree, s.points, material_names[static_cast<int>(scene.soil.material)]);
+void add_block(const BiaxialScene &scene, std::size_t n_points, Summary &summary)
+{
+  summary["confinement_Pa"] = scene.test.confinement;
+  summary.row("block", "{} x {} m, {} x {} elements of degree {}, {} points, {}", Value{"width_m", scene.mesh.width},
+              Value{"height_m", scene.mesh.height}, Value{"cells_across", scene.mesh.cells_across},
+              Value{"cells_up", scene.mesh.cells_up}, scene.mesh.degree, Value{"points", n_points},
+              material_names[static_cast<int>(scene.soil.material)]);
+  const std::string length = summary.text("{:.4g} m, against differences of strain {:.3g} of the wave moduli",
+                                          Value{"nonlocal_length_m", scene.nonlocal.length},
+                                          Value{"nonlocal_stiffness", scene.nonlocal.stiffness});
   if (scene.nonlocal.length > 0)
-    text += fmt::format("  length              {:.4g} m, against differences of strain {:.3g} of the wave moduli\n",
-                        scene.nonlocal.length, scene.nonlocal.stiffness);
-  text += fmt::format("  axial strain        {:.4g} % in {} steps{}\n", 100 * s.axial_strain, s.steps,
-                      s.complete ? "" : ", then it stopped");
-  text += fmt::format("  axial stress        {:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %\n",
-                      s.last_stress / 1e3, s.peak_stress / 1e3, 100 * s.peak_strain);
-  text += fmt::format("  volumetric strain   {:+.4g} % (compression positive)\n", 100 * s.volumetric_strain);
-  if (scene.water.undrained())
-    text += fmt::format("  pore pressure       {:.4g} kPa above that at the start, mean of the block at the end\n",
-                        s.pore_pressure / 1e3);
-  if (scene.water.undrained() && s.pore_pressure < -100e3)
-    text += "  warning             a suction of more than the atmosphere's pressure, unless the pore pressure at the "
-            "start was "
-            "higher: water cavitates then, here it does not\n";
-  text += fmt::format("  shear strain        90 % quantile {:.3g} times the median\n", s.localisation);
-  text += fmt::format("  at a point          strain up to {:.3g} %, rotation up to {:.3g} deg\n", 100 * s.max_strain,
-                      s.max_rotation * 180 / std::numbers::pi);
-  if (s.large_from)
-    text += "  warning             " + beyond_small(s) + "\n";
-  text += fmt::format("  equilibrium         {}: {} iterations, {} trials, {} sub-steps, {} rejected\n",
-                      method_of(scene.newton), s.iterations, s.trials, s.substeps, s.rejected);
-  if (!s.complete)
-    text += fmt::format("  stopped             {}\n", s.failure);
-  return text;
+    summary.row("length", "{}", length);
 }
+} // namespace
 
-Json to_json(const BiaxialSummary &s, const BiaxialScene &scene)
+Summary report_of(const BiaxialSummary &s, const BiaxialScene &scene)
 {
-  return {{"title", scene.title},
-          {"complete", s.complete},
-          {"failure", s.failure},
-          {"steps", s.steps},
-          {"points", s.points},
-          {"width_m", scene.mesh.width},
-          {"height_m", scene.mesh.height},
-          {"cells_across", scene.mesh.cells_across},
-          {"cells_up", scene.mesh.cells_up},
-          {"confinement_Pa", scene.test.confinement},
-          {"nonlocal_length_m", scene.nonlocal.length},
-          {"nonlocal_stiffness", scene.nonlocal.stiffness},
-          {"axial_strain", s.axial_strain},
-          {"peak_stress_Pa", s.peak_stress},
-          {"peak_strain", s.peak_strain},
-          {"last_stress_Pa", s.last_stress},
-          {"volumetric_strain", s.volumetric_strain},
-          {"pore_pressure_Pa", scene.water.undrained() ? Json(s.pore_pressure) : Json()},
-          {"localisation", s.localisation},
-          {"max_strain", s.max_strain},
-          {"max_rotation_deg", s.max_rotation * 180 / std::numbers::pi},
-          {"large_strain_from", s.large_from ? Json(*s.large_from) : Json()},
-          {"iterations", s.iterations},
-          {"trials", s.trials},
-          {"substeps", s.substeps},
-          {"rejected", s.rejected},
-          {"rve_steps", std::llround(s.rve_steps)}};
+  Summary summary(scene.title, "Block", "pore_pressure_Pa large_strain_from");
+  summary["complete"] = s.complete;
+  summary["failure"] = s.failure;
+  summary["rve_steps"] = std::llround(s.rve_steps);
+  add_block(scene, s.points, summary);
+  summary.row("axial strain", "{:.4g} % in {} steps{}", Value{"axial_strain", s.axial_strain, percent},
+              Value{"steps", s.steps}, s.complete ? "" : ", then it stopped");
+  summary.row("axial stress", "{:.4g} kPa at the end, largest {:.4g} kPa at {:.3g} %",
+              Value{"last_stress_Pa", s.last_stress, kPa}, Value{"peak_stress_Pa", s.peak_stress, kPa},
+              Value{"peak_strain", s.peak_strain, percent});
+  summary.row("volumetric strain", "{:+.4g} % (compression positive)",
+              Value{"volumetric_strain", s.volumetric_strain, percent});
+  if (scene.water.undrained())
+    summary.row("pore pressure", "{:.4g} kPa above that at the start, mean of the block at the end",
+                Value{"pore_pressure_Pa", s.pore_pressure, kPa});
+  if (scene.water.undrained() && s.pore_pressure < -100e3)
+    summary.row("warning", "a suction of more than the atmosphere's pressure, unless the pore pressure at the start "
+                           "was higher: water cavitates then, here it does not");
+  summary.row("shear strain", "90 % quantile {:.3g} times the median", Value{"localisation", s.localisation});
+  summary.row("at a point", "strain up to {:.3g} %, rotation up to {:.3g} deg",
+              Value{"max_strain", s.max_strain, percent},
+              Value{"max_rotation_deg", s.max_rotation * 180 / std::numbers::pi});
+  if (s.large_from)
+    {
+      summary["large_strain_from"] = *s.large_from;
+      summary.row("warning", "{}", beyond_small(s));
+    }
+  summary.row("equilibrium", "{}: {} iterations, {} trials, {} sub-steps, {} rejected", method_of(scene.newton),
+              Value{"iterations", s.iterations}, Value{"trials", s.trials}, Value{"substeps", s.substeps},
+              Value{"rejected", s.rejected});
+  if (!s.complete)
+    summary.row("stopped", "{}", s.failure);
+  return summary;
 }
 } // namespace isostat

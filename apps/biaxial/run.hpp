@@ -2,7 +2,7 @@
 #pragma once
 #include "apps/biaxial/scene.hpp"
 #include "apps/common/scene_program.hpp"
-#include "base/files/json.hpp"
+#include "apps/common/summary.hpp"
 
 #include <optional>
 
@@ -50,6 +50,5 @@ struct BiaxialSummary
 /// tested: tests/apps/biaxial_test.py, tests/apps/biaxial_resume_test.py
 BiaxialSummary run_biaxial(const BiaxialRequest &request);
 
-std::string to_text(const BiaxialSummary &summary, const BiaxialScene &scene);
-Json to_json(const BiaxialSummary &summary, const BiaxialScene &scene);
+Summary report_of(const BiaxialSummary &summary, const BiaxialScene &scene);
 } // namespace isostat

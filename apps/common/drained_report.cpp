@@ -2,16 +2,22 @@
 #include "apps/common/drained_report.hpp"
 
 #include "dem/drive/stages/cycles.hpp"
+#include "dem/measure/strength.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace isostat
 {
 namespace
 {
+struct DrainedStage
+{
+  std::size_t stage = 0; ///< of the scene
+  std::string cycle;     ///< which time it is, where stages are repeated (dem/drive/stages/cycles.hpp)
+  DrainedStrength strength;
+};
+
 bool is_drained(const Stage &stage)
 {
   const auto *path = as<Path>(stage);
@@ -28,8 +34,8 @@ bool unloads(const DrainedPath &path)
          amount(path.stress_ratio.back()) < amount(path.stress_ratio.front()) &&
          std::ranges::max(path.stress_ratio, {}, amount) == path.stress_ratio.front();
 }
-} // namespace
 
+/// Of one that is repeated the last time. Stages that unload have no strength.
 std::vector<DrainedStage> drained_stages(const RunHistory &run, const Scene &scene)
 {
   if (std::none_of(scene.stages.begin(), scene.stages.end(), is_drained))
@@ -73,46 +79,33 @@ std::vector<DrainedStage> drained_stages(const RunHistory &run, const Scene &sce
   return stages;
 }
 
-std::string to_text(const std::vector<DrainedStage> &stages)
+} // namespace
+
+void add_drained(const RunHistory &run, const Scene &scene, Summary &summary)
 {
-  std::string text;
-  for (const auto &[number, cycle, s] : stages)
+  const std::vector<DrainedStage> stages = drained_stages(run, scene);
+  for (std::size_t k = 0; k < stages.size(); ++k)
     {
+      const auto &[number, cycle, s] = stages[k];
+      const auto value = [&](const char *name, double amount, double unit = 1) {
+        return Value{fmt::format("drained.{}.{}", k, name), amount, unit};
+      };
       const std::string which =
           stages.size() > 1 || !cycle.empty() ? fmt::format(" (stage {}{})", number, cycle) : std::string();
-      const auto line = [&](const char *name, const std::string &value) {
-        text += fmt::format("\n  {:<25}{}{}", name, value, which);
-      };
       const bool rises = std::abs(s.end_ratio) > 0.99 * std::abs(s.peak_ratio);
-      line("peak friction", fmt::format("{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %{}", s.peak_friction,
-                                        s.peak_ratio, 100 * s.peak_strain, rises ? ", no peak yet: mobilised" : ""));
-      line("end friction", fmt::format("{:.2f} deg (q/p' {:.3f})", s.end_friction, s.end_ratio));
-      line("largest dilatancy", fmt::format("{}-d eps_v/d eps {:.3f} at a strain of {:.3f} %",
-                                            s.dilatancy ? fmt::format("{:.2f} deg, ", *s.dilatancy) : "",
-                                            s.dilatancy_rate, 100 * s.dilatancy_strain));
-      line("volumetric strain",
-           fmt::format("{:.3f} % at the end, {:.3f} % at most, at a strain of {:.3f} %", 100 * s.end_volumetric,
-                       100 * s.most_contracted, 100 * s.contracted_strain));
+      summary[fmt::format("drained.{}", k)] = {{"stage", number}, {"dilatancy_deg", nullptr}};
+      summary.row("peak friction", "{:.2f} deg (q/p' {:.3f}) at a strain of {:.3f} %{}{}",
+                  value("friction_peak_deg", s.peak_friction), value("q_over_p_peak", s.peak_ratio),
+                  value("strain_at_peak", s.peak_strain, percent), rises ? ", no peak yet: mobilised" : "", which);
+      summary.row("end friction", "{:.2f} deg (q/p' {:.3f}){}", value("friction_end_deg", s.end_friction),
+                  value("q_over_p_end", s.end_ratio), which);
+      summary.row("largest dilatancy", "{}-d eps_v/d eps {:.3f} at a strain of {:.3f} %{}",
+                  s.dilatancy ? summary.text("{:.2f} deg, ", value("dilatancy_deg", *s.dilatancy)) : "",
+                  value("dilatancy_rate", s.dilatancy_rate), value("strain_at_dilatancy", s.dilatancy_strain, percent),
+                  which);
+      summary.row("volumetric strain", "{:.3f} % at the end, {:.3f} % at most, at a strain of {:.3f} %{}",
+                  value("eps_v_end", s.end_volumetric, percent), value("eps_v_max", s.most_contracted, percent),
+                  value("strain_at_eps_v_max", s.contracted_strain, percent), which);
     }
-  return text;
-}
-
-Json to_json(const std::vector<DrainedStage> &stages)
-{
-  Json list = Json::array();
-  for (const auto &[number, cycle, s] : stages)
-    list.push_back({{"stage", number},
-                    {"q_over_p_peak", s.peak_ratio},
-                    {"q_over_p_end", s.end_ratio},
-                    {"friction_peak_deg", s.peak_friction},
-                    {"friction_end_deg", s.end_friction},
-                    {"strain_at_peak", s.peak_strain},
-                    {"dilatancy_deg", s.dilatancy ? Json(*s.dilatancy) : Json()},
-                    {"dilatancy_rate", s.dilatancy_rate},
-                    {"strain_at_dilatancy", s.dilatancy_strain},
-                    {"eps_v_end", s.end_volumetric},
-                    {"eps_v_max", s.most_contracted},
-                    {"strain_at_eps_v_max", s.contracted_strain}});
-  return list;
 }
 } // namespace isostat

@@ -111,7 +111,7 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   return run;
 }
 
-TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher)
+Summary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher)
 {
   const auto &[scene, folder, command_line, use, quiet, threads] = request;
   if (!run.folder)
@@ -142,10 +142,10 @@ TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver
   if (outcome == RunOutcome::interrupted)
     throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
 
-  TestSummary summary = summarise(RunHistory::read(folder, scene), scene, run.specimen, run.state, seconds);
-  summary.steps = static_cast<double>(run.assembly->step());
-  summary.last_steps = static_cast<double>(run.assembly->step() - first_step);
-  write_json(folder / "summary.json", to_json(summary));
+  const std::uint64_t steps = run.assembly->step();
+  const Summary summary =
+      summarise(RunHistory::read(folder, scene), scene, run.specimen, run.state, {steps, steps - first_step, seconds});
+  write_json(folder / "summary.json", summary.json());
   for (const std::string &line : stage_warnings(run.state, scene))
     warn(line);
   return summary;

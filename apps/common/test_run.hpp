@@ -34,5 +34,5 @@ TestRun resume_test(const Scene &scene, const std::filesystem::path &folder, con
 /// @pre check_result_folder()
 /// @throws RunFailure  with a line about the last checkpoint
 /// @throws Interrupted  stopped by a signal or the watcher; a checkpoint is there
-TestSummary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher = nullptr);
+Summary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *watcher = nullptr);
 } // namespace isostat

@@ -39,8 +39,8 @@ void run(const SceneOptions &options)
   const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
   TestRun test =
       request.use == FolderUse::resume ? resume_test(request.scene, request.folder, how) : fresh_run(request, how);
-  const TestSummary summary = run_test(request, test);
-  leave_summary(request.folder, to_text(summary, request.scene), "", "element_test", !options.no_figures);
+  const Summary summary = run_test(request, test);
+  leave_summary(request.folder, summary.text(), "", "element_test", !options.no_figures);
 }
 
 constexpr SceneProgram element_test{

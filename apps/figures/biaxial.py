@@ -3,14 +3,6 @@
 
     python3 -m figures biaxial RESULTS [--beside OTHER ...]
 
-fig_stress_strain.png   axial stress and volumetric strain (undrained: pore pressure) against axial strain, and the
-                        scatter of the shear strain
-fig_shear_maps.png      shear strain since the start over the block at several axial strains
-fig_rate_maps.png       shear strain between two of them: where the block deforms at the time
-fig_band.png            axial stress beside that of other runs (named by their folders), shear strain at the end, where
-                        it came last, void ratio
-fig_grain_maps.png      void ratio and redundancy index at the end, of packings
-
 Of fig_rate_maps the last map is asked for the inclination of a band: the direction of the smallest spread of the points
 with the largest shear strain, printed with their number; of fig_band.png its thickness and inclination in the middle
 half of the block's width. Compression is positive.
@@ -20,6 +12,16 @@ import numpy as np
 
 from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, cut_ends, plain, plt, read_history, read_summary
 from .drawing import Drawing
+
+CAPTIONS = {
+    "fig_stress_strain": "axial stress and volumetric strain (undrained: pore pressure) against axial strain, and "
+                         "the scatter of the shear strain",
+    "fig_shear_maps": "shear strain since the start over the block at several axial strains",
+    "fig_rate_maps": "shear strain between two of them: where the block deforms at the time",
+    "fig_band": "axial stress beside that of other runs (named by their folders), shear strain at the end, where it "
+                "came last, void ratio",
+    "fig_grain_maps": "void ratio and redundancy index at the end, of packings",
+}
 
 PANELS = 5
 
@@ -227,4 +229,4 @@ FIGURES = {
     "fig_grain_maps": grain_maps,
 }
 
-DRAWING = Drawing(Block, FIGURES)
+DRAWING = Drawing(Block, FIGURES, CAPTIONS)

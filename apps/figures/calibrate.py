@@ -2,11 +2,6 @@
 """Draws what `isostat calibrate` found.
 
     python3 -m figures calibrate RESULTS
-
-curves.png        each laboratory curve with the model's at the start and at the best set: q and volumetric strain over
-                  axial strain, of undrained tests the stress path; band: standard deviation over the seeds
-convergence.png   misfit of each trial, and the best so far
-tradeoffs.png     misfit over each parameter, and as colour over each pair of them
 """
 import csv
 
@@ -16,6 +11,13 @@ from matplotlib.ticker import MaxNLocator
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain, plain_log_ticks, plt
 from .drawing import Drawing
 from .files import read_parsed
+
+CAPTIONS = {
+    "curves": "each laboratory curve with the model's at the start and at the best set: q and volumetric strain over "
+              "axial strain, of undrained tests the stress path; band: standard deviation over the seeds",
+    "convergence": "misfit of each trial, and the best so far",
+    "tradeoffs": "misfit over each parameter, and as colour over each pair of them",
+}
 
 COLUMNS = 4  # curves side by side
 SHOWN = 3.0  # misfits beyond so many times the best have one colour
@@ -168,4 +170,4 @@ def tradeoffs(results):
     return figure
 
 
-DRAWING = Drawing(Calibration, {"curves": curves, "convergence": convergence, "tradeoffs": tradeoffs})
+DRAWING = Drawing(Calibration, {"curves": curves, "convergence": convergence, "tradeoffs": tradeoffs}, CAPTIONS)

@@ -3,15 +3,6 @@
 
     python3 -m figures column_ensemble RESULTS
 
-fig_ensemble_profiles.png    over the depth: largest r_u, shear strain and acceleration; black: median, shaded: 16 to
-                             84 % of the members, grey: each member
-fig_ensemble_redundancy.png  packings of grains: smallest and last redundancy index I_R over the depth, likewise
-fig_ensemble_spectra.png     response spectra of the surface, likewise (of two axes the larger)
-fig_ensemble_histories.png   acceleration and settlement of the surface, and largest r_u anywhere, likewise; of slopes
-                             and boxes also its displacement along x
-fig_ensemble_ru.png          r_u at each of the scene's depths, likewise
-fig_ensemble_numbers.png     numbers of each member (points), their mean with its standard error (bar), and the band
-
 A band holds 16 to 84 % of the members at each depth, period or time for itself; no single member need follow it. Of
 less than three members there is none. Members with the packings of an earlier one are left out.
 """
@@ -23,6 +14,17 @@ import numpy as np
 from .common import BLACK, BLUE, GREY, ORANGE, BadInput, panel_letter, plt, read_history
 from .drawing import Drawing
 from .files import read_parsed
+
+CAPTIONS = {
+    "fig_ensemble_profiles": "over the depth: largest r_u, shear strain and acceleration; black: median, shaded: 16 "
+                             "to 84 % of the members, grey: each member",
+    "fig_ensemble_redundancy": "packings of grains: smallest and last redundancy index I_R over the depth, likewise",
+    "fig_ensemble_spectra": "response spectra of the surface, likewise (of two axes the larger)",
+    "fig_ensemble_histories": "acceleration and settlement of the surface, and largest r_u anywhere, likewise; of "
+                              "slopes and boxes also its displacement along x",
+    "fig_ensemble_ru": "r_u at each of the scene's depths, likewise",
+    "fig_ensemble_numbers": "numbers of each member (points), their mean with its standard error (bar), and the band",
+}
 
 LABELS = {"max_ru": "largest $r_u$", "max_gamma": "largest shear strain (%)",
           "max_acceleration": "largest acceleration (m/s$^2$)", "min_I_R": "smallest $I_R$",
@@ -208,4 +210,4 @@ def numbers(ensemble):
 
 DRAWING = Drawing(Ensemble, {"fig_ensemble_profiles": profiles, "fig_ensemble_redundancy": redundancy,
                              "fig_ensemble_spectra": spectra, "fig_ensemble_histories": histories,
-                             "fig_ensemble_ru": pore_pressure, "fig_ensemble_numbers": numbers})
+                             "fig_ensemble_ru": pore_pressure, "fig_ensemble_numbers": numbers}, CAPTIONS)

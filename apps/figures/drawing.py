@@ -1,23 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a module says of a program's figures, and how they are drawn into a folder."""
 import dataclasses
-import re
 import textwrap
 import typing
 
 from .common import BadInput, plain, plt, use_style
 from .files import replacing
-
-# What may stand before a part of a caption, in the list of figures at the top of a module: the part is for these alone.
-KINDS = ("triaxial", "drained triaxial", "simple shear", "consolidation", "one elastic layer", "other soil",
-         "wet column", "sinking column", "box", "plate")
-PARTS = re.compile(rf"(?:^|; )(?:({'|'.join(KINDS)}): )?")
-
-
-def fitting(caption, kinds):
-    """The parts of a caption that fit: `triaxial: q against p'; simple shear: tau against p'` has two."""
-    _, *found = PARTS.split(caption)
-    return "; ".join(text for kind, text in zip(found[::2], found[1::2]) if kind is None or kind in kinds)
 
 
 @dataclasses.dataclass
@@ -26,14 +14,23 @@ class Drawing:
 
     read      folder -> results, with a `title` or None; raises BadInput, OSError, KeyError, ValueError on wrong files
     figures   {name: draw}, draw(results) -> figure, or None if there is nothing to draw
+    captions  {name: what it shows}, or {name: {kind of results: a part of it}} with "" for all kinds
     undrawn   called with name and results for each of these
-    kinds     results -> the KINDS they are of, whose parts of a caption fit them
+    kinds     results -> the kinds they are of
     """
 
     read: typing.Callable
     figures: dict
+    captions: dict
     undrawn: typing.Callable = lambda name, results: None
     kinds: typing.Callable = lambda results: set()
+
+    def caption(self, name, kinds):
+        """The parts of a figure's caption that fit results of these kinds, as a sentence."""
+        parts = self.captions[name]
+        if isinstance(parts, dict):
+            parts = "; ".join(text for kind, text in parts.items() if not kind or kind in kinds)
+        return f"{parts if parts[1] == '_' else parts[0].upper() + parts[1:]}."
 
     def results(self, folder, beside=()):
         """What is read from a results folder, with that of others beside it.   Raises BadInput"""

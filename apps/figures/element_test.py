@@ -3,17 +3,6 @@
 
     python3 -m figures element_test RESULTS
 
-fig_stress_path.png        triaxial: (a) q against p', (b) q against axial strain; drained triaxial: (c) volumetric
-                           strain against axial strain; simple shear: tau against (a) sigma'_v, (b) p', (c) gamma
-fig_dilatancy.png          drained triaxial: of the last drained stage (a) q/p' and (b) the rate of dilatancy
-                           D = -d eps_v/d eps against axial strain, (c) q/p' against D
-fig_redundancy.png         (a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts,
-                           (b) p'/p0', of a test without a shear stage p'
-fig_contact_fractions.png  (a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield
-fig_fabric.png             (a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]
-fig_principal_stress.png   simple shear: direction of the major principal stress against (a) cycles or gamma, (b)
-                           tau / sigma'_v
-
 Stresses and strains are positive in compression. Cyclic tests are drawn against the number of cycles: reversals count
 half a cycle each, the first one too, and between two the strain, which runs one way there, says how far it has come.
 Monotonic tests are drawn against axial strain, tests without a shear stage against the time step and without a stress
@@ -28,6 +17,19 @@ from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, ORANGE, Run, curves, draw_
 from .drawing import Drawing
 from .dilatancy import dilatancy
 from .simple_shear import rotation, shear_path
+
+CAPTIONS = {
+    "fig_stress_path": {"triaxial": "(a) q against p', (b) q against axial strain",
+                        "drained triaxial": "(c) volumetric strain against axial strain",
+                        "simple shear": "tau against (a) sigma'_v, (b) p', (c) gamma"},
+    "fig_dilatancy": "of the last drained stage (a) q/p' and (b) the rate of dilatancy D = -d eps_v/d eps against "
+                     "axial strain, (c) q/p' against D",
+    "fig_redundancy": "(a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts, "
+                      "(b) p'/p0', of a test without a shear stage p'",
+    "fig_contact_fractions": "(a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield",
+    "fig_fabric": "(a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]",
+    "fig_principal_stress": "direction of the major principal stress against (a) cycles or gamma, (b) tau / sigma'_v",
+}
 
 FULL = 6  # constraints of a contact as Eq. (2) counts them
 NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
@@ -162,10 +164,10 @@ def undrawn(name, run):
 
 
 def kinds(run):
-    """The words before captions that fit the test."""
+    """Whose parts of captions fit the test."""
     if run.shear:
         return {"simple shear"}
     return {"triaxial", "drained triaxial"} if run.drained else {"triaxial"}
 
 
-DRAWING = Drawing(Run, FIGURES, undrawn, kinds)
+DRAWING = Drawing(Run, FIGURES, CAPTIONS, undrawn, kinds)

@@ -3,10 +3,6 @@
 
     python3 -m figures micromechanics RESULTS
 
-fig_force_distribution.png  probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot
-fig_roses.png               contact normals in the x-y plane and about y: number (bars) and mean force (line)
-fig_anisotropies.png        a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain
-
 Onset is the first snapshot with p'/p0' < 0.01; without one, that of the smallest p' stands in for it,
 if it is neither the first nor the last.
 """
@@ -19,6 +15,12 @@ from matplotlib.ticker import MaxNLocator
 from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plain, plt
 from .drawing import Drawing
 from .files import read_parsed
+
+CAPTIONS = {
+    "fig_force_distribution": "probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot",
+    "fig_roses": "contact normals in the x-y plane and about y: number (bars) and mean force (line)",
+    "fig_anisotropies": "a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain",
+}
 
 COLOURS = {"first": BLUE, "onset": RED, "smallest p'": RED, "last": ORANGE}
 
@@ -149,4 +151,4 @@ def anisotropies(analysis):
 
 FIGURES = {"fig_force_distribution": force_distribution, "fig_roses": roses, "fig_anisotropies": anisotropies}
 
-DRAWING = Drawing(Analysis, FIGURES)
+DRAWING = Drawing(Analysis, FIGURES, CAPTIONS)

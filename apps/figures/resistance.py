@@ -2,9 +2,6 @@
 """Draws the liquefaction resistance that `isostat resistance` found.
 
     python3 -m figures resistance RESULTS
-
-resistance.png   cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that
-                 did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles
 """
 import csv
 
@@ -14,6 +11,11 @@ from matplotlib.transforms import ScaledTranslation
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, plt
 from .drawing import Drawing
 from .files import read_parsed
+
+CAPTIONS = {
+    "resistance": "cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those "
+                  "that did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles",
+}
 
 MIN_CYCLES = 0.25  # liquefaction before the first reversal
 REFERENCE = 15  # cycles that stand for an earthquake of magnitude 7.5
@@ -104,4 +106,4 @@ class Campaign:
             raise BadInput("no run has ended; nothing to draw")
 
 
-DRAWING = Drawing(Campaign, {"resistance": resistance})
+DRAWING = Drawing(Campaign, {"resistance": resistance}, CAPTIONS)

@@ -2,14 +2,16 @@
 """Draws the figures of a run of rve_replay from its history.csv and grain_history.
 
     python3 -m figures rve_replay RESULTS
-
-fig_path.png     stress path, stress against strain and effective pressure over time, in the column and alone
-fig_grains.png   redundancy index and coordination number over time, below the pressure
 """
 import numpy as np
 
 from .common import BLACK, BLUE, ORANGE, RED, index_label, panel_letter, plt, read_history, read_summary
 from .drawing import Drawing
+
+CAPTIONS = {
+    "fig_path": "stress path, stress against strain and effective pressure over time, in the column and alone",
+    "fig_grains": "redundancy index and coordination number over time, below the pressure",
+}
 
 
 class Replay:
@@ -65,4 +67,4 @@ def grains(run):
 
 
 FIGURES = {"fig_path": path, "fig_grains": grains}
-DRAWING = Drawing(Replay, FIGURES)
+DRAWING = Drawing(Replay, FIGURES, CAPTIONS)

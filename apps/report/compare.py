@@ -6,7 +6,7 @@ from figures.common import BadInput, plt, use_style
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
-from .quantities import converted, is_number, named
+from .quantities import converted, is_number, named, shown
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
@@ -21,12 +21,6 @@ def flat(value, name=""):
     else:
         return {name: value}
     return {key: entry for part, item in items for key, entry in flat(item, f"{name}.{part}" if name else part).items()}
-
-
-def shown(value):
-    if value is None:
-        return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def change(first, second):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
-import re
-
 import numpy as np
 
 from figures.common import LIQUEFIED
@@ -120,44 +118,39 @@ def liquefaction(results, run):
                                  f"{np.nanmin(run.p_ratio):.3f}."), "plain"
 
 
-def said(results, name):
-    """What a line of the summary says, or nothing."""
-    found = re.search(rf"^  {name}\s+(\S.*?)\s*$", results.summary, re.M)
-    return found[1] if found else ""
-
-
 def how_driven(scene, summary):
     """Whether the rate of the stages that shear was left to the control, or fixed; None if there is no such stage.
-    @param summary  what the summary says of the rate: inertial numbers, and the bound on the load where there is one"""
+    @param summary  its text on the rate, which those of older runs do not have"""
     common = scene.get("motion", {}).get("strain_rate")
     rates = [stage.get("strain_rate", common) for stage in scene.get("stage", [])
              if "strain" in stage or "until" in stage]
     fixed = sorted(set(rates) - {None})
     if fixed:
-        which = f"in some stages; in the others controlled: {summary}" if None in rates else "not controlled"
+        which = "not controlled" if None not in rates else "in some stages; in the others controlled"
+        which += f": {summary}" if summary and None in rates else ""
         return f"fixed at {', '.join(fixed)}, {which}.", "plain"
     return (f"controlled, {summary}." if summary else "controlled.", "good") if rates else None
 
 
 def rate(results):
     """How the stages that shear were driven, and how far from equilibrium that has brought the packing."""
-    summary, largest = said(results, "strain rate"), said(results, "largest indicator")
-    if results.scene.get("motion", {}).get("drive") == "static":
+    summary, eta = results.numbers.get("strain_rate"), results.numbers.get("max_indicator")
+    if summary and results.scene.get("motion", {}).get("drive") == "static":
         yield "Rate:", f"{summary}.", "good"
         return
     driven = how_driven(results.scene, summary)
     if not driven:
         return
     text, kind = driven
-    if not largest:
+    if eta is None:
         yield "Rate:", text, "plain"
         return
-    eta, fast = float(largest.split()[0]), []
-    if any(float(number) > FAST_INERTIA for number in re.findall(r"\bI = ([\d.e+-]+)", summary)):
+    fast = []
+    if (results.numbers.get("inertial_number") or 0) > FAST_INERTIA:
         fast.append(f"I is above {FAST_INERTIA:g}")
     if eta > FAST_INDICATOR:
         fast.append(f"the indicator is above {FAST_INDICATOR:g}")
-    text += f" The largest quasi-static indicator before liquefaction is {eta:g}"
+    text += f" The largest quasi-static indicator before liquefaction is {eta:.4f}"
     if fast:
         yield "Rate:", text + (f"; {' and '.join(fast)}, so the test counts as fast. Compare it with one at a tenth of "
                                "the rate."), "attention"

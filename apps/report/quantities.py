@@ -12,6 +12,7 @@ SHOWN = {
         "preparation_friction_deg": "deg", "p0": "kPa", "p_end": "kPa", "IR_at_start": "-", "IR_at_end": "-",
         "steps": "-", "steps_since_resumed": "-", "seconds": "-",
         "shear_stage_first_row": "-", "reversals": "-", "worst_overshoot": "kPa", "energy_residual": "-",
+        "inertial_number": "-", "max_indicator": "-",
         "cyclic_response.load_min": "kPa", "cyclic_response.load_max": "kPa",
         "cyclic_response.strain_min": "%", "cyclic_response.strain_max": "%",
         "gamma_max": "%", "tau_max": "kPa", "sigma_v0": "kPa", "stress_ratio_max": "-", "CSR": "-",
@@ -64,3 +65,9 @@ def converted(program, name, value):
     """A value of a summary in the unit that it is shown in; what is no number as it is."""
     factor = FACTORS.get(SHOWN.get(program, {}).get(name, "-"), 1)
     return value / factor if is_number(value) and factor != 1 else value
+
+
+def shown(value):
+    if value is None:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

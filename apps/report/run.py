@@ -5,24 +5,14 @@ import json
 import re
 
 from figures.common import BadInput, note
-from figures.drawing import fitting
 
 from . import citation, html, verdicts
 from .folder import IN_PYTHON, NoResults, Results
-from .quantities import converted, named
+from .quantities import converted, named, shown
 
 REPORT = "report.html"
 KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command goes on with what is missing
 RESUMED = ("element_test", "soil_column")  # --resume goes on from a checkpoint
-FIGURE_LINE = re.compile(r"^(\w+)\.png\s+(\S.*(?:\n[ ]{8,}\S.*)*)", re.M)
-
-
-def captions(module, kinds):
-    """{figure: what it shows}, from the list of figures at the top of the module that draws them: the parts that fit
-    results of these kinds."""
-    texts = {name: fitting(" ".join(text.split()), kinds) for name, text in FIGURE_LINE.findall(module.__doc__ or "")}
-    return {name: (text if text[1:2] == "_" else text[0].upper() + text[1:]) + "."
-            for name, text in texts.items() if text}
 
 
 def title_of(name):
@@ -31,28 +21,16 @@ def title_of(name):
     return re.sub(r"\bru\b", "r_u", words[0].upper() + words[1:], flags=re.I)
 
 
-def name_and_value(line, column):
-    """Of a line `  name   value`, whose value begins at this column if a long name leaves one space only; or None."""
-    match = re.fullmatch(r"  (\S.*?)\s{2,}(\S.*)", line)
-    if match:
-        return match.groups()
-    is_long = re.fullmatch(r"  \S.*", line) and column < len(line) and line[column - 1] == " " != line[column]
-    return (line[2:column].strip(), line[column:]) if is_long else None
-
-
 def summary_parts(results):
-    """Lines `  name   value` as a table; a text that has others, such as tables, as it is. Without a text the
-    numbers."""
-    lines = results.summary.strip("\n").splitlines()
-    if not lines:
-        numbers = {named(results.program, key): converted(results.program, key, value)
-                   for key, value in (results.numbers or {}).items() if not isinstance(value, (dict, list))}
-        return [html.properties((key, f"{value:.6g}" if isinstance(value, float) else value)
-                                for key, value in numbers.items())]
-    starts = [match.end() for match in (re.match(r"  \S.*?\s{2,}(?=\S)", line) for line in lines[1:]) if match]
-    column = max(set(starts), key=starts.count, default=0)
-    pairs = [name_and_value(line, column) for line in lines[1:]]
-    return [html.properties(pairs)] if pairs and all(pairs) else [html.text_block("\n".join(lines), "summary")]
+    """The rows of the summary. Where its file has none, as those of campaigns and of older runs, its text as it is;
+    without a text the numbers."""
+    numbers = results.numbers or {}
+    if "rows" in numbers:
+        return [html.properties(numbers["rows"])]
+    if results.summary.strip():
+        return [html.text_block(results.summary, "summary")]
+    return [html.properties((named(results.program, key), shown(converted(results.program, key, value)))
+                            for key, value in numbers.items() if not isinstance(value, (dict, list)))]
 
 
 def calls(results):
@@ -91,15 +69,14 @@ def resume_parts(results):
 class Page:
     """Collects the figures of a run while they are drawn, and writes them with the rest."""
 
-    def __init__(self, results, module):
-        self.results, self.module = results, module
+    def __init__(self, results, drawing):
+        self.results, self.drawing = results, drawing
         self.figures = []
 
     def add(self, name, figure, drawn):
         """@param drawn  what the figure is drawn from"""
-        title = title_of(name)
-        caption = captions(self.module, self.module.DRAWING.kinds(drawn)).get(name, title)
-        self.figures.append(html.figure(name, title, caption, figure))
+        caption = self.drawing.caption(name, self.drawing.kinds(drawn))
+        self.figures.append(html.figure(name, title_of(name), caption, figure))
 
     def text(self, drawn, reason):
         """The page.   @param drawn  what the figures are drawn from, or None   @param reason  why there are none"""
@@ -124,10 +101,10 @@ class Page:
 def leave(folder, program):
     """Draws the figures of a results folder and leaves its report. Returns the exit code: 2 if it cannot be drawn, 3 if
     the figures are there and the report is not."""
-    module = importlib.import_module(f"figures.{program}")
+    drawing = importlib.import_module(f"figures.{program}").DRAWING
     page, drawn, reason, failure = None, None, "", None
     try:
-        page = Page(Results(folder, program), module)
+        page = Page(Results(folder, program), drawing)
     except NoResults as error:
         failure = error
 
@@ -140,8 +117,8 @@ def leave(folder, program):
             failure = error
 
     try:
-        drawn = module.DRAWING.results(folder)
-        module.DRAWING.draw(drawn, folder / "figures", each)
+        drawn = drawing.results(folder)
+        drawing.draw(drawn, folder / "figures", each)
     except (BadInput, OSError) as error:
         note(error)
         reason = str(error)

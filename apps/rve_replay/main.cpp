@@ -12,6 +12,7 @@
 #include "apps/common/command_line.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/result_folder.hpp"
+#include "apps/common/summary.hpp"
 #include "base/error.hpp"
 #include "base/files/json.hpp"
 #include "base/record/progress.hpp"
@@ -21,7 +22,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -166,40 +166,35 @@ ReplayResult replay(const StrainRecord &record, const ElementSettings &settings,
   return result;
 }
 
-std::string to_text(const ReplayResult &r, const StrainRecord &record, const Options &options)
+Summary report_of(const ReplayResult &r, const StrainRecord &record, const Options &options)
 {
-  std::string text = fmt::format("packing at {:.4g} m, {} increments, {} time steps\n"
-                                 "  largest shear strain     {:.4g} %\n  smallest p'              {:.4g} kPa\n",
-                                 record.depth, r.increments, r.steps, 100 * r.largest_strain, r.min_pressure / 1e3);
+  Summary summary(fmt::format("packing at {:.4g} m, {} increments, {} time steps", record.depth, r.increments, r.steps),
+                  "", "min_redundancy");
+  summary["depth"] = record.depth;
+  summary["increments"] = r.increments;
+  summary["steps"] = r.steps;
+  summary["equal"] = r.equal;
+  summary.row("largest shear strain", "{:.4g} %", Value{"largest_strain", r.largest_strain, percent});
+  summary.row("smallest p'", "{:.4g} kPa", Value{"min_pressure", r.min_pressure, kPa});
   if (r.min_redundancy)
-    text +=
-        fmt::format("  smallest I_R             {:.4g} of rows; {}\n", *r.min_redundancy, index_name(r.constraints));
-  if (r.equal == r.increments)
-    return text + fmt::format("  stress                   that of the column to the bit after all {} increments\n",
-                              r.increments);
-  text += fmt::format("  stress                   that of the column to the bit after {} of {} increments\n"
-                      "  rms difference           {:.3g} % of tau, {:.3g} % of the change of p'\n"
-                      "  largest difference       {:.3g} % of p0', after increment {}\n",
-                      r.equal, r.increments, 100 * r.shear_error, 100 * r.pressure_error, 100 * r.largest_error,
-                      r.largest_at);
+    summary.row("smallest I_R", "{:.4g} of rows; {}", Value{"min_redundancy", *r.min_redundancy},
+                index_name(r.constraints));
+  const bool same = r.equal == r.increments;
+  summary.row("stress", "that of the column to the bit after {} increments",
+              same ? fmt::format("all {}", r.equal) : fmt::format("{} of {}", r.equal, r.increments));
+  const std::string rms =
+      summary.text("{:.3g} % of tau, {:.3g} % of the change of p'", Value{"shear_error", r.shear_error, percent},
+                   Value{"pressure_error", r.pressure_error, percent});
+  const std::string largest = summary.text("{:.3g} % of p0', after increment {}",
+                                           Value{"largest_error", r.largest_error, percent}, r.largest_at);
+  if (same)
+    return summary;
+  summary.row("rms difference", "{}", rms);
+  summary.row("largest difference", "{}", largest);
   if (options.change_nothing())
-    text +=
-        "  Nothing was changed: these files are of another program version, or of a machine with other arithmetic.\n";
-  return text;
-}
-
-Json to_json(const ReplayResult &r, const StrainRecord &record)
-{
-  return {{"depth", record.depth},
-          {"increments", r.increments},
-          {"equal", r.equal},
-          {"steps", r.steps},
-          {"shear_error", r.shear_error},
-          {"pressure_error", r.pressure_error},
-          {"largest_error", r.largest_error},
-          {"largest_strain", r.largest_strain},
-          {"min_pressure", r.min_pressure},
-          {"min_redundancy", r.min_redundancy ? Json(*r.min_redundancy) : Json()}};
+    summary.row("", "Nothing was changed: these files are of another program version, or of a machine with other "
+                    "arithmetic.");
+  return summary;
 }
 
 std::string scene_text(const Options &options, const RveSettings &settings)
@@ -224,10 +219,10 @@ void run(const Options &options)
   write_provenance(folder, scene_text(options, settings.rve), options.command_line, {});
   const Stopwatch watch;
   const ReplayResult result = replay(record, settings, folder, options);
-  write_json(folder / "summary.json", to_json(result, record));
-  leave_summary(folder, to_text(result, record, options),
-                fmt::format("  wall time                {:.2f} s\n", watch.seconds()), "rve_replay",
-                !options.no_figures);
+  const Summary report = report_of(result, record, options);
+  write_json(folder / "summary.json", report.json());
+  leave_summary(folder, report.text(), fmt::format("  wall time                {:.2f} s\n", watch.seconds()),
+                "rve_replay", !options.no_figures);
 }
 } // namespace
 

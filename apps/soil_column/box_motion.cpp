@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/box_motion.hpp"
 
+#include "apps/common/summary.hpp"
 #include "apps/soil_column/peaks.hpp"
 
 #include <cmath>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 namespace isostat
@@ -55,19 +54,14 @@ BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement
   return motion;
 }
 
-std::string to_text(const BoxMotion &m, const MeshSpec &mesh)
+void add_box_motion(const BoxMotion &m, const MeshSpec &mesh, Summary &summary)
 {
-  return fmt::format("  settled                  {:.3g} mm at most, before it moved\n"
-                     "  surface moved            {:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m\n"
-                     "  surface sank             {:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m\n",
-                     1e3 * m.settled, m.on_line, mesh.line[0], m.largest, m.largest_x, m.deepest, m.deepest_x,
-                     m.highest, m.highest_x);
-}
-
-Json to_json(const BoxMotion &m, const MeshSpec &mesh)
-{
-  return {{"settled", m.settled},        {"x", mesh.line[0]},        {"along_x", m.on_line},
-          {"largest", m.largest},        {"largest_x", m.largest_x}, {"settlement", m.deepest},
-          {"settlement_x", m.deepest_x}, {"heave", m.highest},       {"heave_x", m.highest_x}};
+  summary.row("settled", "{:.3g} mm at most, before it moved", Value{"surface_motion.settled", m.settled, mm});
+  summary.row("surface moved", "{:+.4f} m along x at x = {:.4g} m, most {:+.4f} m at {:.4g} m",
+              Value{"surface_motion.along_x", m.on_line}, Value{"surface_motion.x", mesh.line[0]},
+              Value{"surface_motion.largest", m.largest}, Value{"surface_motion.largest_x", m.largest_x});
+  summary.row("surface sank", "{:.4f} m at x = {:.4g} m, rose {:.4f} m at {:.4g} m",
+              Value{"surface_motion.settlement", m.deepest}, Value{"surface_motion.settlement_x", m.deepest_x},
+              Value{"surface_motion.heave", m.highest}, Value{"surface_motion.heave_x", m.highest_x});
 }
 } // namespace isostat

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "base/files/json.hpp"
 #include "fem/space/discretisation.hpp"
 
 namespace isostat
 {
+class Summary;
+
 /// How the surface of a box has moved against the box.
 struct BoxMotion
 {
@@ -18,6 +19,5 @@ struct BoxMotion
 /// @param displacement  since the start   Collective.   tested: tests/apps/box_test.py
 BoxMotion box_motion(const FiniteElementSpace &space, const Vector &displacement);
 
-std::string to_text(const BoxMotion &motion, const MeshSpec &mesh);
-Json to_json(const BoxMotion &motion, const MeshSpec &mesh);
+void add_box_motion(const BoxMotion &motion, const MeshSpec &mesh, Summary &summary);
 } // namespace isostat

@@ -12,6 +12,7 @@
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
 //   isostat ensemble apps/scenes/column/quick_ensemble.toml -n 8 -j 2            as often with other packings: bands
+#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
@@ -39,7 +40,7 @@ void run_scene(const SceneOptions &options)
     }
   const RunResult result = run_column(request);
   if (ranks().first())
-    leave_summary(request.folder, to_text(result.summary, request.scene), to_text(result.times), "soil_column",
+    leave_summary(request.folder, report_of(result.summary, request.scene).text(), to_text(result.times), "soil_column",
                   !options.no_figures);
 }
 

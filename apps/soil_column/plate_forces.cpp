@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/plate_forces.hpp"
 
-#include <fmt/format.h>
+#include "apps/common/summary.hpp"
+
 #include <limits>
-#include <nlohmann/json.hpp>
 
 namespace isostat
 {
@@ -19,22 +19,17 @@ void PlateResult::follow(double displacement, double force, double step_residual
   residual = std::max(residual, step_residual);
 }
 
-std::string to_text(const PlateResult &p, const Plate &plate)
+void add_plate(const PlateResult &p, const Plate &plate, Summary &summary)
 {
-  return fmt::format(
-      "  plate                    {:.4g} m long, {}, moved {:+.4g} m in {} steps\n"
-      "  force against it         {:.4g} kN/m in situ, largest {:.4g} kN/m at {:+.4g} m, smallest {:.4g} "
-      "kN/m at {:+.4g} m, {:.4g} kN/m at the end\n"
-      "  equilibrium              residual at most {:.1e} of the force scale\n",
-      p.length, plate.rough ? "rough" : "smooth", plate.displacement, plate.steps, p.start / 1e3, p.largest / 1e3,
-      p.largest_at, p.smallest / 1e3, p.smallest_at, p.last / 1e3, p.residual);
-}
-
-Json to_json(const PlateResult &p)
-{
-  return {{"length", p.length},         {"force_in_situ", p.start},      {"largest_force", p.largest},
-          {"largest_at", p.largest_at}, {"smallest_force", p.smallest},  {"smallest_at", p.smallest_at},
-          {"force_at_the_end", p.last}, {"largest_residual", p.residual}};
+  summary.row("plate", "{:.4g} m long, {}, moved {:+.4g} m in {} steps", Value{"plate.length", p.length},
+              plate.rough ? "rough" : "smooth", plate.displacement, plate.steps);
+  summary.row("force against it",
+              "{:.4g} kN/m in situ, largest {:.4g} kN/m at {:+.4g} m, smallest {:.4g} kN/m at {:+.4g} m, "
+              "{:.4g} kN/m at the end",
+              Value{"plate.force_in_situ", p.start, kN}, Value{"plate.largest_force", p.largest, kN},
+              Value{"plate.largest_at", p.largest_at}, Value{"plate.smallest_force", p.smallest, kN},
+              Value{"plate.smallest_at", p.smallest_at}, Value{"plate.force_at_the_end", p.last, kN});
+  summary.row("equilibrium", "residual at most {:.1e} of the force scale", Value{"plate.largest_residual", p.residual});
 }
 
 double largest_weight(const ColumnScene &scene)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/deposit/scene.hpp"
-#include "base/files/json.hpp"
 #include "fem/solve/statics.hpp"
 
 namespace isostat
 {
+class Summary;
+
 /// What a plate met.
 struct PlateResult
 {
@@ -27,8 +28,7 @@ struct PlateResult
   }
 };
 
-std::string to_text(const PlateResult &result, const Plate &plate);
-Json to_json(const PlateResult &result);
+void add_plate(const PlateResult &result, const Plate &plate, Summary &summary);
 
 /// Weight of a box of soil that is as high everywhere as where it is highest, N/m.
 double largest_weight(const ColumnScene &scene);

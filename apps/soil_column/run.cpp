@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/run.hpp"
 
+#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "base/error.hpp"
@@ -61,7 +62,7 @@ RunResult run_column(const ColumnRequest &request)
   if (ranks().first())
     {
       write_json(request.folder / "times.json", to_json(result.times));
-      write_json(request.folder / "summary.json", to_json(result.summary, request.scene));
+      write_json(request.folder / "summary.json", report_of(result.summary, request.scene).json());
     }
   return result;
 }

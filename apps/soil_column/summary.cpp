@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/summary.hpp"
 
+#include "apps/common/summary.hpp"
 #include "dem/measure/redundancy.hpp"
 
 #include <algorithm>
@@ -27,72 +28,21 @@ const char *of_both_axes(const ColumnScene &scene)
   return std::ranges::count_if(scene.motions, horizontal) > 1 ? ", x and y as a vector" : "";
 }
 
-/// The largest of the values at the nodes, and its depth.
-struct Largest
-{
-  double value = 0, depth = 0;
-};
-
-/// None of a box, whose nodes are those of one vertical, and of what does not shake.
-std::optional<Largest> largest(const ColumnSummary &s, const ColumnScene &scene, const std::vector<double> &of_nodes)
-{
-  if (!shaken(scene) || s.box_motion || s.node_depths.empty())
-    return std::nullopt;
-  const auto at = std::ranges::max_element(of_nodes);
-  return Largest{*at, s.node_depths[static_cast<std::size_t>(at - of_nodes.begin())]};
-}
-
-std::string largest_text(const ColumnSummary &s, const ColumnScene &scene)
-{
-  std::string text;
-  for (const auto &[name, unit, of_nodes] : {std::tuple("peak velocity", "m/s", &s.peaks.line_velocity),
-                                             {"peak displacement", "m", &s.peaks.line_displacement}})
-    if (const auto found = largest(s, scene, *of_nodes))
-      text += fmt::format("  {:<25}{:.4g} {}{} at a depth of {:.2f} m\n", name, found->value, unit,
-                          scene.base.compliant() ? "" : " against the base", found->depth);
-  return text;
-}
-
-void add_largest(const ColumnSummary &s, const ColumnScene &scene, Json &json)
-{
-  for (const auto &[name, of_nodes] :
-       {std::pair("peak_velocity", &s.peaks.line_velocity), std::pair("peak_displacement", &s.peaks.line_displacement)})
-    {
-      const auto found = largest(s, scene, *of_nodes);
-      json[name] = found ? Json(found->value) : Json();
-      json[fmt::format("{}_depth", name)] = found ? Json(found->depth) : Json();
-    }
-}
-
-double amplification(const ColumnPeaks &peaks) { return peaks.input > 0 ? peaks.surface / peaks.input : 0; }
-
-/// Energy that came from nowhere, of the largest that any row has.
-double relative_residual(const ColumnState &last)
-{
-  return last.max_energy > 0 ? std::abs(last.residual) / last.max_energy : 0;
-}
-
 double degrees(const Slope &slope) { return std::atan(slope.tangent) * 180 / std::numbers::pi; }
 
-std::string slope_text(const Spreading &s, const ColumnScene &scene)
+void add_slope(const Spreading &s, const ColumnScene &scene, Summary &summary)
 {
-  std::string text = fmt::format("  slope                    {:.4g} deg", degrees(scene.slope));
-  if (s.safety)
-    text +=
-        fmt::format(", factor of safety at the start {:.3f} at a depth of {:.2f} m", s.safety->factor, s.safety->depth);
-  return text + fmt::format("\n  moved downslope          {:.4f} m at the surface; at the end the largest shear strain "
-                            "is {:.3f} % at a depth of {:.2f} m\n",
-                            s.displacement, 100 * s.gamma, s.gamma_depth);
-}
-
-void add_slope(const Spreading &s, const ColumnScene &scene, Json &json)
-{
-  json["slope"] = degrees(scene.slope);
-  json["factor_of_safety"] = s.safety ? Json(s.safety->factor) : Json();
-  json["factor_of_safety_depth"] = s.safety ? Json(s.safety->depth) : Json();
-  json["downslope"] = s.displacement;
-  json["end_gamma"] = s.gamma;
-  json["end_gamma_depth"] = s.gamma_depth;
+  for (const char *key : {"factor_of_safety", "factor_of_safety_depth"})
+    summary[key] = nullptr;
+  summary.row("slope", "{:.4g} deg{}", Value{"slope", degrees(scene.slope)},
+              s.safety ? summary.text(", factor of safety at the start {:.3f} at a depth of {:.2f} m",
+                                      Value{"factor_of_safety", s.safety->factor},
+                                      Value{"factor_of_safety_depth", s.safety->depth})
+                       : "");
+  summary.row("moved downslope",
+              "{:.4f} m at the surface; at the end the largest shear strain is {:.3f} % at a depth of {:.2f} m",
+              Value{"downslope", s.displacement}, Value{"end_gamma", s.gamma, percent},
+              Value{"end_gamma_depth", s.gamma_depth});
 }
 
 /// From the surface down.
@@ -112,99 +62,159 @@ Json layers_json(const ColumnScene &scene)
     }
   return layers;
 }
-Json expansions_json(const std::vector<CapExpansion> &caps)
+
+void add_expansions(const std::vector<CapExpansion> &caps, Summary &summary)
 {
-  Json json = Json::array();
+  summary["expansions"] = Json::array();
   for (const CapExpansion &cap : caps)
-    json.push_back({{"below", cap.layer},
-                    {"depth", cap.depth},
-                    {"largest", cap.largest},
-                    {"largest_time", cap.largest_time},
-                    {"end", cap.last}});
-  return json;
+    {
+      summary.row("net expansion", "{:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end",
+                  1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
+      summary["expansions"].push_back({{"below", cap.layer},
+                                       {"depth", cap.depth},
+                                       {"largest", cap.largest},
+                                       {"largest_time", cap.largest_time},
+                                       {"end", cap.last}});
+    }
 }
 
-std::string grains_text(const GrainsSummary &g)
+void add_grains(const GrainsSummary &g, Summary &summary)
 {
-  std::string text =
-      fmt::format("  packings                 {}, V_s {:.0f} to {:.0f} m/s\n", g.packings, g.slowest, g.fastest);
-  if (g.has_profiles)
-    text +=
-        fmt::format("  smallest I_R             {:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}\n", g.min_redundancy,
-                    g.min_redundancy_depth, g.min_redundancy_time, index_name(static_cast<int>(g.constraints)));
-  return text;
-}
-
-void add_grains(const GrainsSummary &g, Json &json)
-{
-  json["packings"] = g.packings;
   if (!g.seeds.empty())
-    json["seeds"] = g.seeds;
-  json["shear_velocities"] = {g.slowest, g.fastest};
+    summary["seeds"] = g.seeds;
+  summary["shear_velocities"] = {g.slowest, g.fastest};
+  summary.row("packings", "{}, V_s {:.0f} to {:.0f} m/s", Value{"packings", g.packings}, g.slowest, g.fastest);
   if (!g.has_profiles)
     return;
-  json["min_redundancy"] = g.min_redundancy;
-  json["min_redundancy_depth"] = g.min_redundancy_depth;
-  json["min_redundancy_time"] = g.min_redundancy_time;
-  json["min_redundancy_constraints"] = g.constraints;
+  summary["min_redundancy_constraints"] = g.constraints;
+  summary.row("smallest I_R", "{:.3f} at a depth of {:.2f} m, t = {:.5g} s; {}",
+              Value{"min_redundancy", g.min_redundancy}, Value{"min_redundancy_depth", g.min_redundancy_depth},
+              Value{"min_redundancy_time", g.min_redundancy_time}, index_name(static_cast<int>(g.constraints)));
+}
+
+/// What needs no row, and the first rows.
+void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
+{
+  summary["analysis"] = analysis_names[static_cast<int>(scene.analysis.kind)];
+  summary["base"] = scene.base.compliant() ? "compliant" : "rigid";
+  summary["layers"] = layers_json(scene);
+  summary["mass_damping"] = scene.analysis.mass_damping;
+  summary["spectrum_damping"] = scene.output.spectrum_damping;
+  summary["requested_depths"] = scene.output.depths;
+  if (shaken(scene))
+    {
+      summary["viscosity"] = scene.analysis.viscosity;
+      summary["highest_frequency"] = scene.analysis.highest_frequency;
+    }
+  summary.row("soil", "{:.4g} m in {} layer{}, {}", Value{"height", scene.height()}, scene.layers.size(),
+              scene.layers.size() > 1 ? "s" : "",
+              Value{"drainage", std::string(drainage_names[static_cast<int>(scene.water.drainage)])});
+  summary.row("mesh", "{} elements, {} points, dimension {}", Value{"elements", s.cells}, Value{"points", s.points},
+              Value{"dimension", scene.mesh.dimension});
+}
+
+/// Time, and the motion of input and surface.
+void add_motion(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
+{
+  const double input = s.peaks.input, surface = s.peaks.surface;
+  summary["steps"] = std::llround(s.steps);
+  summary["time_step"] = s.time_step;
+  summary["end"] = s.last.time;
+  if (s.plate)
+    return;
+  const Value peak_input{"peak_input", input}, peak_surface{"peak_surface", surface};
+  const Value amplification{"amplification", input > 0 ? surface / input : 0};
+  summary[peak_input.key] = input;
+  summary[peak_surface.key] = surface;
+  summary[amplification.key] = amplification.value;
+  if (!shaken(scene))
+    return summary.row("time", "{:.6g} s in {:.0f} steps", s.last.time, s.steps);
+  summary.row("time", "{:.6g} s in {:.0f} steps of {:.5g} ms", scene.analysis.duration, s.steps, s.time_step / ms);
+  summary.row("peak input acceleration", "{:.4f} m/s2{}{}", peak_input, scene.base.compliant() ? " (outcrop)" : "",
+              of_both_axes(scene));
+  summary.row("peak surface", "{:.4f} m/s2{}", peak_surface, of_both_axes(scene));
+  const std::string bands = summary.text(
+      "{:.1f} % of the squared acceleration of the surface, {:.1f} % of the input's; peak surface below it {:.4f} m/s2",
+      Value{"share_above", s.bands.share, percent}, Value{"input_share_above", s.bands.input_share, percent},
+      Value{"peak_surface_below", s.bands.peak_below});
+  if (input == 0)
+    return;
+  summary.row("amplification", "{:.3f}", amplification);
+  summary.row(fmt::format("above {:.4g} Hz", scene.analysis.highest_frequency), "{}", bands);
+}
+
+/// The largest of the values at the nodes, and its depth. None of a box, whose nodes are those of one vertical.
+void add_largest(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
+{
+  if (!shaken(scene) || s.box_motion || s.node_depths.empty())
+    return;
+  for (const auto &[label, key, unit, of_nodes] :
+       {std::tuple("peak velocity", "peak_velocity", "m/s", &s.peaks.line_velocity),
+        {"peak displacement", "peak_displacement", "m", &s.peaks.line_displacement}})
+    {
+      const auto at = std::ranges::max_element(*of_nodes);
+      const double depth = s.node_depths[static_cast<std::size_t>(at - of_nodes->begin())];
+      summary.row(label, "{:.4g} {}{} at a depth of {:.2f} m", Value{key, *at}, unit,
+                  scene.base.compliant() ? "" : " against the base", Value{fmt::format("{}_depth", key), depth});
+    }
+}
+
+/// Energy that came from nowhere, what a plate met, or how far the soil has consolidated.
+void add_end(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
+{
+  const Value residual{"energy_residual", s.last.residual};
+  const Value share{"relative_energy_residual",
+                    s.last.max_energy > 0 ? std::abs(s.last.residual) / s.last.max_energy : 0};
+  const std::string text = summary.text("{:.2e} J/m2, {:.1e} of the largest energy", residual, share);
+  if (shaken(scene))
+    return summary.row("energy residual", "{}", text);
+  if (s.plate)
+    return add_plate(*s.plate, scene.plate, summary);
+  summary.row("final settlement", "{:.4f} mm, drained", Value{"final_settlement", s.final_settlement, mm});
+  const std::string degree = summary.text("{:.4f}", Value{"degree_of_consolidation", s.degree});
+  if (std::isfinite(s.degree))
+    summary.row("degree of consolidation", "{}", degree);
 }
 } // namespace
 
-std::string to_text(const ColumnSummary &s, const ColumnScene &scene)
+Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
 {
+  Summary summary(scene.title, "Soil column",
+                  "viscosity highest_frequency peak_input peak_surface amplification "
+                  "peak_surface_below share_above input_share_above max_ru max_ru_depth max_ru_time "
+                  "final_settlement degree_of_consolidation peak_velocity peak_velocity_depth "
+                  "peak_displacement peak_displacement_depth");
   const ColumnPeaks &p = s.peaks;
-  std::string text =
-      fmt::format("\n{}\n  soil                     {:.4g} m in {} layer{}, {}\n  mesh                  "
-                  "   {} elements, {} points, dimension {}\n",
-                  scene.title.empty() ? "Soil column" : scene.title, scene.height(), scene.layers.size(),
-                  scene.layers.size() > 1 ? "s" : "", drainage_names[static_cast<int>(scene.water.drainage)], s.cells,
-                  s.points, scene.mesh.dimension);
-  if (shaken(scene))
-    text +=
-        fmt::format("  time                     {:.6g} s in {:.0f} steps of {:.5g} ms\n  peak input acceleration  "
-                    "{:.4f} m/s2{}{}\n  peak surface             {:.4f} m/s2{}\n",
-                    scene.analysis.duration, s.steps, 1e3 * s.time_step, p.input,
-                    scene.base.compliant() ? " (outcrop)" : "", of_both_axes(scene), p.surface, of_both_axes(scene));
-  else if (!s.plate)
-    text += fmt::format("  time                     {:.6g} s in {:.0f} steps\n", s.last.time, s.steps);
-  if (p.input > 0)
-    text += fmt::format("  amplification            {:.3f}\n", amplification(p));
-  if (p.input > 0)
-    text += fmt::format("  above {:<19}{:.1f} % of the squared acceleration of the surface, {:.1f} % of the input's; "
-                        "peak surface below it {:.4f} m/s2\n",
-                        fmt::format("{:.4g} Hz", scene.analysis.highest_frequency), 100 * s.bands.share,
-                        100 * s.bands.input_share, s.bands.peak_below);
-  text += largest_text(s, scene);
-  text += fmt::format("  peak shear strain        {:.5f} % at a depth of {:.2f} m\n", 100 * p.gamma, p.gamma_depth);
+  add_scene(s, scene, summary);
+  add_motion(s, scene, summary);
+  add_largest(s, scene, summary);
+  summary.row("peak shear strain", "{:.5f} % at a depth of {:.2f} m", Value{"peak_gamma", p.gamma, percent},
+              Value{"peak_gamma_depth", p.gamma_depth});
   if (has_ru(scene))
-    text += fmt::format("  largest r_u              {:.4f} at a depth of {:.2f} m, t = {:.5g} s\n", p.ru, p.ru_depth,
-                        p.ru_time);
-  if (!s.box_motion) // which says where
-    text += fmt::format("  settlement               {:.4f} mm\n", 1e3 * s.last.settlement);
-  for (const CapExpansion &cap : s.expansions)
-    text += fmt::format(
-        "  net expansion            {:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end\n",
-        1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
+    summary.row("largest r_u", "{:.4f} at a depth of {:.2f} m, t = {:.5g} s", Value{"max_ru", p.ru},
+                Value{"max_ru_depth", p.ru_depth}, Value{"max_ru_time", p.ru_time});
+  if (s.box_motion) // whose rows say where
+    summary["settlement"] = s.last.settlement;
+  else
+    summary.row("settlement", "{:.4f} mm", Value{"settlement", s.last.settlement, mm});
+  add_expansions(s.expansions, summary);
   if (s.spreading)
-    text += slope_text(*s.spreading, scene);
+    add_slope(*s.spreading, scene, summary);
   if (s.box_motion)
-    text += to_text(*s.box_motion, mesh_spec(scene));
+    add_box_motion(*s.box_motion, mesh_spec(scene), summary);
   if (s.box_motion && p.gamma > 0.1)
-    text += "  large strains            beyond 10 %, but taken as small: displacements have an error of their order\n";
+    summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order");
   if (s.grains)
-    text += grains_text(*s.grains);
+    add_grains(*s.grains, summary);
+  summary["depths"] = s.point_depths;
   if (!s.point_depths.empty())
-    text += fmt::format("  depths of histories      {:.4g} m, the points nearest to those asked for\n",
-                        fmt::join(s.point_depths, ", "));
+    summary.row("depths of histories", "{} m, the points nearest to those asked for",
+                fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));
+  summary["warnings"] = s.warnings;
   for (const std::string &warning : s.warnings)
-    text += fmt::format("  warning: {}\n", warning);
-  if (shaken(scene))
-    return text + fmt::format("  energy residual          {:.2e} J/m2, {:.1e} of the largest energy\n", s.last.residual,
-                              relative_residual(s.last));
-  if (s.plate)
-    return text + to_text(*s.plate, scene.plate);
-  text += fmt::format("  final settlement         {:.4f} mm, drained\n", 1e3 * s.final_settlement);
-  return std::isfinite(s.degree) ? text + fmt::format("  degree of consolidation  {:.4f}\n", s.degree) : text;
+    summary.row("", "warning: {}", warning);
+  add_end(s, scene, summary);
+  return summary;
 }
 
 namespace
@@ -228,58 +238,6 @@ std::string to_text(const RunTimes &t)
              "  time per step            {:.1f} us elements, {:.1f} us material\n  wall time                {:.2f} "
              "s, {:.0f} steps\n",
              1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
-}
-
-Json to_json(const ColumnSummary &s, const ColumnScene &scene)
-{
-  const ColumnPeaks &p = s.peaks;
-  const bool drains = scene.analysis.kind == AnalysisKind::consolidation;
-  Json json{{"title", scene.title},
-            {"analysis", analysis_names[static_cast<int>(scene.analysis.kind)]},
-            {"drainage", drainage_names[static_cast<int>(scene.water.drainage)]},
-            {"base", scene.base.compliant() ? "compliant" : "rigid"},
-            {"layers", layers_json(scene)},
-            {"dimension", scene.mesh.dimension},
-            {"height", scene.height()},
-            {"mass_damping", scene.analysis.mass_damping},
-            {"viscosity", shaken(scene) ? Json(scene.analysis.viscosity) : Json()},
-            {"highest_frequency", shaken(scene) ? Json(scene.analysis.highest_frequency) : Json()},
-            {"spectrum_damping", scene.output.spectrum_damping},
-            {"requested_depths", scene.output.depths},
-            {"depths", s.point_depths},
-            {"elements", s.cells},
-            {"points", s.points},
-            {"warnings", s.warnings},
-            {"steps", std::llround(s.steps)},
-            {"time_step", s.time_step},
-            {"end", s.last.time},
-            {"peak_input", s.plate ? Json() : Json(p.input)},
-            {"peak_surface", s.plate ? Json() : Json(p.surface)},
-            {"amplification", s.plate ? Json() : Json(amplification(p))},
-            {"peak_surface_below", shaken(scene) ? Json(s.bands.peak_below) : Json()},
-            {"share_above", shaken(scene) ? Json(s.bands.share) : Json()},
-            {"input_share_above", shaken(scene) ? Json(s.bands.input_share) : Json()},
-            {"peak_gamma", p.gamma},
-            {"peak_gamma_depth", p.gamma_depth},
-            {"max_ru", has_ru(scene) ? Json(p.ru) : Json()},
-            {"max_ru_depth", has_ru(scene) ? Json(p.ru_depth) : Json()},
-            {"max_ru_time", has_ru(scene) ? Json(p.ru_time) : Json()},
-            {"settlement", s.last.settlement},
-            {"expansions", expansions_json(s.expansions)},
-            {"energy_residual", s.last.residual},
-            {"relative_energy_residual", relative_residual(s.last)},
-            {"final_settlement", drains ? Json(s.final_settlement) : Json()},
-            {"degree_of_consolidation", drains ? Json(s.degree) : Json()}};
-  add_largest(s, scene, json);
-  if (s.spreading)
-    add_slope(*s.spreading, scene, json);
-  if (s.box_motion)
-    json["surface_motion"] = to_json(*s.box_motion, mesh_spec(scene));
-  if (s.plate)
-    json["plate"] = to_json(*s.plate);
-  if (s.grains)
-    add_grains(*s.grains, json);
-  return json;
 }
 
 Json to_json(const RunTimes &t)

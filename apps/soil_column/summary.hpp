@@ -12,6 +12,8 @@
 
 namespace isostat
 {
+class Summary;
+
 /// Of the packings of a column.
 struct GrainsSummary
 {
@@ -52,11 +54,9 @@ struct RunTimes
   double waves = 0;                             ///< s: for their wave velocities
 };
 
-/// For the terminal and summary.txt.
-std::string to_text(const ColumnSummary &summary, const ColumnScene &scene);
+Summary report_of(const ColumnSummary &summary, const ColumnScene &scene);
+/// For the terminal.
 std::string to_text(const RunTimes &times);
-/// For summary.json, read by apps/figures/soil_column.py.
-Json to_json(const ColumnSummary &summary, const ColumnScene &scene);
 /// For times.json, which benchmarks read: times in s.
 Json to_json(const RunTimes &times);
 } // namespace isostat

@@ -211,9 +211,11 @@ void run_in_memory(const Request &request, TestRun &run, Watcher &watcher, Resul
     return;
   for (const std::string &line : stage_warnings(run.state, scene))
     warn(line);
-  TestSummary summary = summarise({result.columns, result.rows}, scene, run.specimen, run.state, watch.seconds());
-  summary.steps = summary.last_steps = static_cast<double>(run.assembly->step());
-  result.summary = to_json(summary).dump();
+  const std::uint64_t steps = run.assembly->step();
+  result.summary =
+      summarise({result.columns, result.rows}, scene, run.specimen, run.state, {steps, steps, watch.seconds()})
+          .json()
+          .dump();
 }
 
 void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Result &result)
@@ -228,8 +230,7 @@ void run_with_files(const Request &request, TestRun &run, Watcher &watcher, Resu
   const RunRequest<Scene> asked(request.scene, options);
   try
     {
-      const TestSummary summary = run_test(asked, run, &watcher);
-      write_replacing(asked.folder / "summary.txt", to_text(summary, request.scene));
+      write_replacing(asked.folder / "summary.txt", run_test(asked, run, &watcher).text());
       result.finished = true;
     }
   catch (const Interrupted &)

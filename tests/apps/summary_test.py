@@ -3,6 +3,7 @@
 """Each number of a test's summary is of that run, in text, summary.json, report and figures, or is left out: scenes
 without a shear stage, with several, that ended at once, and contact laws without moments or friction."""
 import csv
+import html
 import json
 import re
 
@@ -25,6 +26,8 @@ class Summary(AppTest):
         self.assert_done(result)
         self.text = (self.folder / name / "summary.txt").read_text(encoding="utf-8")
         self.numbers = json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
+        rows = [f"  {label:<25}{text}\n" for label, text in self.numbers["rows"]]
+        self.assertEqual(self.text, "\ntiny\n" + "".join(rows))
         with open(self.folder / name / "history.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.history = {cell.split(" ")[0]: np.array([float(row[cell]) for row in rows])
@@ -120,6 +123,23 @@ class Summary(AppTest):
         report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
         self.assertIn("fell below 0.9 ", report)
         self.assertNotIn("in the row before ", report)
+
+    def test_results_of_a_version_without_rows_are_reported(self):
+        """Their text as it is, and without what that version did not keep as numbers; without the text the numbers."""
+        self.leave("old", SHEAR, "--set", "motion.strain_rate=2 1/s")
+        for name in ("rows", "strain_rate", "inertial_number", "max_indicator"):
+            del self.numbers[name]
+        (self.folder / "old/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
+        result = self.run_app("isostat", "report", "old")
+        self.assert_done(result)
+        self.assertNotIn("not written", result.stderr)
+        report = html.unescape((self.folder / "old/report.html").read_text(encoding="utf-8"))
+        self.assertIn(self.text.strip() + "</pre>", report)
+        self.assertIn("fixed at 2 1/s, not controlled.", report)
+        (self.folder / "old/summary.txt").unlink()
+        self.assert_done(self.run_app("isostat", "report", "old"))
+        report = (self.folder / "old/report.html").read_text(encoding="utf-8")
+        self.assertIn(f'<th scope="row">grains</th><td>{self.numbers["grains"]}</td>', report)
 
     def test_a_contact_counts_as_yielding_within_the_margin(self):
         shares = []

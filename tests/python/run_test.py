@@ -78,8 +78,10 @@ class RunTest(FolderTest):
         for name, value in results.summary.items():
             if isinstance(value, float) and name != "seconds":
                 self.assert_near(in_memory.summary[name], value, 1e-9 * abs(value), f"digits of a file, in {name}")
-            elif name not in ("seconds", "cyclic_response", "liquefaction"):
+            elif name not in ("seconds", "cyclic_response", "liquefaction", "rows"):
                 self.assertEqual(in_memory.summary[name], value, name)
+        rows, stored = ([row for row in run.summary["rows"] if row[0] != "run"] for run in (in_memory, results))
+        self.assertEqual(rows, stored)
         for drawn, stored in zip(in_memory.draw("fig_stress_path"), results.draw("fig_stress_path")):
             for line, other in zip(drawn.lines, stored.lines):
                 self.assert_near(np.asarray(line.get_ydata(), float), np.asarray(other.get_ydata(), float), 1e-6,

@@ -2,6 +2,7 @@
 // The soil column. A module of its own, because it needs deal.II and MPI, which `import isostat` does not load.
 // tested: tests/python/column_test.py
 #include "apps/common/interrupt.hpp"
+#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
@@ -101,7 +102,7 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
   const RunResult result = run_column(request);
   if (!ranks().first())
     return;
-  const std::string text = to_text(result.summary, scene);
+  const std::string text = report_of(result.summary, scene).text();
   write_replacing(request.folder / "summary.txt", text);
   if (!quiet)
     fmt::print("{}{}", text, to_text(result.times));
