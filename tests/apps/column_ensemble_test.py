@@ -94,7 +94,12 @@ class Ensemble(ColumnTest):
     def ensemble(self, folder, *more):
         """Three members below a folder of this test."""
         self.assert_done(self.run_ensemble(self.scene, "-n", 3, "-o", folder, "-q", *more))
-        return self.folder / folder
+
+    def kept_ensemble(self, folder):
+        """The same without more settings, made once."""
+        if not (self.cache / "three").exists():
+            self.ensemble(self.cache / "three")
+        shutil.copytree(self.cache / "three", self.folder / folder)
 
     def assert_same_ensemble(self, one, other):
         def kept(folder):
@@ -105,7 +110,7 @@ class Ensemble(ColumnTest):
 
     def test_same_bytes(self):
         """One after the other, two side by side, on the ranks of mpirun, and of a call that was killed."""
-        self.ensemble("one")
+        self.kept_ensemble("one")
         self.ensemble("two", "-j", 2)
         self.assert_same_ensemble("one", "two")
         result = self.run_command(["mpirun", "--oversubscribe", "-n", "3", *self.command(
@@ -123,7 +128,7 @@ class Ensemble(ColumnTest):
 
     def test_members_and_bands(self):
         """Members are the runs of their seeds; every number and band is that of their files."""
-        self.ensemble("few")
+        self.kept_ensemble("few")
         before = (self.folder / "few/members/01/history.h5").stat().st_mtime_ns
         self.assert_done(self.run_ensemble(self.scene, "-n", 5, "-o", "few", "-q"))
         self.assertEqual((self.folder / "few/members/01/history.h5").stat().st_mtime_ns, before, "kept")
@@ -355,7 +360,7 @@ ground_z = ["4 m", "3 m"]
                     parts=("layer.0.realisation = 1, layer.0.mixed_realisations = 8", "6 realisations", "needs 9"))
         refused(self.scene, *settings(layer__0__mixed_realisations=2, grains__realisations=3), run=self.run_column,
                 parts=("layer.0.mixed_realisations", "at least grains.realisations, 3"))
-        self.ensemble("out")
+        self.kept_ensemble("out")
         self.assert_refused(self.run_ensemble(self.scene, "-n", 3, "-o", "out",
                                               *settings(motion__0__amplitude="0.5 g")), "another scene", "amplitude")
         (self.folder / "own").mkdir()

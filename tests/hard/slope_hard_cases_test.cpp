@@ -58,7 +58,7 @@ public:
   double largest_energy() const { return largest_energy_; }
 
 private:
-  static constexpr double shaking = 8; ///< s
+  static constexpr double shaking = 3; ///< s
 
   static MeshSpec mesh(double tangent)
   {

@@ -74,7 +74,7 @@ TEST(StaticHardCases, IncrementsOfNothingChangeNothing)
   Rve rve(dense(), in_balance(5e-5));
   shear(rve, 1e-4, 2);
   const RveState before = rve.save();
-  for (int k = 0; k < 1'000'000; ++k)
+  for (int k = 0; k < 20'000; ++k)
     if (const RveResponse r = rve.undrained(Mat3::Zero()); r.steps != 0 || r.outcome != RveOutcome::accepted)
       FAIL() << "increment " << k << ": " << r.steps << " force evaluations, " << r.reason;
   test::expect_same_bits(rve.save(), before);
