@@ -133,8 +133,8 @@ class Figures(ToleranceTest):
                               timeout=TIME_LIMIT, check=False)
 
     def expect(self, folder, *names):
-        """Those figures are made that there is data for, without a note, and no legend lies over a curve.   Returns what
-        is printed"""
+        """Those figures are made that there is data for, without a note, no legend over a curve.   Returns what is
+        printed"""
         use_style()
         with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(io.StringIO()) as notes:
             column = DRAWING.results(folder)

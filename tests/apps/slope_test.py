@@ -86,17 +86,6 @@ class Slope(ColumnTest):
         self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
 
-    def test_mistakes(self):
-        for more, words in ((settings(slope__angle="12 deg"), ("layer.0.strength_ratio", "depth of 3 m",
-                                                               "slope.angle")),
-                            (settings(water__table="1.2 m"), ("water.table = 1.2 m", "nearest is at 1 m")),
-                            (settings(water__drainage="undrained"), ("water.table", "\"coupled\""))):
-            result = self.run_column(self.scene, "-o", "out", *more)
-            self.assertEqual(result.returncode, 2)
-            for word in words:
-                self.assertIn(word, result.stderr)
-            self.assertFalse((self.folder / "out").exists())
-
 
 if __name__ == "__main__":
     main()
