@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The states in which codes break, in a box: liquefied, reversed while liquid, nothing in contact. Each test asserts what
-// must come out, not only that it ran. Dense, stiff and frictionless packings: rve_hard_cases_test.cpp.
+// The states in which codes break, in a box: liquefied, reversed while liquid, nothing in contact. Each test asserts
+// what must come out, not only that it ran. Dense, stiff and frictionless packings: rve_hard_cases_test.cpp.
 #include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
