@@ -4,7 +4,6 @@
 bands of all, computed again from the members' files."""
 import csv
 import json
-import pathlib
 import re
 import shutil
 import signal
@@ -13,39 +12,11 @@ import h5py
 import numpy as np
 
 from column_support import SCENES, ColumnTest, settings
+from grain_column_test import GRAINS as COLUMN, SPECIMENS
 from support import contents, main
 
-SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
-GRAINS = """title = "few grains"
-mesh.degree = 1
-water.drainage = "undrained"
-load.surcharge = "10 kPa"
-[[layer]]
-thickness = "3 m"
-cells = 3
-density = "1970 kg/m3"
-porosity = 0.41
-material = "grains"
-relative_density = 0.5
-[grains]
-library = "{cache}/library.h5"
-cache = "{cache}/in_situ.h5"
-inertial_number = 1e-3
-[[motion]]
-axis = "x"
-kind = "harmonic"
-amplitude = "0.6 g"
-frequency = "5 Hz"
-duration = "0.4 s"
-[analysis]
-kind = "dynamic"
-duration = "0.25 s"
-safety = 0.7
-[output]
-history_interval = "0.005 s"
-profile_interval = "0.01 s"
-checkpoint = "1e-9 min"
-"""
+GRAINS = re.sub(r"((snapshot|path)_)?depths = .*\n|(snapshot|paraview)_interval.*\n", "", COLUMN).replace(
+    "cells = 5", "cells = 3").replace("5e-4", "1e-3").replace('"0.3 s"', '"0.25 s"')
 SAND = """title = "sand"
 water.drainage = "undrained"
 output.history_interval = "0.005 s"

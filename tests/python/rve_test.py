@@ -2,24 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The representative volume element from Python: strain in, stress out, there and back."""
 import signal
-import tempfile
 import threading
 import unittest
 
 import numpy as np
 
-from package import CONTACT, ToleranceTest, isostat
+from package import ToleranceTest, isostat, packing_in_cell
 
 
 class RveTest(ToleranceTest):
     @classmethod
     def setUpClass(cls):
-        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact=CONTACT,
-                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
-        with tempfile.TemporaryDirectory() as cache:
-            cls.packing = isostat.prepare(scene, cache=cache).snapshot
-            small = scene.with_(grading={"grains": 200, "cloud_edge": "2.7 mm"})
-            cls.other_packing = isostat.prepare(small, cache=cache).snapshot
+        cls.packing, cls.other_packing = packing_in_cell(), packing_in_cell(200, "2.7 mm")
 
     def test_stress_follows_the_stiffness(self):
         rve = isostat.Rve(self.packing, min_steps=2000)
