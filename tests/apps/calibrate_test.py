@@ -144,7 +144,7 @@ class Results(Calibrate):
         """The model's strains grow in the direction of the test; p' stands in the place of the volume."""
         self.write("lab.csv", "eps_a[%],p[kPa],q[kPa]\n0,200,0\n-0.5,150,-60\n-1,140,-70\n-2,150,-90\n")
         text = plan_text(1).replace('"drained"', '"undrained"\ndirection = "extension"')
-        self.assert_done(self.run_it("-o", "out", plan=self.write("plan.toml", text)))
+        self.assert_done(self.run_it("-o", "out", "--no-figures", plan=self.write("plan.toml", text)))
         with open(self.folder / "out/curves.csv", newline="", encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if row["curve"] == "fitted"]
         self.assertEqual({row["second"] for row in rows}, {"p' (Pa)"})
