@@ -53,7 +53,9 @@ protected:
   void expect_balanced(const Rve &rve) const
   {
     if (way.increment > 0)
-      EXPECT_BELOW_BECAUSE(rve.assembly().balance(0.01, p0).within, 0.0101, "0.01 is asked for");
+      {
+        EXPECT_BELOW_BECAUSE(rve.assembly().balance(0.01, p0).within, 0.0101, "0.01 is asked for");
+      }
   }
 };
 class Liquids : public InEachWay

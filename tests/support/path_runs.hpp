@@ -95,8 +95,11 @@ inline void expect_same_end(const Stage &stage, const Snapshot &initial, const s
     EXPECT_EQ(now.contacts[c].history.shear_force, whole.contacts[c].history.shear_force);
   ASSERT_EQ(now.cell.has_value(), whole.cell.has_value());
   if (now.cell)
-    EXPECT_TRUE(now.cell->edges == whole.cell->edges && now.cell->rotation == whole.cell->rotation &&
-                now.cell->flips == whole.cell->flips);
+    {
+      EXPECT_EQ(now.cell->edges, whole.cell->edges);
+      EXPECT_EQ(now.cell->rotation, whole.cell->rotation);
+      EXPECT_EQ(now.cell->flips, whole.cell->flips);
+    }
 }
 
 inline const Snapshot &box() { return specimen(1000, 8); }
