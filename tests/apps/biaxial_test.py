@@ -252,15 +252,6 @@ class Biaxial(AppTest):
         self.assertEqual(len(self.history()["step"]), 1)
         self.assertIn('"complete": false', (self.folder / "run/summary.json").read_text(encoding="utf-8"))
 
-    def test_relaxation_finds_the_equilibrium_of_newtons_method(self):
-        iwan = ELASTIC.format(degree=1).replace('"elastic"', '"iwan"')
-        self.assert_done(self.run_block(iwan))
-        self.assert_done(self.run_block(iwan, "--set", "newton.max_iterations=0", "--set",
-                                        "newton.relaxation_iterations=2000", name="relaxed"))
-        newton, relaxed = self.history()["axial_stress"], self.history("relaxed")["axial_stress"]
-        self.assert_near(np.abs(relaxed / newton - 1).max(), 0, 1e-4, "tolerance of 1e-6 over a tangent far below M")
-        self.assert_refused(self.run_block(iwan, "--set", "newton.max_iterations=0"), "newton.max_iterations")
-
     def test_length(self):
         relaxed = ("--set", "nonlocal.length=0.5 m", "--set", "newton.max_iterations=0", "--set",
                    "newton.relaxation_iterations=2000")
@@ -284,19 +275,16 @@ class Biaxial(AppTest):
 
     def test_band_with_a_length_is_that_of_every_mesh(self):
         scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/mohr_coulomb.toml"
-        stress = {}
-        for length in ("0.08 m", "0 m"):
-            for cells in (4, 8):
-                keys = (f"mesh.cells_across={cells}", f"mesh.cells_up={2 * cells}", f"weak.cells={cells // 4}",
-                        f"nonlocal.length={length}", "test.steps=15")
-                self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--overwrite", "--no-figures", "-q",
-                                              *[part for key in keys for part in ("--set", key)]))
-                stress[length, cells] = self.history()["axial_stress"]
-        coarse, fine = stress["0.08 m", 4], stress["0.08 m", 8]
+        stress = []
+        for cells in (4, 8):
+            keys = (f"mesh.cells_across={cells}", f"mesh.cells_up={2 * cells}", f"weak.cells={cells // 4}",
+                    "nonlocal.length=0.08 m", "test.steps=15")
+            self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--overwrite", "--no-figures", "-q",
+                                          *[part for key in keys for part in ("--set", key)]))
+            stress.append(self.history()["axial_stress"])
+        coarse, fine = stress
         self.assert_below(fine[-1] / fine.max(), 0.85, "or nothing softens")
         self.assert_near(coarse / fine, 1, 5e-3, "measured 0.2 %")
-        apart = np.abs(stress["0 m", 4] / stress["0 m", 8] - 1).max()
-        self.assertGreater(apart, 0.2)  # at 0.7 %: a band of one point falls at once
 
     def test_scene_is_read_back_and_refused(self):
         shown = self.run_app("biaxial", self.write("block.toml", ELASTIC.format(degree=1)), "--validate")
@@ -307,6 +295,7 @@ class Biaxial(AppTest):
         manual = pathlib.Path(__file__).resolve().parents[2] / "docs/biaxial_scene_reference.md"
         self.assertEqual(self.run_app("biaxial", "--print-manual").stdout, manual.read_text(encoding="utf-8"))
         self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")
+        self.assert_refused(self.run_block(FRICTION, "--set", "newton.max_iterations=0"), "newton.max_iterations")
         self.assert_refused(self.run_block(GRAINS), "soil.library", "is not there")
         self.assert_refused(self.run_block(GRAINS, "--set", "soil.inertial_number=2"), "soil.inertial_number")
         shown = self.run_app("biaxial", "--print-defaults").stdout

@@ -46,7 +46,7 @@ depths = ["0.5 m", "2 m"]
 profile_interval = "0.1 s"
 paraview_interval = "1 s"
 """
-DISTRIBUTED = settings(mesh__distributed="true", analysis__duration="0.5 s")
+DISTRIBUTED = settings(mesh__distributed="true", analysis__duration="0.2 s")
 
 
 class Box(ColumnTest):
@@ -86,6 +86,7 @@ class Box(ColumnTest):
 
     def test_at_rest_it_stays_still_to_the_bit(self):
         rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
+        self.check_stress_in_situ()
         self.assertEqual(summary["surface_motion"]["largest"], 0)
         self.assertGreater(np.abs(rows["d1_tau_xz"][0]), 10, "the slope has a static shear stress")
         for name in ("surface_ux", "surface_uz", "d0_u", "d1_u"):
@@ -101,16 +102,15 @@ class Box(ColumnTest):
                          "walls, fifteen depths away, and liquefied sand, which magnifies what little comes from there")
 
     def test_ranks_are_alike_to_the_bit(self):
-        for n in (1, 2, 3):
-            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *settings(analysis__duration="0.3 s")))
+        for n in (1, 3):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *settings(analysis__duration="0.2 s")))
             self.assert_same_files("on1", f"on{n}")
 
     def test_one_mesh_over_ranks(self):
         found = {}
-        options = [part for part in DISTRIBUTED]
         scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
-        for n in (1, 2, 4):
-            self.assert_done(self.run_on_ranks(n, scene, "-o", f"on{n}", *options))
+        for n in (1, 4):
+            self.assert_done(self.run_on_ranks(n, scene, "-o", f"on{n}", *DISTRIBUTED))
             found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
             for key in ("along_x", "largest", "settlement", "heave"):
                 one = found[1]["surface_motion"][key]
@@ -119,10 +119,10 @@ class Box(ColumnTest):
 
     def test_a_shared_mesh_goes_on_on_other_ranks(self):
         scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
-        options = settings(mesh__distributed="true", analysis__duration="1 s", output__checkpoint="1e-9 min")
+        options = settings(mesh__distributed="true", analysis__duration="0.4 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(scene, "-o", "whole", *options))
         last = self.folder / "parts/checkpoint/last.h5"
-        for n, then in ((1, 2), (2, 3), (3, 1)):
+        for n, then in ((1, 2), (3, 1)):
             shutil.rmtree(self.folder / "parts", ignore_errors=True)  # its checkpoint is none of the next run
             code, said = self.stop_when(last.exists, last, signal.SIGUSR1,
                                         self.command_on_ranks(n, scene, "-o", "parts", *options))
@@ -134,8 +134,8 @@ class Box(ColumnTest):
                 self.assert_near(other["surface_motion"][key], one["surface_motion"][key],
                                  1e-7 * abs(one["surface_motion"][key]), f"round-off of sums over the ranks ({key})")
 
-    def test_the_stress_in_situ_is_that_of_the_theory(self):
-        self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
+    def check_stress_in_situ(self):
+        """That of the theory."""
         maps = self.maps("run")
         inner = (maps["x"] > 4) & (maps["x"] < 8)
         vertical = 9.81 * 950 * maps["depth"]

@@ -37,29 +37,7 @@ depths = ["4 m"]
 
 class Drainage(ColumnTest):
     """CLAY under 40 kPa: D = 3 MPa, c = kb/(1/D + n/K_f)."""
-    D, STORAGE, HEIGHT = 3e6, 0.5 / 2.2e9, 8
-    C = 2e-9 / 9810 / (1 / D + STORAGE)
-    P0 = 40e3 / (1 + D * STORAGE)
-
-    def test_first_times_and_few_steps(self):
-        b = (np.arange(4000)[:, None] + 0.5) * np.pi
-        reason = "cells of a quarter of sqrt(c t), steps of a tenth of t"
-        for changes in (), settings(analysis__steps=2), settings(mesh__dimension=2, mesh__cells_across=1):
-            with self.subTest(changes):
-                result = self.run_column(self.write("clay.toml", CLAY), "-o", "out", "--overwrite", *changes)
-                self.assert_done(result)
-                self.assertNotIn("warning", result.stderr)
-                rows = history(self.folder / "out")
-                decay = np.exp(-b**2 * self.C * rows["time"][1:] / self.HEIGHT**2)
-                final, at_once = (40e3 * self.HEIGHT / x for x in (self.D, self.D + 1 / self.STORAGE))
-                due = final - (final - at_once) * (2 / b**2 * decay).sum(axis=0)
-                self.assert_below(np.abs(rows["settlement"][1:] / due - 1).max(), 5e-3, reason)
-                self.assert_below(rows["settlement"].max() / final - 1, 5e-5, "BDF2 rings when a step is long")
-                with h5py.File(self.folder / "out/profiles.h5") as file:
-                    u, depth = file["u"][1:] / self.P0, file["depth"][()]
-                exact = np.einsum("mz,mt->tz", 2 / b * np.sin(b * depth / self.HEIGHT), decay)
-                self.assert_below(np.abs(u - exact).max(), 5e-3, reason)
-                self.assert_below(max(u.max() - 1, -u.min()), 5e-5, "BDF2 rings when a step is long")
+    C = 2e-9 / 9810 / (1 / 3e6 + 0.5 / 2.2e9)
 
     def test_a_first_time_that_no_mesh_shows(self):
         scene = self.write("clay.toml", CLAY)
@@ -133,20 +111,6 @@ class Water(ColumnTest):
         self.assertFalse([name for name in rows if name.startswith("expansion")])
         _, summary, _ = self.run_scene("silt_cap", "dry_cap", *settings(water__table="2 m", analysis__duration="0.5 s"))
         self.assertEqual(summary["expansions"], [], "above the water table no water gathers")
-
-    def test_air_takes_up_what_water_cannot(self):
-        air, _, _ = self.run_scene("three_components", "air", *settings(analysis__duration="7 s"))
-        wet, _, _ = self.run_scene("three_components", "wet", *settings(
-            analysis__duration="7 s", layer__0__saturation=1, water__air="constant"))
-        at = [float(np.interp(6, rows["time"], rows["d2_ru"])) for rows in (wet, air)]
-        print(f"r_u at 9 m after 6 s: {at[0]:.3f} saturated, {at[1]:.3f} with 0.5 % of air")
-        self.assertGreater(at[0], 0.9)
-        self.assertGreater(at[0] - at[1], 0.1)
-
-    def test_a_viscous_fluid_is_a_less_permeable_soil(self):
-        fluid, _ = self.rows_of(SOIL.replace("[water]", "[water]\nrelative_viscosity = 4"), "fluid")
-        soil, _ = self.rows_of(SOIL.replace('"1e-4 m/s"', '"2.5e-5 m/s"').replace('"1e-6 m/s"', '"2.5e-7 m/s"'), "soil")
-        self.assertEqual(fluid["d0_u"].tobytes(), soil["d0_u"].tobytes())
 
     def test_an_undrained_column_follows_its_base_along_z(self):
         text = SOIL.replace('axis = "y"', 'axis = "z"').replace('"coupled"', '"undrained"')

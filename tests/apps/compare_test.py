@@ -68,13 +68,15 @@ class Compare(ReportTest):
                        stages=SHEAR)
         programs = [("element_test", name) for name in ("one", "cell", "cyclic")]
         if (BIN / "soil_column").exists():
-            self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=4")
-            self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=1 s")
-            self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=2", "--set",
-                      "test.axial_strain=0.001", "--set", "output.map_every=1")
-            self.make("soil_column", "plate", SCENES / "column/plate_wall.toml", "--set", "mesh.cells_across=12",
-                      "--set", "layer.0.cells=3", "--set", "analysis.load_steps=1")
-            programs += [("soil_column", name) for name in ("column", "shaken", "plate")] + [("biaxial", "block")]
+            for program, name, scene, *keys in (
+                    ("soil_column", "column", "column/terzaghi", "analysis.steps=4"),
+                    ("soil_column", "shaken", "column/recorded_motion", "analysis.duration=1 s"),
+                    ("biaxial", "block", "biaxial/iwan", "test.steps=2", "test.axial_strain=0.001"),
+                    ("soil_column", "plate", "column/plate_wall", "mesh.cells_across=12", "layer.0.cells=3",
+                     "analysis.load_steps=1")):
+                self.make(program, name, SCENES / f"{scene}.toml", "--no-figures",
+                          *(word for key in keys for word in ("--set", key)))
+                programs.append((program, name))
         for program, name in programs:
             self.assert_listed(program, name)
 

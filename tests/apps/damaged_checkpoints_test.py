@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A number in a checkpoint that is none, or infinite, each of them in turn, and members that are wrong: the run does
-not go on from it, says where it is, and takes the checkpoint before where that is whole. ISOSTAT_EVERY_CALL=1 tries
-both with each number; otherwise the one and the other take turns."""
+"""A number in a checkpoint that is none, or infinite, and members that are wrong: the run does not go on from it, says
+where it is, and takes the checkpoint before where that is whole. Here some of the numbers, alternately the one and the
+other; ISOSTAT_EVERY_CALL=1 tries both with each number."""
 import functools
 import shutil
 import signal
@@ -67,11 +67,12 @@ class DamagedCheckpoints(AppTest):
         parts = self.stopped(program, arguments)
         items = [item for item in numbers_of(parts / "checkpoint/last.h5") if item[0] not in FOR_OTHERS]
         self.assertGreater(len(items), 5)
-        for i, item in enumerate(items):
+        tried = items if EVERY else items[::-(-len(items) // 9)]
+        for i, item in enumerate(tried):
             for value in (np.nan, np.inf) if EVERY else ((np.nan, np.inf)[i % 2],):
                 with self.subTest(program=program, item=item, value=value):
                     self.refuse(program, arguments, parts, lambda file, x=(*item, value): damage(file, *x), "last.h5")
-        print(f"  {program}: {len(items)} items", flush=True)
+        print(f"  {program}: {len(tried)} of {len(items)} items", flush=True)
         return parts
 
     def test_members_of_an_element_test(self):
@@ -152,7 +153,7 @@ class DamagedCheckpoints(AppTest):
             data[begin:begin + 8] = np.float64(np.nan).tobytes()
             file["material"][...] = np.frombuffer(data, words.dtype)
 
-        for place in (40, 300, 520):
+        for place in (40, 520):
             with self.subTest(place):
                 self.refuse("soil_column", arguments, parts, functools.partial(soil, place), "is not finite")
 

@@ -13,16 +13,18 @@ STAGES = ('[[stage]]\nkind = "drained"\nstrain = 0.02\nstrain_rate = "1 1/s"\n'
 
 
 class DrainedReport(AppTest):
-    def setUp(self):
-        super().setUp()
+    def test_strength_in_history_summary_and_figure(self):
         self.result = self.run_app("element_test", self.write("scene.toml", tiny_scene(stages=STAGES)), "-o", "run")
         self.assert_done(self.result)
         self.numbers = json.loads((self.folder / "run/summary.json").read_text())
         with open(self.folder / "run/history.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.history = {name.split(" ")[0]: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        self.check_strength()
+        self.check_summary_and_figure()
 
-    def test_strength_is_that_of_the_history(self):
+    def check_strength(self):
+        """That of the history."""
         h = self.history
         self.assertEqual([stage["stage"] for stage in self.numbers["drained"]], [0, 1])
         for stage in self.numbers["drained"]:
@@ -38,7 +40,7 @@ class DrainedReport(AppTest):
         self.assertIsNotNone(self.numbers["drained"][0]["dilatancy_deg"])
         self.assertIsNone(self.numbers["drained"][1]["dilatancy_deg"], "of compression alone")
 
-    def test_summary_and_figure_are_there(self):
+    def check_summary_and_figure(self):
         for name in ("peak friction", "end friction", "largest dilatancy", "volumetric strain"):
             self.assertIn(f"  {name:<25}", self.result.stdout)
         self.assertTrue((self.folder / "run/figures/fig_dilatancy.png").stat().st_size > 10000)

@@ -102,11 +102,10 @@ class Bits(GrainColumnTest):
                               "checkpoint/last.h5"}, names)
         self.assertGreater(summary["max_ru"], 0.95)
         self.assertGreater(summary["peak_gamma"], 0.01)
-        for n in (1, 2, 3, 4):
-            result = self.run_on_ranks(n, self.scene, "-o", f"on{n}")
-            self.assert_done(result)
-            self.assertEqual(result.stdout.count("peak shear strain"), 1)
-            self.assert_same_bytes("whole", f"on{n}")
+        result = self.run_on_ranks(3, self.scene, "-o", "ranks")
+        self.assert_done(result)
+        self.assertEqual(result.stdout.count("peak shear strain"), 1)
+        self.assert_same_bytes("whole", "ranks")
         result = self.run_column(self.scene, "-o", "threads", "-q", "--threads", 2)
         self.assert_done(result)
         self.assert_same_bytes("whole", "threads")
@@ -140,14 +139,14 @@ class Bits(GrainColumnTest):
     def test_kills_and_other_ranks(self):
         self.whole()
         moments, killed = random.Random(20240229), 0
-        for n in 3 * (2, 3, 1, 4, 2):
+        for n in 5 * (2, 4, 1):
             resume = ["--resume"] if (self.folder / "parts").exists() else []
             code, said = self.stop(n, signal.SIGKILL, moments.uniform(0.02, 0.3), *resume)
             killed += code == 128 + signal.SIGKILL and "exited on signal 9 (Killed)" in " ".join(said.split())
-            if code == 0 and killed < 3:  # it has ended before enough kills have come: once more
-                shutil.rmtree(self.folder / "parts")
-            elif code == 0 or killed == 5:
+            if killed == 3:
                 break
+            if code == 0:  # it has ended before enough kills have come: once more
+                shutil.rmtree(self.folder / "parts")
         self.assertGreaterEqual(killed, 3)
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")
@@ -190,16 +189,16 @@ class Sands(GrainColumnTest):
 
 
 class Rest(GrainColumnTest):
-    """10,000 steps without motion."""
+    """5,000 steps without motion."""
 
-    LONG = settings(analysis__duration="35 s", output__history_interval="0.1 s", output__profile_interval="5 s",
+    LONG = settings(analysis__duration="18 s", output__history_interval="0.1 s", output__profile_interval="5 s",
                     output__paraview_interval="100 s", grains__snapshot_interval="100 s", output__checkpoint="10 min")
 
     def rest(self, *more):
         result = self.run_column(self.scene, "-o", "rest", "-q", "--overwrite", *self.LONG, *more)
         self.assert_done(result)
         rows = history(self.folder / "rest")
-        self.assertGreater(rows["step"][-1], 10000)
+        self.assertGreater(rows["step"][-1], 5000)
         return rows, float(re.search(r"calls, ([\d.]+) time steps each", result.stdout).group(1))
 
     def test_frozen_column_stays_still_to_the_bit(self):
@@ -221,7 +220,7 @@ class Rest(GrainColumnTest):
             self.assert_below(np.ptp(rows[name]), 2e-4 * rows[name][0], f"as above; 7e-5 measured ({name})")
         for name in ("d0_tau_xz", "d1_tau_xz"):
             self.assert_below(np.ptp(rows[name]), 3, f"Pa, of 13 and 30 kPa vertical stress; 0.5 measured ({name})")
-        late = rows["time"] > 25
+        late = rows["time"] > 13
         for name in ("surface_ux", "surface_uy"):
             self.assert_below(np.ptp(rows[name][late]), 3e-8, f"m, what still creeps ({name})")
 
@@ -252,13 +251,8 @@ class Failures(GrainColumnTest):
             self.skipTest("no right to mount a small disk")
         self.addCleanup(subprocess.run, ["umount", "-l", disk], check=False)
         self.whole()
-        for n in (1, 2):
-            with self.subTest(ranks=n):
-                self.fill_while_running(n, disk)
-
-    def fill_while_running(self, n, disk):
         run = ("-o", "disk/out", "-q")
-        with self.started(self.command_on_ranks(n, self.scene, *run, "--overwrite")) as process:
+        with self.started(self.command_on_ranks(2, self.scene, *run)) as process:
             last = disk / "out/checkpoint/last.h5"
             wait_until(last.exists, last, process)
             with open(disk / "filler", "wb", buffering=0) as filler:
@@ -273,7 +267,7 @@ class Failures(GrainColumnTest):
         self.assertRegex(message, r"failed: step \d+ \(t = [\d.]+ s\): disk/out/.*free space")
         self.assertIn("last good checkpoint: disk/out/checkpoint/last.h5", message)
         (disk / "filler").unlink()
-        self.assert_done(self.run_on_ranks(3 - n, self.scene, *run, "--resume"))
+        self.assert_done(self.run_column(self.scene, *run, "--resume"))
         self.assert_same_bytes("whole", "disk/out")
 
 

@@ -1,16 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""No legend of a figure lies over the points of its curves: element tests, and columns from made-up results."""
+"""No legend of a figure lies over the points of its curves: element tests; columns are in figures_test.py."""
 import pathlib
 import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps"), str(ROOT / "scripts")]
-import column_fixture as fixture  # noqa: E402  (the path comes first)
-from figures import element_test, soil_column  # noqa: E402
-from figures.common import STYLE, plt  # noqa: E402
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / "apps")]
+from figures.common import STYLE, plt  # noqa: E402  (the path comes first)
+from figures.element_test import DRAWING  # noqa: E402
 from support import AppTest, CYCLIC, MONOTONIC, main, tiny_scene  # noqa: E402
 
 DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.02\n'
@@ -38,10 +36,10 @@ def covered(figure):
 
 
 class Legends(AppTest):
-    def check(self, drawing, folder):
+    def check(self, folder):
         plt.rcParams.update(STYLE)
-        results = drawing.results(folder)
-        figures = {name: draw(results) for name, draw in drawing.figures.items()}
+        results = DRAWING.results(folder)
+        figures = {name: draw(results) for name, draw in DRAWING.figures.items()}
         for name, figure in figures.items():
             if figure is not None:
                 self.assertEqual(covered(figure), [], f"{folder.name}: {name}")
@@ -61,11 +59,7 @@ class Legends(AppTest):
         for name, stages in (("cyclic", CYCLIC.format(steps=4000)), ("monotonic", MONOTONIC.format(steps=4000)),
                              ("drained", DRAINED)):
             self.assert_done(self.run_test(self.write("scene.toml", tiny_scene(stages=stages)), "-o", name, "--quiet"))
-            self.check(element_test.DRAWING, self.folder / name)
-
-    def test_columns(self):
-        for made_up in (fixture.elastic, fixture.consolidation, fixture.liquefaction, fixture.grains):
-            self.check(soil_column.DRAWING, made_up(self.folder / made_up.__name__))
+            self.check(self.folder / name)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import csv
 import math
 import re
 
-import h5py
 import numpy as np
 
 from support import AppTest, CYCLIC, contents, main, tiny_scene
@@ -107,6 +106,8 @@ class Micromechanics(AppTest):
             self.assert_near(table[component], 1 / 3, 1e-9, "ten digits in the table")
 
     def test_figures(self):
+        for path in sorted((self.folder / "run/snapshots").iterdir())[2:]:  # two are enough to draw
+            path.unlink()
         self.assert_done(self.run_app("micromechanics", "run", "--output", "it's here"))
         figures = sorted(path.name for path in (self.folder / "it's here/figures").iterdir())
         self.assertEqual(figures, ["fig_anisotropies.png", "fig_force_distribution.png", "fig_roses.png"])
@@ -132,16 +133,6 @@ class Micromechanics(AppTest):
         path = self.folder / "run/snapshots/snapshot_0001.h5"
         path.write_bytes(path.read_bytes()[:-3000])
         self.refuse("snapshot_0001.h5", "truncated")
-
-    def test_foreign(self):
-        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "w") as file:
-            file["x"] = 1.0
-        self.refuse("snapshot_0001.h5", "isostat-snapshot")
-
-    def test_missing_dataset(self):
-        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "r+") as file:
-            del file["snapshot/contacts/normal_force"]
-        self.refuse("snapshot_0001.h5", "normal_force")
 
     def test_output_below_a_file(self):
         self.write("file", "precious")

@@ -102,29 +102,11 @@ class PlateTest(ColumnTest):
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil beside it helps")
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(analysis__load_steps=400, output__checkpoint="1e-9 min")
+        options = settings(analysis__load_steps=60, output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
         self.stop_when_saved(self.scene, signal.SIGKILL, *options)
         self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
-
-    def test_mistakes(self):
-        for more, words in ((settings(analysis__to="5 m"), ("analysis.to", "from 0 m to 5 m of 4 m")),
-                            (settings(analysis__displacement="0 m"), ("analysis.displacement", "nothing moves")),
-                            (settings(analysis__displacement="9 m"),
-                             ("analysis.displacement", "within +-2 m", "taken as small")),
-                            (settings(mesh__sides="tied"), ("mesh.sides", "\"walls\"")),
-                            (settings(analysis__from="0.3 m", analysis__to="1.3 m"),
-                             ("analysis.to", "boundaries between elements", "0.5 m wide")),
-                            (settings(analysis__max_iterations="0"),
-                             ("analysis.max_iterations", "relaxation_iterations")),
-                            (settings(water__drainage="coupled", layer__0__permeability="1e-5 m/s"),
-                             ("water.drainage", "\"dry\""))):
-            result = self.run_column(self.scene, "-o", "out", *more)
-            self.assertEqual(result.returncode, 2, words)
-            for word in words:
-                self.assertIn(word, result.stderr)
-            self.assertFalse((self.folder / "out").exists())
 
 
 if __name__ == "__main__":

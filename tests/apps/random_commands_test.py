@@ -3,7 +3,7 @@
 """Command lines drawn at random from the options of each program, with values that do and do not fit: a program ends
 with 0, 1, 2 or 130 and says why, and leaves alone what is not its own.
 
-ISOSTAT_COMMANDS  of each program (25)        ISOSTAT_SEED  draws others (1)
+ISOSTAT_COMMANDS  of each program (10)        ISOSTAT_SEED  draws others (1)
 """
 import os
 import random
@@ -14,7 +14,7 @@ import subprocess
 from failing_runs import COLUMN
 from support import BIN, CYCLIC, TIME_LIMIT, AppTest, contents, main, tiny_scene
 
-COMMANDS = int(os.environ.get("ISOSTAT_COMMANDS", "25"))
+COMMANDS = int(os.environ.get("ISOSTAT_COMMANDS", "10"))
 SEED = int(os.environ.get("ISOSTAT_SEED", "1"))
 PROGRAMS = ("element_test", "soil_column", "biaxial", "isostat library", "isostat calibrate", "isostat resistance",
             "isostat ensemble", "micromechanics", "void_ratio_limits", "rve_replay", "isostat")

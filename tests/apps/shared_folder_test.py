@@ -49,8 +49,6 @@ class SharedFolder(AppTest):
             first.send_signal(signal.SIGCONT)
             self.assertEqual(first.wait(timeout=TIME_LIMIT), 0)
         self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
-        self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--overwrite"))
-        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
         (self.folder / "out").rename(self.folder / "done")
         with self.halted(command) as killed:
             killed.kill()

@@ -3,7 +3,6 @@
 """soil_column on a slope with a water table in the soil: what it leaves, on how many ranks and after which restarts."""
 import json
 import math
-import re
 import signal
 
 import h5py
@@ -56,24 +55,17 @@ class Slope(ColumnTest):
         self.assertEqual(np.abs(rows["d0_u"]).max(), 0)
         self.assertGreater(np.abs(rows["d1_u"]).max(), 100)
 
-    def test_the_slope_at_rest_stays_still_to_the_bit(self):
-        rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", SLOPE))
-        self.assertEqual(summary["downslope"], 0)
-        for name in ("surface_ux", "surface_uz", "surface_ax", "d0_u", "d1_u"):
-            self.assertEqual(np.abs(rows[name]).max(), 0, name)
-        self.assertGreater(rows["d1_tau_xz"][0], 0)
-
     def test_ranks_are_alike_to_the_bit(self):
-        options = settings(output__profile_interval="0.05 s", analysis__duration="0.5 s")
-        for n in (1, 2, 3):
+        options = settings(output__profile_interval="0.05 s", analysis__duration="0.3 s")
+        for n in (1, 3):
             self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
             self.assert_same_files("on1", f"on{n}")
 
     def test_one_mesh_over_ranks(self):
         found = {}
-        for n in (1, 2, 3):
+        for n in (1, 3):
             self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *DISTRIBUTED,
-                                               *settings(analysis__duration="0.5 s")))
+                                               *settings(analysis__duration="0.3 s")))
             found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
             for key in ("downslope", "end_gamma", "end_gamma_depth", "max_ru", "settlement"):
                 self.assert_near(found[n][key], found[1][key], 1e-9 * abs(found[1][key]),
@@ -85,17 +77,6 @@ class Slope(ColumnTest):
         self.assertIn("go on with --resume", self.stop_when_saved(self.scene, signal.SIGTERM, *options))
         self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
-
-    def test_mistakes(self):
-        for more, words in ((settings(slope__angle="12 deg"), ("layer.0.strength_ratio", "depth of 3 m",
-                                                               "slope.angle")),
-                            (settings(water__table="1.2 m"), ("water.table = 1.2 m", "nearest is at 1 m")),
-                            (settings(water__drainage="undrained"), ("water.table", "\"coupled\""))):
-            result = self.run_column(self.scene, "-o", "out", *more)
-            self.assertEqual(result.returncode, 2)
-            for word in words:
-                self.assertIn(word, result.stderr)
-            self.assertFalse((self.folder / "out").exists())
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from support import TIME_LIMIT, contents, main, wait_until
 class Resume(ColumnTest):
     """A run that is killed and resumed leaves the same files."""
 
-    OPTIONS = settings(analysis__duration="20 s", output__profile_interval="0.1 s", output__paraview_interval="2 s",
+    OPTIONS = settings(analysis__duration="5 s", output__profile_interval="0.05 s", output__paraview_interval="1 s",
                        output__checkpoint="1e-9 min")
 
     def interrupt(self, with_signal, expected, *more):
@@ -57,14 +57,15 @@ class Resume(ColumnTest):
 
     def refuse(self, change, *parts):
         """A run that was stopped before its summary cannot be resumed after `change` of its checkpoints."""
-        arguments = [self.scene, "-o", "out"]
-        if not (self.folder / "out").exists():
-            self.assert_done(self.run_column(*arguments))
-            (self.folder / "out/summary.json").unlink()
+        if not (self.folder / "kept").exists():
+            self.assert_done(self.run_column(self.scene, "-o", "kept"))
+            (self.folder / "kept/summary.json").unlink()
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        shutil.copytree(self.folder / "kept", self.folder / "out")
         for path in (self.folder / "out/checkpoint").iterdir():
             with h5py.File(path, "r+") as file:
                 change(file)
-        self.assert_refused(self.run_column(*arguments, "--resume"), *parts)
+        self.assert_refused(self.run_column(self.scene, "-o", "out", "--resume"), *parts)
 
     def test_a_finished_run(self):
         arguments = [self.scene, "-o", "out"]
@@ -77,22 +78,16 @@ class Resume(ColumnTest):
                             "another scene")
         self.assertEqual(contents(self.folder / "out"), before)
 
-    def test_an_older_schema_is_refused(self):
+    def test_checkpoints_that_are_not_of_this_run(self):
         self.refuse(lambda file: file.attrs.modify("schema_version", np.uint64(2)), "out/checkpoint/last.h5",
                     "schema 2 was written by another version; this one reads 4", "Finish the run with the version")
-
-    def test_a_number_or_vector_that_is_missing(self):
         self.refuse(lambda file: file["vectors"].move("peak_gamma", "peak_strain"), "out/checkpoint/last.h5",
                     "holds no peak_gamma", "--overwrite")
         self.refuse(lambda file: file["numbers"].attrs.pop("peak_ru"), "out/checkpoint/last.h5",
                     "holds no peak_ru", "--overwrite")
-
-    def test_a_count_that_counts_nothing(self):
-        for wrong in (-1.0, 0.5, 1e300):
-            self.refuse(lambda file, wrong=wrong: file["numbers"].attrs.modify("rows", wrong),
-                        f"last.h5: rows = {wrong:g}, expected a whole number", "--overwrite")
-        self.refuse(lambda file: file["numbers"].attrs.modify("rows", float("nan")),
-                    "last.h5:/numbers/@rows: is not a finite number", "--overwrite")
+        for wrong, said in ((0.5, "last.h5: rows = 0.5, expected a whole number"),
+                            (np.nan, "last.h5:/numbers/@rows: is not a finite number")):
+            self.refuse(lambda file, wrong=wrong: file["numbers"].attrs.modify("rows", wrong), said, "--overwrite")
 
     def test_consolidation(self):
         options = [SCENES / "terzaghi.toml", *settings(analysis__steps=60, output__checkpoint="1e-9 min")]
@@ -138,7 +133,7 @@ class MPIRanks(ColumnTest):
 
     def test_a_rank_is_killed(self):
         """In the midst of a step, which waits for all ranks: the others end too, and the run goes on."""
-        options = settings(analysis__duration="8 s", output__checkpoint="1e-9 min")
+        options = settings(analysis__duration="3 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "whole", *options))
         checkpoint = self.folder / "out/checkpoint/previous.h5"
         for more in self.DISTRIBUTED + settings(analysis__duration="100000 s"), options:
@@ -166,17 +161,17 @@ class MPIRanks(ColumnTest):
 
     def test_replicated_to_the_bit(self):
         options = settings(output__profile_interval="0.05 s", output__paraview_interval="0.5 s")
-        results = [self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options) for n in (1, 2, 3)]
-        for n, result in enumerate(results, 1):
+        results = [self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options) for n in (1, 3)]
+        for n, result in zip((1, 3), results):
             self.assert_done(result)
             self.assertEqual(result.stdout.count("peak shear strain"), 1)
             self.assert_same_files("on1", f"on{n}")
             self.assertEqual(len(re.findall("time step .* stable up to", result.stderr)), 1)
 
     def test_distributed(self):
-        options = self.DISTRIBUTED + settings(analysis__duration="0.5 s")
+        options = self.DISTRIBUTED + settings(analysis__duration="0.3 s")
         rows = {}
-        for n in (1, 2, 3):
+        for n in (1, 3):
             self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
             rows[n] = history(self.folder / f"on{n}")
             self.assertFalse((self.folder / f"on{n}/profiles.h5").exists())
@@ -188,17 +183,17 @@ class MPIRanks(ColumnTest):
                                  f"round-off of sums over the ranks ({name})")
 
     def test_distributed_goes_on_from_a_checkpoint(self):
-        """Interrupted on two ranks in the midst of the motion, resumed on one, two and three."""
+        """Interrupted on two ranks in the midst of the motion, resumed on others."""
         block = settings(mesh__dimension=3, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=2)
         cap = settings(layer__0__permeability="1e-8 m/s")  # its expansion is of a whole mesh alone
-        for shape, duration in (self.DISTRIBUTED + cap, "1 s"), (block, "0.4 s"):
+        for shape, duration, ranks in (self.DISTRIBUTED + cap, "0.4 s", (2, 3)), (block, "0.3 s", (1,)):
             with self.subTest(shape):
-                self.go_on_from_a_checkpoint(shape + settings(analysis__duration=duration,
-                                                              output__checkpoint="1e-9 min"))
+                self.go_on_from_a_checkpoint(ranks, shape + settings(analysis__duration=duration,
+                                                                     output__checkpoint="1e-9 min"))
             for path in list(self.folder.glob("o*")) + [self.folder / "whole"]:
                 shutil.rmtree(path)
 
-    def go_on_from_a_checkpoint(self, options):
+    def go_on_from_a_checkpoint(self, ranks, options):
         self.assert_done(self.run_on_ranks(2, self.scene, "-o", "whole", *options))
         checkpoint = self.folder / "out/checkpoint/last.h5"
         _, said = self.stop_when(checkpoint.exists, checkpoint, signal.SIGTERM, self.ranks(2, *options),
@@ -208,7 +203,7 @@ class MPIRanks(ColumnTest):
         with h5py.File(checkpoint) as file:
             self.assertGreaterEqual(file.attrs["step"], 256)
             self.assertLess(file.attrs["step"], whole["step"][-1])
-        for n in (1, 2, 3):
+        for n in ranks:
             shutil.copytree(self.folder / "out", self.folder / f"on{n}")
             self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", "--resume", *options))
             resumed = history(self.folder / f"on{n}")

@@ -23,6 +23,7 @@ BIN = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and not sys.a
 os.environ.pop("PYTHONUNBUFFERED", None)  # as in the shell of a user
 TIME_LIMIT = float(os.environ.get("ISOSTAT_TIME_LIMIT", "3600")) / 4  # s; a hang is reported before ctest ends the test
 ATTEMPTS = 5  # to stop a run, which may end first on a busy machine
+CACHE = tempfile.TemporaryDirectory(prefix="isostat_cache_")  # pylint: disable=consider-using-with
 
 TINY = """title = "tiny"
 [grading]
@@ -101,15 +102,7 @@ class ToleranceTest(unittest.TestCase):
 class AppTest(ToleranceTest):
     """A test with a folder of its own, in which the programs run. Prepared specimens are kept for the whole script."""
 
-    cache = None
-
-    @classmethod
-    def setUpClass(cls):
-        cls.cache = pathlib.Path(tempfile.mkdtemp(prefix="isostat_cache_"))
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.cache)
+    cache = pathlib.Path(CACHE.name)
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_app_"))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The states in which codes break: liquefied, very dense, reversed while liquid, no friction, nothing in contact. Each
-// test asserts what must come out, not only that it ran.
+// The states in which codes break, in a box: liquefied, reversed while liquid, nothing in contact. Each test asserts
+// what must come out, not only that it ran. Dense, stiff and frictionless packings: rve_hard_cases_test.cpp.
 #include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/measure/summary.hpp"
@@ -88,20 +88,6 @@ TEST(HardCases, LiquidShearReversalAndResolidification)
                        "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
 }
 
-TEST(HardCases, DenseConstantVolumeShearReachesMegapascals)
-{
-  Shear shear(test::specimen(500, 2));
-  shear.to(0.01, 2);
-  const Micromechanics m = shear.look();
-  std::printf("dense, 1 %% strain: p' %.2f MPa, q/p' %.3f\n", m.wall.p / 1e6, m.wall.q / m.wall.p);
-  EXPECT_GT(m.wall.p, 1e6);
-  EXPECT_GT(m.wall.q / m.wall.p, 0.8);
-  EXPECT_NEAR_BECAUSE(m.wall.p / m.contact.p, 1, 0.02, "inertia: what the walls feel runs ahead of the contacts");
-  const EnergyBalance e = shear.assembly.energy();
-  EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 1e-3 * e.boundary_work,
-                       "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
-}
-
 TEST(HardCases, RattlersOnlyCarryNoStress)
 {
   const Snapshot s = loosened(test::specimen(500, 10), 0.5);
@@ -120,35 +106,6 @@ TEST(HardCases, RattlersOnlyCarryNoStress)
   EXPECT_EQ(m.network.redundancy_index(), 0);
   for (double value : m.row())
     EXPECT_TRUE(std::isfinite(value));
-}
-
-TEST(HardCases, WithoutFrictionItLiquefiesAtOnce)
-{
-  Snapshot s = test::specimen(500, 2);
-  s.law->friction = 0;
-  Shear shear(s);
-  shear.to(0.005, 1);
-  const Micromechanics m = shear.look();
-  std::printf("frictionless, 0.5 %% strain: p' %.2f kPa\n", m.wall.p / 1e3);
-  EXPECT_BELOW_BECAUSE(m.wall.p, 0.05 * 200e3, "liquefied: p' below 5 % of what it began with");
-  EXPECT_EQ(m.network.classes.nsr, m.network.classes.total());
-  const EnergyBalance e = shear.assembly.energy();
-  EXPECT_EQ(e.sliding + e.rolling, 0);
-}
-
-TEST(HardCases, TenTimesStifferGrains)
-{
-  Snapshot s = test::specimen(500, 10);
-  s.law->young *= 10;
-  for (std::size_t i = 0; i < s.grains.n_grains(); ++i)
-    s.grains.set_linear_velocity(i, Vec3::Zero());
-  const double soft =
-      critical_step_bound(test::specimen(500, 10).law, s.grains, &s.box, Assembly(test::specimen(500, 10)).contacts());
-  Shear shear(s); // the same overlaps now mean ten times the stress
-  shear.to(1e-4, 1);
-  EXPECT_NEAR_BECAUSE(shear.assembly.settings.time_step / soft, std::sqrt(0.1), 0.1,
-                      "the same network, whose critical step falls with the root of the stiffness; the safety differs");
-  EXPECT_GT(shear.look().wall.p, 1e6);
 }
 
 TEST(HardCases, ANotANumberStopsTheRunAndNamesTheGrain)

@@ -58,7 +58,7 @@ public:
   double largest_energy() const { return largest_energy_; }
 
 private:
-  static constexpr double shaking = 8; ///< s
+  static constexpr double shaking = 3; ///< s
 
   static MeshSpec mesh(double tangent)
   {
@@ -121,7 +121,7 @@ TEST(SlopeHardCases, ALiquefiedSlopeFlowsToAHundredPerCentAndComesToRestUnderIts
 }
 
 /// As far as any slope goes: the cell is exchanged again and again, the stress stays that of a critical state.
-TEST(SlopeHardCases, APackingIsShearedToFourHundredPerCent)
+TEST(SlopeHardCases, APackingIsShearedToThreeHundredPerCent)
 {
   RveSettings settings;
   settings.motion.inertial_number = 1e-3;
@@ -130,20 +130,20 @@ TEST(SlopeHardCases, APackingIsShearedToFourHundredPerCent)
   Rve rve(specimen_of_friction(8), settings);
   const double volume = rve.assembly().volume();
   double largest = 0, smallest = 1e300; // tau/p' of the second half
-  for (int k = 0; k < 800; ++k)
+  for (int k = 0; k < 600; ++k)
     {
       Mat3 h = Mat3::Zero();
       h(0, 2) = 5e-3;
       const RveResponse r = rve.undrained(h);
       ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason << " at gamma " << 5e-3 * k;
       ASSERT_TRUE(r.stress.allFinite());
-      if (k < 400)
+      if (k < 300)
         continue;
       const double ratio = r.stress(0, 2) / (-r.stress.trace() / 3);
       largest = std::max(largest, ratio);
       smallest = std::min(smallest, ratio);
     }
-  std::printf("400 %% of shear: %d flips, tau/p' between %.2f and %.2f over the second half, p' %.1f kPa\n",
+  std::printf("300 %% of shear: %d flips, tau/p' between %.2f and %.2f over the second half, p' %.1f kPa\n",
               static_cast<int>(rve.save().grains.cell.flips), smallest, largest, -rve.stress().trace() / 3e3);
   EXPECT_GT(rve.save().grains.cell.flips, 2u);
   EXPECT_NEAR_BECAUSE(rve.assembly().volume() / volume, 1, 1e-12, "round-off: the volume is set from its logarithm");

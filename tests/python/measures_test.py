@@ -1,21 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures of a packing from Python: they agree with each other and have a unit each."""
-import tempfile
 import unittest
 
 import numpy as np
 
-from package import CONTACT, ToleranceTest, isostat
+from package import ToleranceTest, isostat, packing_in_cell
 
 
 class MeasuresTest(ToleranceTest):
     @classmethod
     def setUpClass(cls):
-        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact=CONTACT,
-                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
-        with tempfile.TemporaryDirectory() as cache:
-            cls.packing = isostat.prepare(scene, cache=cache).snapshot
+        cls.packing = packing_in_cell()
         cls.measures = cls.packing.measures()
 
     def test_stress_and_fabric_are_those_of_the_history(self):
@@ -36,10 +32,7 @@ class MeasuresTest(ToleranceTest):
         self.assertGreater(min(self.packing.stored_energy().values()), -1e-30)
 
     def test_the_redundancy_index_is_that_of_the_law(self):
-        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact={"friction": "18 deg"},
-                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
-        with tempfile.TemporaryDirectory() as cache:
-            network = isostat.prepare(scene, cache=cache).snapshot.network()
+        network = packing_in_cell(contact={"friction": "18 deg"}).network()
         self.assertEqual((network["constraints_of_a_contact"], network["isostatic_coordination_number"]), (3, 4))
         self.assertEqual(network["redundancy_index"], network["redundancy_index_sliding"])
         self.assertGreater(network["redundancy_index_eq2"], 1.9 * network["redundancy_index"], "moments count")

@@ -11,7 +11,7 @@ from support import BIN as BINARIES, TIME_LIMIT, ToleranceTest  # noqa: E402  (t
 sys.path[:0] = [str(BINARIES.parent / "python")]
 import isostat  # noqa: E402
 
-__all__ = ["BINARIES", "TIME_LIMIT", "FolderTest", "ToleranceTest", "isostat"]
+__all__ = ["BINARIES", "TIME_LIMIT", "FolderTest", "ToleranceTest", "isostat", "packing_in_cell"]
 
 CONTACT = {"friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5}, "twisting": {"stiffness": 0.3}}
 SMALL_SCENE = """title = "small"
@@ -28,6 +28,13 @@ preparation_friction = "12 deg"
 kind = "undrained-monotonic"
 strain = 1e-3
 """
+
+
+def packing_in_cell(grains=250, edge="2.9 mm", contact=None):
+    scene = isostat.Scene(grading={"grains": grains, "cloud_edge": edge}, contact=contact or CONTACT,
+                          specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
+    with tempfile.TemporaryDirectory() as cache:
+        return isostat.prepare(scene, cache=cache).snapshot
 
 
 class FolderTest(ToleranceTest):

@@ -2,24 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The representative volume element from Python: strain in, stress out, there and back."""
 import signal
-import tempfile
 import threading
 import unittest
 
 import numpy as np
 
-from package import CONTACT, ToleranceTest, isostat
+from package import ToleranceTest, isostat, packing_in_cell
 
 
 class RveTest(ToleranceTest):
     @classmethod
     def setUpClass(cls):
-        scene = isostat.Scene(grading={"grains": 250, "cloud_edge": "2.9 mm"}, contact=CONTACT,
-                              specimen={"domain": "periodic-cell", "preparation_friction": "10 deg"})
-        with tempfile.TemporaryDirectory() as cache:
-            cls.packing = isostat.prepare(scene, cache=cache).snapshot
-            small = scene.with_(grading={"grains": 200, "cloud_edge": "2.7 mm"})
-            cls.other_packing = isostat.prepare(small, cache=cache).snapshot
+        cls.packing, cls.other_packing = packing_in_cell(), packing_in_cell(200, "2.7 mm")
 
     def test_stress_follows_the_stiffness(self):
         rve = isostat.Rve(self.packing, min_steps=2000)
@@ -69,35 +63,12 @@ class RveTest(ToleranceTest):
         self.assert_near(response.stress[0, 0] / target[0, 0], 1, 1.1e-3, "the tolerance of the control, of p'")
         self.assertLess(response.stress[1, 1], target[1, 1])  # more compression along y
 
-    def test_a_target_that_cannot_be_reached_ends(self):
-        rve = isostat.Rve(self.packing, max_steps=3000)
-        before, none = rve.stress, np.zeros((3, 3))
-        response = rve.mixed(none, np.diag([-1e9, 0.0, 0.0]), np.diag([True, False, False]))
-        self.assertFalse(response)
-        self.assertRegex(response.reason, "off its target after 3000 steps")
-        np.testing.assert_array_equal(rve.stress, before)
-        sheared = isostat.Rve(self.packing).mixed(none, np.diag([-2e5, -4e6, 0.0]), np.diag([True, True, False]))
-        self.assertRegex(sheared.reason, "off its target after a strain of 0.1, [0-9]+ steps: the grains cannot")
-        with self.assertRaisesRegex(isostat.InputError, "max_steps"):
-            isostat.Rve(self.packing, max_steps=0)
-
     def test_what_stress_control_cannot_do_is_rejected_at_once(self):
-        rve, none = isostat.Rve(self.packing), np.zeros((3, 3))
-        before, normal, every = rve.stress, np.diag([True] * 3), np.full((3, 3), True)
-        crooked, steep = before.copy(), before.copy()
-        crooked[0, 1] += 1e4
-        steep[0, 2] = steep[2, 0] = 3e5
-        for gradient, stress, controlled, reason in (
-                (none, np.diag([1e5, 0.0, 0.0]), np.diag([True, False, False]), "1e[+]05 Pa for xx is tension.*neg"),
-                (none, -before, normal, "for xx is tension"),
-                (none, crooked, every, r"not symmetric: .* Pa for xy, .* Pa for yx"),
-                (none, steep, every, "shear stress of 3e[+]05 Pa for xz needs tension"),
-                (np.diag([0.0, -1e-4, 0.0]), before, normal, "a strain of -0.0001 is prescribed along yy, whose"),
-                (none, before, np.triu(every), "stress control must be symmetric")):
-            with self.subTest(reason):
-                response = rve.mixed(gradient, stress, controlled)
-                self.assertRegex(response.reason, reason)
-                self.assertEqual((bool(response), response.steps), (False, 0))
+        rve, none, every = isostat.Rve(self.packing), np.zeros((3, 3)), np.full((3, 3), True)
+        before = rve.stress
+        response = rve.mixed(none, np.diag([1e5, 0.0, 0.0]), np.diag([True, False, False]))
+        self.assertRegex(response.reason, "1e[+]05 Pa for xx is tension.*neg")
+        self.assertEqual((bool(response), response.steps), (False, 0))
         turned = np.array([[0, 1e-5, 0], [-1e-5, 0, 0], [0, 0, 0]])  # a rotation strains nothing
         self.assertTrue(rve.mixed(turned, before, every))
 
@@ -130,8 +101,7 @@ class RveTest(ToleranceTest):
         np.testing.assert_array_equal(rve.stress, alone.stress)
 
     def test_settings_out_of_range_are_refused(self):
-        for setting in ({"damping": 1.5}, {"damping": -2}, {"inertial_number": -1e-3}, {"inertial_number": 1e3},
-                        {"strain_rate": -5}, {"strain_rate": float("nan")}):
+        for setting in ({"damping": 1.5}, {"inertial_number": -1e-3}, {"strain_rate": float("nan")}, {"max_steps": 0}):
             with self.subTest(setting), self.assertRaisesRegex(isostat.InputError, next(iter(setting)) + " = .*must"):
                 isostat.Rve(self.packing, **setting)
 

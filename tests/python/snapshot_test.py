@@ -83,14 +83,11 @@ class SnapshotTest(ToleranceTest):
             metres = isostat.Snapshot.from_spheres(1e3 * CENTRES, [1e3 * R] * 3, box=1e3 * BOX, anyway=True)
             source = f"{folder}/a.h5"
             isostat.write_packing(source, isostat.Specimen(small))
-            for ending in ("dump", "data", "txt", "csv", "vtp", "h5"):
-                target = f"{folder}/b.{ending}"
-                isostat.convert(pathlib.Path(source), target)
-                with self.assertRaisesRegex(isostat.InputError, "the file exists"):
-                    isostat.convert(source, target)
-                again = isostat.read_packing(target).snapshot
-                np.testing.assert_array_equal(again.positions, small.positions)
-                np.testing.assert_array_equal(again.cell if ending != "dump" else small.cell, small.cell)
+            target = f"{folder}/b.data"
+            isostat.convert(pathlib.Path(source), target)
+            with self.assertRaisesRegex(isostat.InputError, "the file exists"):
+                isostat.convert(source, target)
+            np.testing.assert_array_equal(isostat.read_packing(target).snapshot.positions, small.positions)
             isostat.write_packing(f"{folder}/c.csv", isostat.Specimen(metres))
             with self.assertRaisesRegex(isostat.InputError, "largest radius"):
                 isostat.read_packing(f"{folder}/c.csv")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Columns of grains on 1, 2 and 3 ranks: scenes in columns/ against their expected histories.
+"""Columns of grains on one rank and on 2 or 3: scenes in columns/ against their expected histories.
 
     columns_test.py BIN_FOLDER [--regenerate]
 
@@ -24,7 +24,6 @@ from regression_test import table
 HERE = pathlib.Path(__file__).resolve().parent / "columns"
 EARLY_ROWS, EARLY, LATE = 2, 1e-5, 0.03
 LEFT_OUT = re.compile(r"residual|max_ru_|depth")  # differences of nearly equal numbers, and places of a largest value
-RANKS = (1, 2, 3)
 
 
 def run(binary, scene, folder, n):
@@ -62,17 +61,16 @@ def compare(name, got, wanted):
     return problems
 
 
-def check(binary, scene, folder):
+def check(binary, scene, folder, n):
     shutil.copy(HERE / "in_situ.h5", folder)
-    results = {n: run(binary, scene, folder, n) for n in RANKS}
+    one, more = (run(binary, scene, folder, ranks) for ranks in (1, n))
     expected = scene.with_suffix(".expected.csv")
     if "--regenerate" in sys.argv:
-        shutil.copy(results[1] / "history.csv", expected)
-    problems = compare(scene.stem, table(results[1] / "history.csv"), table(expected))
-    for n in RANKS[1:]:
-        for file in ("history.csv", "history.h5", "paths/d0/history.h5", "checkpoint/last.h5"):
-            if (results[1] / file).read_bytes() != (results[n] / file).read_bytes():
-                problems.append(f"{scene.stem}: {file} of {n} ranks is not that of one")
+        shutil.copy(one / "history.csv", expected)
+    problems = compare(scene.stem, table(one / "history.csv"), table(expected))
+    for file in ("history.csv", "history.h5", "paths/d0/history.h5", "checkpoint/last.h5"):
+        if (one / file).read_bytes() != (more / file).read_bytes():
+            problems.append(f"{scene.stem}: {file} of {n} ranks is not that of one")
     if (pathlib.Path(folder) / "in_situ.h5").read_bytes() != (HERE / "in_situ.h5").read_bytes():
         problems.append(f"{scene.stem}: states in situ were made anew: columns/in_situ.h5 is of another recipe")
     return problems
@@ -81,11 +79,11 @@ def check(binary, scene, folder):
 def main():
     binary = str(pathlib.Path(sys.argv[1]).resolve() / "soil_column")
     problems, scenes = [], sorted(HERE.glob("*.toml"))
-    for scene in scenes:
+    for k, scene in enumerate(scenes):
         with tempfile.TemporaryDirectory() as folder:
-            problems += check(binary, scene, folder)
+            problems += check(binary, scene, folder, 2 + k % 2)
     print("\n".join(problems) if problems
-          else f"{len(scenes)} scene(s) agree with their expectations on 1, 2 and 3 ranks")
+          else f"{len(scenes)} scene(s) agree with their expectations on one rank and on more")
     return 1 if problems else 0
 
 

@@ -3,6 +3,8 @@
 #include "dem/drive/programme.hpp"
 #include "tests/support/specimens.hpp"
 
+#include <gtest/gtest.h>
+
 namespace isostat::test
 {
 /// Keeps what a test looks at.
@@ -19,10 +21,28 @@ struct Watcher : RunObserver
   void record(const Assembly &a, const DriveState &state, const Observation &seen, bool) override
   {
     rows.push_back({seen, a.volume(), state.place.stage, state.undrained.reversals, a.time(), state.progress.place});
+    if (a.cell())
+      narrowest = std::min(narrowest, a.cell()->widths().minCoeff());
   }
   bool after_step(const Assembly &a, const DriveState &, const Observation &) override { return a.step() != stop_at; }
 
+  /// Largest of |f - wanted| over the rows that have at least this q.
+  template <class F>
+  double worst(double wanted, F &&f, double least_q = 0) const
+  {
+    double found = 0;
+    for (const Row &row : rows)
+      if (std::abs(row.seen.q) >= least_q)
+        found = std::max(found, std::abs(f(row) - wanted));
+    return found;
+  }
+  double change_of_volume() const
+  {
+    return worst(1, [&](const Row &row) { return row.volume / rows.front().volume; });
+  }
+
   std::vector<Row> rows;
+  double narrowest = HUGE_VAL; ///< width of a cell, m
   std::vector<std::string> events;
   std::uint64_t stop_at = 0;
 };
@@ -40,13 +60,46 @@ inline Programme programme(std::vector<Stage> stages, std::uint64_t records = 10
   return {.record = {.record_steps = records}, .stages = std::move(stages)};
 }
 
-inline Result run(std::vector<Stage> stages, const Snapshot &initial)
+inline Result run(std::vector<Stage> stages, const Snapshot &initial, std::uint64_t records = 100)
 {
   Result result;
   Assembly assembly(initial);
-  run_programme(programme(std::move(stages)), assembly, result.state, result.watcher);
+  run_programme(programme(std::move(stages), records), assembly, result.state, result.watcher);
   result.end = assembly.checkpoint();
   return result;
+}
+
+/// Stops at each of these steps and goes on from what a checkpoint would hold, to the end of `whole`.
+inline void expect_same_end(const Stage &stage, const Snapshot &initial, const std::vector<std::uint64_t> &stops,
+                            const Snapshot &whole)
+{
+  Snapshot now = initial;
+  DriveState state;
+  Watcher watcher;
+  for (const std::uint64_t stop : stops)
+    {
+      Assembly assembly(now);
+      watcher.stop_at = stop;
+      ASSERT_EQ(run_programme(programme({stage}), assembly, state, watcher), RunOutcome::interrupted);
+      now = assembly.checkpoint();
+    }
+  Assembly last(now);
+  watcher.stop_at = 0;
+  ASSERT_EQ(run_programme(programme({stage}), last, state, watcher), RunOutcome::finished);
+  now = last.checkpoint();
+  EXPECT_EQ(now.grains.position, whole.grains.position);
+  EXPECT_EQ(now.grains.velocity, whole.grains.velocity);
+  EXPECT_EQ(now.grains.spin, whole.grains.spin);
+  ASSERT_EQ(now.contacts.size(), whole.contacts.size());
+  for (std::size_t c = 0; c < now.contacts.size(); ++c)
+    EXPECT_EQ(now.contacts[c].history.shear_force, whole.contacts[c].history.shear_force);
+  ASSERT_EQ(now.cell.has_value(), whole.cell.has_value());
+  if (now.cell)
+    {
+      EXPECT_EQ(now.cell->edges, whole.cell->edges);
+      EXPECT_EQ(now.cell->rotation, whole.cell->rotation);
+      EXPECT_EQ(now.cell->flips, whole.cell->flips);
+    }
 }
 
 inline const Snapshot &box() { return specimen(1000, 8); }

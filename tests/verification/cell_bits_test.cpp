@@ -206,18 +206,4 @@ TEST(CellState, RestoredAfterOtherFlipsIsTheSame)
   after(a, sideways, 3);
   expect_same_state(after(a, forward, 200), end);
 }
-
-TEST(CellState, IsSmall)
-{
-  Assembly a(periodic_specimen(500, 5));
-  a.settings.time_step = dt;
-  a.compute_forces();
-  const AssemblyState state = a.save();
-  const double grains = 500, z = 2 * static_cast<double>(state.pairs.size()) / grains,
-               bytes = static_cast<double>(state.bytes()) / grains, at_five = bytes + 104 * 0.5 * (5 - z);
-  std::printf("Z = %.2f: %.0f bytes per grain, %.0f at Z = 5\n", z, bytes, at_five);
-  EXPECT_GT(z, 3.5);
-  EXPECT_LE(bytes, 400);
-  EXPECT_LE(at_five, 400);
-}
 } // namespace isostat

@@ -38,19 +38,6 @@ Assembly at_rest(int steps)
 }
 } // namespace
 
-TEST(PeriodicPacking, CarriesThePressureItWasMadeFor)
-{
-  Assembly a = at_rest(1);
-  const Mat3 stress = a.stress() / 200e3;
-  const auto widths = a.cell()->widths();
-  std::printf("%zu contacts, Z = %.2f, stress/200 kPa + 1: %.1e, cell %.2f mm wide\n", a.snapshot().contacts.size(),
-              2.0 * a.snapshot().contacts.size() / 500, (stress + Mat3::Identity()).diagonal().norm(),
-              1e3 * widths.minCoeff());
-  EXPECT_BELOW_BECAUSE((stress + Mat3::Identity()).diagonal().norm(), 0.005,
-                       "the servo of the preparation stops within 0.3 % in each direction");
-  EXPECT_BELOW_BECAUSE(a.unbalanced_force_ratio(), 1e-4, "the preparation ends at an unbalanced force of 1e-4");
-}
-
 TEST(PeriodicPacking, MomentumOfTheFluctuationsIsKeptToRoundOff)
 {
   Random random(1);

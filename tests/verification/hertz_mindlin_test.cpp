@@ -114,11 +114,11 @@ TEST(HertzMindlinPacking, EnergyBalanceClosesWithTheTimeStep)
   EXPECT_BELOW_BECAUSE(residuals[2], 0.5 * residuals[0], "first order, a quarter of the step");
 }
 
-TEST(HertzMindlinPacking, StaysInOrderForTenMillionSteps)
+TEST(HertzMindlinPacking, StaysInOrderForAMillionSteps)
 {
   test::CellRecipe recipe{.grading = test::small_grading(100), .degrees = 12};
   recipe.law = HertzMindlin();
-  Rve rve(test::prepare_in_cell(recipe), {.motion = {.inertial_number = 1e-3}, .min_steps = 50'000});
+  Rve rve(test::prepare_in_cell(recipe), {.motion = {.inertial_number = 1e-3}, .min_steps = 5'000});
   const double volume = rve.assembly().volume();
   double gamma = 0;
   Mat3 gradient = Mat3::Zero();
@@ -131,7 +131,7 @@ TEST(HertzMindlinPacking, StaysInOrderForTenMillionSteps)
       ASSERT_TRUE(r.stress.allFinite());
     }
   std::printf("%llu steps, p' %.2f kPa\n", static_cast<unsigned long long>(rve.cost().steps), pressure(rve) / 1e3);
-  EXPECT_GE(rve.cost().steps, 10'000'000u);
+  EXPECT_GE(rve.cost().steps, 1'000'000u);
   EXPECT_NEAR_BECAUSE(rve.assembly().volume() / volume, 1, 1e-12, "round-off: the volume is set from its logarithm");
   EXPECT_BELOW_BECAUSE(rve.kinetic_stress().norm(), 1e3, "quasi-static: the packing was prepared at 200 kPa");
 }

@@ -159,13 +159,6 @@ TEST_P(PackingAtRest, RedundancyIsHalfTheCoordinationNumber)
   EXPECT_DOUBLE_EQ(network.redundancy_index(), 0.5 * network.coordination_number());
 }
 
-TEST_P(PackingAtRest, FabricHasTraceOne)
-{
-  const Mat3 fabric = contact_fabric(at_rest(GetParam()));
-  EXPECT_NEAR_BECAUSE(fabric.trace(), 1, 1e-14, "round-off of a mean of thousands of unit vectors");
-  EXPECT_BELOW_BECAUSE((fabric - fabric.transpose()).norm(), 1e-15, "round-off of symmetric sums");
-}
-
 TEST_P(PackingAtRest, WallStressIsLoveWeberStress)
 {
   const Snapshot s = at_rest(GetParam());

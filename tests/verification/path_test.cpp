@@ -21,17 +21,6 @@ using namespace test;
 
 double b_of(const Vec3 &s) { return (s[2] - s[0]) / (s[1] - s[0]); }
 
-/// Largest of |f - wanted| over the rows from a share of the largest q on.
-template <class F>
-double worst(const Result &result, double wanted, F &&f, double least_q = 0)
-{
-  double found = 0;
-  for (const auto &row : result.watcher.rows)
-    if (std::abs(row.seen.q) >= least_q)
-      found = std::max(found, std::abs(f(row.seen) - wanted));
-  return found;
-}
-
 TEST(PathTrueTriaxial, KeepsPAndB)
 {
   for (const Snapshot *specimen : {&box(), &cell()})
@@ -39,9 +28,9 @@ TEST(PathTrueTriaxial, KeepsPAndB)
       Path path = keeping(PathCondition::p, PathCondition::b, 5e-3);
       path.b = 0.5;
       const Result result = run({path}, *specimen);
-      const double p = worst(result, 200e3, [](const Observation &seen) { return seen.p; }) / 200e3;
-      const double b = worst(
-          result, 0.5, [](const Observation &seen) { return b_of(seen.stress); }, 60e3);
+      const double p = result.watcher.worst(200e3, [](const auto &row) { return row.seen.p; }) / 200e3;
+      const double b = result.watcher.worst(
+          0.5, [](const auto &row) { return b_of(row.seen.stress); }, 60e3);
       std::printf("constant p' and b: p' within %.2e, b within %.2e, q at the end %.1f kPa\n", p, b,
                   result.last().seen.q / 1e3);
       EXPECT_BELOW_BECAUSE(p, 0.005, "single rows of 500 or 1,000 grains, while the servo follows");
@@ -72,8 +61,7 @@ TEST(PathUndrained, SharesOutWhatKeepsTheVolume)
   for (const Snapshot *specimen : {&box(), &cell()})
     {
       const Result result = run({keeping(PathCondition::volume, PathCondition::volume, 2e-3)}, *specimen);
-      for (const auto &row : result.watcher.rows)
-        EXPECT_NEAR_BECAUSE(row.volume / result.watcher.rows[0].volume, 1, 1e-12, "round-off of some 1e4 steps");
+      EXPECT_BELOW_BECAUSE(result.watcher.change_of_volume(), 1e-12, "round-off of some 1e4 steps");
       EXPECT_NEAR_BECAUSE(result.last().seen.strain[0], -1e-3, 1e-6, "half of the axial strain, and its last step");
     }
 }
@@ -204,7 +192,7 @@ TEST_F(PathFile, IsFollowedThroughTheDeviatoricPlane)
     for (int k = 0; k < 3; ++k)
       off = std::max(off,
                      std::abs(row.seen.stress[k] - path.table().value(static_cast<PathQuantity>(k), row.place, 200e3)));
-  const double p = worst(result, 200e3, [](const Observation &seen) { return seen.p; }) / 200e3;
+  const double p = result.watcher.worst(200e3, [](const auto &row) { return row.seen.p; }) / 200e3;
   std::printf("deviatoric plane: stresses within %.0f Pa, p' within %.2e\n", off, p);
   EXPECT_BELOW_BECAUSE(off, 2e3, "the servo lags behind a moving target");
   EXPECT_BELOW_BECAUSE(p, 0.005, "the same, of the mean");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads that share a packing change no bit: 20,000 steps of shear that open and close contacts and rebuild the list.
+// Threads that share a packing change no bit: 8,000 steps of shear that open and close contacts and rebuild the list.
 #include "dem/assembly/assembly.hpp"
 #include "tests/support/specimens.hpp"
 
@@ -58,19 +58,19 @@ void expect_same_bits(const Outcome &a, const Outcome &b)
 }
 } // namespace
 
-TEST(Threads, ChangeNoBitInTwentyThousandSteps)
+TEST(Threads, ChangeNoBitInEightThousandSteps)
 {
   const Snapshot initial = test::row_of_copies(test::specimen(1000, 2), 5);
   ASSERT_GE(Partition(static_cast<std::uint32_t>(initial.grains.n_grains())).n_chunks, 4u);
-  const Outcome one = sheared(initial, 1, 20000, false);
+  const Outcome one = sheared(initial, 1, 8000, false);
   std::printf("%zu grains, %zu contacts at the end, %llu rebuilds\n", initial.grains.n_grains(),
               one.end.contacts.size(), static_cast<unsigned long long>(one.n_rebuilds));
-  EXPECT_GT(one.n_rebuilds, 50u);
+  EXPECT_GT(one.n_rebuilds, 20u);
   EXPECT_GT(one.end.contacts.size(), 5000u);
-  for (int threads : {2, 3, 4})
+  for (int threads : {2, 3})
     {
       SCOPED_TRACE(threads);
-      expect_same_bits(one, sheared(initial, threads, 20000, threads == 3));
+      expect_same_bits(one, sheared(initial, threads, 8000, threads == 3));
     }
 }
 

@@ -77,6 +77,9 @@ TEST(BoxScene, RefusesPlatesThatAreNone)
 {
   expect_refused(with_plate("", "to = \"11 m\"\n"), {"analysis.to", "from 0 m to 11 m of 10 m"});
   expect_refused(with_plate(), {"analysis.displacement", "nothing moves"}, {"analysis.displacement=0 m"});
+  expect_refused(with_plate(), {"analysis.displacement", "within +-", "taken as small"}, {"analysis.displacement=9 m"});
+  expect_refused(with_plate("", "from = \"0.3 m\"\nto = \"1.3 m\"\n"), {"analysis.to", "boundaries between elements"});
+  expect_refused(with_plate(), {"water.drainage", "\"dry\""}, {"water.drainage=coupled", "layer.0.permeability=1 m/s"});
   expect_refused(with_plate(), {"mesh.sides", "\"walls\" beside a plate"}, {"mesh.sides=tied"});
   expect_refused(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
   expect_refused(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});

@@ -299,22 +299,6 @@ TEST(Assembly, FailureNamesStepAndGrain)
   EXPECT_EQ(failure_of(packing_at_pressure(), 20), "no failure");
 }
 
-TEST(Assembly, StateTakesAtMost400BytesPerGrainWhenEachTouchesFive)
-{
-  const Assembly assembly = [] {
-    Assembly a = make_assembly(packing_at_pressure());
-    a.compute_forces();
-    return a;
-  }();
-  const double grains = static_cast<double>(assembly.packing().n_grains());
-  const double contacts = static_cast<double>(assembly.snapshot().contacts.size());
-  const MemoryUse memory = assembly.memory();
-  const double per_contact = 8 + 8 * 12, per_grain = 3 * 32 + 4, padding = 2 * 3 * 32;
-  EXPECT_EQ(static_cast<double>(memory.state), per_grain * grains + padding + per_contact * contacts);
-  EXPECT_LE(per_grain + per_contact * 5 / 2, 400);
-  EXPECT_LE(static_cast<double>(memory.working), 400 * grains);
-}
-
 TEST(Assembly, ComputingForcesTwiceIsTheSameAsOnce)
 {
   Assembly once = make_assembly(packing_at_pressure()), twice = once;

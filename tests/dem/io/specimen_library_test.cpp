@@ -154,16 +154,6 @@ TEST_F(SpecimenLibrary, UnknownEntriesAreAnsweredWithTheList)
   EXPECT_THAT(message_of<InputError>([&] { read_library_entry(path, "s0001"); }), HasSubstr("without entries"));
 }
 
-TEST_F(SpecimenLibrary, WrongFilesAreRefused)
-{
-  EXPECT_THAT(refusal(), HasSubstr("no such file"));
-  put("library.h5", "x y z r\n");
-  EXPECT_THAT(refusal(), HasSubstr("not an HDF5 file"));
-  write_two();
-  cut_to_half(path);
-  EXPECT_THAT(refusal(), HasSubstr("truncated"));
-}
-
 TEST_F(SpecimenLibrary, OtherFormatsAreRefused)
 {
   hdf5::File file = hdf5::File::create(path);

@@ -48,11 +48,5 @@ TEST_F(StoredPacking, ASnapshotOfARunCountsFromHere)
   EXPECT_EQ(read.state.strain, Vec3::Zero());
   EXPECT_THAT(read.provenance.at("recipe"), HasSubstr("snapshot.h5"));
 }
-
-TEST_F(StoredPacking, OtherFilesAreRefused)
-{
-  const auto path = put("spheres.h5", "0 0 0 1\n");
-  EXPECT_THAT(message_of<InputError>([&] { read_stored_packing(path); }), HasSubstr("spheres.h5"));
-}
 } // namespace
 } // namespace isostat

@@ -166,22 +166,6 @@ TEST(Rve, NothingIsNothing)
   expect_same_bits(rve.save(), before);
 }
 
-TEST(Rve, AnIncrementTooLargeIsRejectedAndNothingChanges)
-{
-  Rve rve(specimen(), {});
-  run(rve, 0, 2);
-  const RveState before = rve.save();
-  for (const double size : {10.0, 0.02, std::numeric_limits<double>::infinity(), std::nan("")})
-    {
-      const RveResponse response = rve.advance(simple_shear(size));
-      EXPECT_EQ(response.outcome, RveOutcome::rejected) << size;
-      EXPECT_FALSE(response.reason.empty());
-      EXPECT_EQ(response.steps, 0u);
-      expect_same_bits(rve.save(), before);
-    }
-  EXPECT_EQ(rve.undrained(increment(2)).outcome, RveOutcome::accepted);
-}
-
 TEST(Rve, SmallIncrementsTakeTheMinimumNumberOfSteps)
 {
   RveSettings slow;
