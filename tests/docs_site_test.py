@@ -13,7 +13,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SKIPPED = 77
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax/MathJax.js")
-PAGES = ("index", "../README", "installation", "first_scene", "user_guide", "python", "python_api", "scene_reference",
+PAGES = ("index", "../README", "installation", "first_scene", "guide/stages", "python", "python_api", "scene_reference",
          "theory", "cpp_api", "results", "gallery", "compared")
 
 

@@ -7,7 +7,7 @@ from figures.column_results import quantity
 
 SERVO = ("compress", "rebalance", "hold", "k0-compress")
 REACHED = 1 - 1e-6  # of a strain: rows have ten digits
-# From where on a test counts as fast, docs/user_guide.md#choosing-the-rate: inertial number, largest indicator.
+# From where on a test counts as fast, docs/guide/rate.md: inertial number, largest indicator.
 FAST_INERTIA, FAST_INDICATOR = 1e-3, 0.2
 
 

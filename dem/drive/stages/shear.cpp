@@ -88,7 +88,7 @@ std::string ShearStage::refusal(double load, double sigma_v, double pressure) co
   if (!range || (load >= range->low - tolerance && load <= range->high + tolerance))
     return "";
   return fmt::format("{} = {:.4g} kPa when it begins, outside of the loads {} between which it is to turn. Bring the "
-                     "specimen between them first (docs/user_guide.md, \"Static bias\"), or change the loads.",
+                     "specimen between them first (docs/guide/stages.md, \"Static bias\"), or change the loads.",
                      mode().load_name, load / 1e3, range->text);
 }
 

@@ -253,8 +253,8 @@ def convert(source: str | os.PathLike[str], target: str | os.PathLike[str], *, l
 
 
 def import_tables(path: str | os.PathLike[str], law: _core.Law | None = None, density: float = QUARTZ) -> _core.Snapshot:
-    """A packing as a Snapshot, from a file of another program in m, or a folder with contact history (user guide). Refuses what
-    no packing of soil is, as read_packing() does.
+    """A packing as a Snapshot, from a file of another program in m, or a folder with contact history
+    (docs/guide/packings.md). Refuses what no packing of soil is, as read_packing() does.
     """
     path = path_text("path", path)
     packing, _ = read_foreign(path, Reading(density=given("density", density, numbers.Real, "a number"), law=law))
