@@ -168,7 +168,7 @@ MONOTONIC = (
           "laboratory",
           why="as in compression"),
     Claim("D_r = 0.30: q/p' at the least p'", of_loose("least p'", "q/p'"), 61.6 / 46.4, source="laboratory",
-          why="nothing is left to carry there; and as in the next row"),
+          why="hardly any stress is left there; see also the next row"),
     Claim("D_r = 0.30: q/p' of the steady state, compression", of_loose("end", "q/p'"), 1.335, source="laboratory",
           why="these contacts are stronger than the sand: drained tests show it, too. No steady state: p' still "
               "rises at 20 %"),
@@ -183,7 +183,7 @@ MONOTONIC = (
     Claim("D_r = 0.88: least p'", lambda t: t.undrained(0.88, "compression", "least p': p' (kPa)"), 143.5,
           "kPa", "laboratory", why="as at 0.64"),
     Claim("D_r = 0.30: the model overestimates q at the instability", of_loose_share("instability: q (kPa)", 77.9),
-          why="of the sizes and ways tried here none does"),
+          why="none of the sizes and ways tried here does"),
     Claim("D_r = 0.30: stiffer than the sand, less strain to the instability",
           lambda t: [1 - v for v in of_loose_share("instability: strain (%)", 0.37)(t)], source="laboratory",
           why="contacts of 10 GPa"))
@@ -248,7 +248,7 @@ CYCLIC = (
           of_halves(sentence(lambda index: index < 1, "I_R as F_yx changes sign"))),
     Claim("High redundancy goes with uniform contacts: I_R and anisotropy correlate negatively, after",
           of_liquefied(sentence(lambda correlation: correlation < 0, "correlation of I_R and |F_yx| after"))),
-    Claim("Anisotropy falls as the network forms anew: less at the end of a half cycle than at its largest",
+    Claim("Anisotropy falls as the network forms again: less at the end of a half cycle than at its largest",
           of_halves(lambda r: float(abs(r["F_yx at its end"]) < 0.95 * r["largest |F_yx|"]))),
     Claim("Anisotropy grows with the half cycles after the onset (rank correlation > 0)",
           correlated("half cycle", "F_yx at its end", 0)),
@@ -283,9 +283,8 @@ def table(tables):
     return rows
 
 
-HEADER = """Of tests at the slowest pace that there is for them, a tenth of the default's rate unless the row says
-more; n is the number of seeds. A sentence that holds in 3 of 3 seeds holds in at least 29 % of specimens, in 5 of 5 in
-at least 48 % (95 %).
+HEADER = """Of the slowest tests, at a tenth of the default rate unless the row says otherwise; n is the number of
+seeds. A statement that holds in 3 of 3 seeds holds in at least 29 % of specimens, in 5 of 5 in at least 48 % (95 %).
 
 """
 
