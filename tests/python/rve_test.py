@@ -102,7 +102,7 @@ class RveTest(ToleranceTest):
 
     def test_settings_out_of_range_are_refused(self):
         for setting in ({"damping": 1.5}, {"inertial_number": -1e-3}, {"strain_rate": float("nan")}, {"max_steps": 0}):
-            with self.subTest(setting), self.assertRaisesRegex(isostat.InputError, next(iter(setting)) + " = .*must"):
+            with self.subTest(setting), self.assertRaisesRegex(isostat.InputError, next(iter(setting)) + ".*must"):
                 isostat.Rve(self.packing, **setting)
 
     def test_too_large_an_increment_is_rejected(self):
