@@ -86,7 +86,7 @@ TEST_P(Solids, PassTenMegapascalsAtConstantVolume)
               mean_stress(rve) / 1e6, rve.stress()(0, 1) / mean_stress(rve), 100 * gamma, step, now);
   EXPECT_GT(mean_stress(rve), 10e6);
   EXPECT_GT(rve.stress()(0, 1), (way.is_hertz ? 0.3 : 0.4) * mean_stress(rve));
-  EXPECT_EQ(now < step, way.is_hertz) << "the time step follows the stiffness";
+  EXPECT_LT(now, step) << "the time step follows the stiffness";
   expect_balanced(rve);
 }
 
