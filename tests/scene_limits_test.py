@@ -38,7 +38,7 @@ STATED = {
         "layer.dilatancy_angle": "at most `friction_angle`", "layer.softening_strain": "Above 0 with a residual value",
         "layer.residual_friction_angle": "at most `friction_angle`", "layer.residual_cohesion": "at most `cohesion`",
         "layer.residual_dilatancy_angle": "at most `dilatancy_angle`",
-        "layer.mixed_realisations": "1, or at least `grains.realisations`",
+        "layer.mixed_realisations": "1, or at least `realisations`",
         "layer.lot": "Only with `mixed_realisations` above 1", "layer.lot_length": "", "base.kind": "",
         "base.p_velocity": "More than 1.155 times", "motion.axis": "A motion along z needs a rigid base",
         "motion.file": "1e-5 s to 10 s apart and within 1e6 m/s2", "motion.ramp": "At most half of `duration`",

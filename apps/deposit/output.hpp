@@ -30,8 +30,8 @@ PointValues point_values(const ColumnInstant &instant, std::size_t q, std::span<
 std::vector<double> columns_at(const ColumnInstant &instant, std::span<const std::size_t> points,
                                std::span<const double> vertical_stress);
 
-/// A column for ParaView: displacement and velocity, and means over each element of what point_columns name. Lies along z
-/// in any dimension.
+/// A column for ParaView: displacement and velocity, and means over each element of what point_columns name. Lies
+/// along z in any dimension.
 /// @param vertical_stress  sigma'_v0 of every point, Pa   @pre the mesh is not shared out
 /// @throws RunFailure  the file cannot be written
 /// tested: tests/apps/soil_column_test.py
@@ -39,8 +39,8 @@ template <int dim>
 void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress);
 
-/// What profiles.h5 and maps.h5 hold of some points: of the start `depth` (m), `sigma_v0` (Pa) and `shear_velocity` (m/s),
-/// and over time all of point_columns.
+/// What profiles.h5 and maps.h5 hold of some points: of the start `depth` (m), `sigma_v0` (Pa) and `shear_velocity`
+/// (m/s), and over time all of point_columns.
 SeriesLayout profile_layout(std::vector<double> depths, std::vector<double> sigma_v0,
                             std::vector<double> shear_velocity);
 

@@ -55,8 +55,8 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 /// @throws RunFailure  stress not reached
 SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user);
 
-/// The lot of a point depends on its place alone, that of its block, or in micrometres: not on the numbering of the mesh,
-/// nor on ranks.   @param place  m
+/// The lot of a point depends on its place alone, that of its block, or in micrometres: not on the numbering of the
+/// mesh, nor on ranks.   @param place  m
 SpecimenRequest drawn(SpecimenRequest request, const Place &place);
 
 /// The material of one layer that is not of grains, without stress.

@@ -31,9 +31,9 @@ struct SeriesLayout
   std::vector<Series> series;
 };
 
-/// Rows of several quantities over places, in an HDF5 file: a dataset for each constant, and for each series one of rows
-/// x width that grows. Written aside and renamed; rows wait in memory until flush() or until they outnumber a quarter of
-/// those written.
+/// Rows of several quantities over places, in an HDF5 file: a dataset for each constant, and for each series one of
+/// rows x width that grows. Written aside and renamed; rows wait in memory until flush() or until they outnumber a
+/// quarter of those written.
 /// @throws RunFailure  cannot be written
 /// tested: tests/apps/soil_column_test.py, tests/apps/box_test.py, tests/apps/biaxial_test.py
 class SeriesFile

@@ -27,8 +27,8 @@ struct VtuTime
   std::uint64_t step = 0;
 };
 
-/// A mesh for ParaView, by deal.II's writer; elements lie in space whatever the dimension of the mesh. No date in it: the
-/// same state is the same bytes.   @pre the mesh is not shared out
+/// A mesh for ParaView, by deal.II's writer; elements lie in space whatever the dimension of the mesh. No date in it:
+/// the same state is the same bytes.   @pre the mesh is not shared out
 /// @throws RunFailure  the file cannot be written
 /// tested: tests/apps/soil_column_test.py, tests/apps/biaxial_test.py
 template <int dim>

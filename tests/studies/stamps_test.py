@@ -20,8 +20,8 @@ STAMPS = json.loads((ROOT / "studies/stamps.json").read_text(encoding="utf-8"))
 
 def pages():
     """{study: its page}, by the table of studies/README.md."""
-    rows = re.findall(r"^\| `(\w+)` \|.*?\]\(\.\./(docs/results/\w+\.md)", (ROOT / "studies/README.md").read_text(), re.M)
-    return dict(rows)
+    text = (ROOT / "studies/README.md").read_text(encoding="utf-8")
+    return dict(re.findall(r"^\| `(\w+)` \|.*?\]\(\.\./(docs/results/\w+\.md)", text, re.M))
 
 
 class Stamps(unittest.TestCase):
