@@ -143,7 +143,8 @@ def rate(results):
         return
     text, kind = driven
     if eta is None:
-        yield "Rate:", text, "plain"
+        older = "" if "rows" in results.numbers else " How fast that is, this older run says in its summary alone."
+        yield "Rate:", text + older, "plain"
         return
     fast = []
     if (results.numbers.get("inertial_number") or 0) > FAST_INERTIA:

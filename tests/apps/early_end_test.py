@@ -98,6 +98,13 @@ class EarlyEnd(AppTest):
         self.assertIn("Stage 0, path, the last of 3 times:", report)
         self.assertIn("ended by max_steps = 5 before any of its conditions was met", report)
 
+    def test_a_condition_that_is_met_when_it_begins_is_told(self):
+        result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
+        self.assert_done(result)
+        self.assertIn("warning: stage 0 (path): ended in its first step, because one of its conditions was met when it "
+                      "began: until.p = 200 kPa (", result.stderr)
+        self.assertTrue(self.numbers("met")["ended_early"][0]["at_once"])
+
 
 if __name__ == "__main__":
     main()

@@ -5,6 +5,7 @@ import csv
 import math
 import re
 
+import h5py
 import numpy as np
 
 from support import AppTest, CYCLIC, contents, main, tiny_scene
@@ -138,6 +139,16 @@ class Micromechanics(AppTest):
         self.write("file", "precious")
         self.refuse("file/out", "cannot be made", output="file/out")
         self.assertEqual((self.folder / "file").read_text(encoding="utf-8"), "precious")
+
+    def test_foreign(self):
+        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "w") as file:
+            file["x"] = 1.0
+        self.refuse("snapshot_0001.h5", "isostat-snapshot")
+
+    def test_missing_dataset(self):
+        with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "r+") as file:
+            del file["snapshot/contacts/normal_force"]
+        self.refuse("snapshot_0001.h5", "normal_force")
 
 
 if __name__ == "__main__":

@@ -88,6 +88,20 @@ TEST(HardCases, LiquidShearReversalAndResolidification)
                        "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
 }
 
+TEST(HardCases, DenseConstantVolumeShearReachesMegapascals)
+{
+  Shear shear(test::specimen(500, 2));
+  shear.to(0.01, 2);
+  const Micromechanics m = shear.look();
+  std::printf("dense, 1 %% strain: p' %.2f MPa, q/p' %.3f\n", m.wall.p / 1e6, m.wall.q / m.wall.p);
+  EXPECT_GT(m.wall.p, 1e6);
+  EXPECT_GT(m.wall.q / m.wall.p, 0.8);
+  EXPECT_NEAR_BECAUSE(m.wall.p / m.contact.p, 1, 0.02, "inertia: what the walls feel runs ahead of the contacts");
+  const EnergyBalance e = shear.assembly.energy();
+  EXPECT_BELOW_BECAUSE(std::abs(e.residual()), 1e-3 * e.boundary_work,
+                       "steps of contacts that open and close by hundreds, with rates of 5/s: some 1e-4");
+}
+
 TEST(HardCases, RattlersOnlyCarryNoStress)
 {
   const Snapshot s = loosened(test::specimen(500, 10), 0.5);

@@ -20,11 +20,13 @@ tested: tests/apps/study_test.py, tests/studies/columns_test.py
 import argparse
 import concurrent.futures
 import contextlib
+import functools
 import hashlib
 import importlib
 import json
 import os
 import pathlib
+import subprocess
 import sys
 from typing import Any
 
@@ -32,7 +34,7 @@ from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder, write_replacing
 from isostat.campaign.functions import FunctionRun
-from isostat.campaign.runs import Run, complete
+from isostat.campaign.runs import Run, complete, program
 from isostat.running import as_scene
 
 FREE_OPTIONS = ("jobs", "engine", "output", "overwrite", "quiet", "no_figures", "dry_run", "tables")  # change no table
@@ -132,7 +134,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         folder = tables_folder(study, options, all(map(store.is_done, planned)))
         folder.mkdir(parents=True, exist_ok=True)
         study.report(store, planned, folder)
-        if folder == page_of(study, options):
+        if not options.tables and folder == page_of(study, options):
             stamp(options.name, study)
         print(f"tables and figures in {folder}")
     if failed:
@@ -141,18 +143,30 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
 
 
 def fingerprint(name: str, study: Any) -> str:
-    """SHA-256 of what a whole study runs: its scenes with every default, or what it says of those that need something
-    prepared."""
+    """SHA-256 of what a whole study runs: its scenes with every default. Of those that need something prepared it is
+    the module that makes them, and the defaults of all programs."""
     options = parse([], name, study)
     options.output = pathlib.Path("/nowhere")  # scenes name files in it
-    texts = []
+    texts = set()
     for planned in study.runs(options):
         try:
-            text = as_run(options.output, planned).text
+            run = as_run(options.output, planned)
+            texts.add(run.text)
+            is_scene = not isinstance(run, FunctionRun)
         except _core.InputError:
-            text = repr(planned)
-        texts.append(text.replace(str(studies_folder().parent), ""))
-    return hashlib.sha256("\n".join(sorted(texts)).encode()).hexdigest()
+            texts.add(repr(planned))
+            is_scene = False
+        if not is_scene:
+            module = sys.modules[type(planned).__module__]
+            texts |= {pathlib.Path(str(module.__file__)).read_text(encoding="utf-8"), *default_scenes()}
+    text = "\n".join(sorted(texts)).replace(str(studies_folder().parent), "")
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+@functools.cache
+def default_scenes() -> list[str]:
+    commands = [[program(name), "--print-defaults"] for name in ("element_test", "soil_column")]
+    return [subprocess.run(command, check=True, capture_output=True, text=True).stdout for command in commands]
 
 
 def stamp(name: str, study: Any) -> None:
