@@ -61,6 +61,14 @@ class CampaignTest(FolderTest):
         bad.log.write_text("10 %\nfailed: step 3\n  last good checkpoint: there is none\n", encoding="utf-8")
         self.assertEqual(bad.reason, "failed: step 3; last good checkpoint: there is none")
 
+    def test_a_full_disk_is_no_result(self):
+        class Full(campaign.Run):
+            def command(self, _):
+                return ["sh", "-c", "echo 'failed: history.h5: cannot be written: No space left on device'; exit 1"]
+        full = Full(**vars(self.run_of("full")))
+        with self.assertRaisesRegex(isostat.RunFailure, "full: .*No space left on device. Make room"):
+            self.complete(full)
+
     def test_stopped_from_outside(self):
         long = self.run_of("long", **{"stage.0.strain": 0.9})
 

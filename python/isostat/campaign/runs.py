@@ -6,6 +6,7 @@ tested: tests/python/campaign_test.py, tests/apps/campaign_engines_test.py
 import concurrent.futures
 import contextlib
 import dataclasses
+import errno
 import json
 import math
 import os
@@ -27,6 +28,7 @@ LAUNCHED = ("OMPI_", "PMIX_", "PMI_", "SLURM_")  # what a launcher tells its ran
 PATIENCE = 60  # s, for a process that another call left in a folder: it stops with a checkpoint when its parent ends
 BAD_INPUT, STOPPED = 2, 130  # exit codes
 CRASHED = 126  # exit codes from here on: stopped, killed or crashed
+NO_ROOM = [os.strerror(code) for code in (errno.ENOSPC, errno.EDQUOT)]
 OWN_FILES = ("scene.toml", "provenance.txt", "result.json", ".lock", ".writable")  # one of them is in every folder of a run
 _at_work: set[subprocess.Popen[bytes]] = set()
 _stopping = threading.Event()
@@ -229,8 +231,8 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
     ended     told of each run that has ended: its exit code and the seconds it took
     waiting   told of those at work, whenever nothing has ended for `interval` seconds
 
-    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the engine has lost one;
-    KeyboardInterrupt.
+    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the disk is full or the engine has
+    lost one; KeyboardInterrupt.
     """
     _stopping.clear()
     stopped = []
@@ -245,6 +247,9 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
             code, seconds = result_of(future, futures[future])
             if code == STOPPED:
                 stopped.append(futures[future])
+            elif code and any(text in futures[future].reason for text in NO_ROOM):  # says nothing of the scene
+                raise _core.RunFailure(f"{futures[future].name}: {futures[future].reason}. Make room; the same command "
+                                       "goes on.")
             ended(futures[future], code, seconds)
         return bool(done)
 
