@@ -221,8 +221,7 @@ def index_label(constraints):
     if len(counts) != 1:
         return r"$I_R$ of the law in force"
     n = int(counts[0])
-    eq2 = ", Eq. (2)" if n == 6 else ""
-    return rf"$I_R$, {n} constraint{'s' if n > 1 else ''} a contact{eq2}"
+    return r"$I_R$, Eq. (2)" if n == 6 else rf"$I_R$, {n} constraint{'s' if n > 1 else ''} a contact"
 
 
 # --- drawing ---------------------------------------------------------------------------------------------------------

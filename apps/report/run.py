@@ -3,6 +3,7 @@
 import importlib
 import json
 import re
+import shlex
 
 from figures.common import BadInput, note
 
@@ -39,7 +40,7 @@ def calls(results):
     if function not in IN_PYTHON:
         command = results.command.replace(" --overwrite", "")
         return (command if "--resume" in command else command + " --resume",
-                f"{results.program} scene.toml --output results/again")
+                f"{results.program} {shlex.quote(str(results.path / 'scene.toml'))} --output results/again")
     function, folder = function.removesuffix("()"), json.dumps(results.path.as_posix(), ensure_ascii=False)
     return f"{function}(scene, {folder}, resume=True)", f'{function}(scene, "results/again")'
 
