@@ -61,8 +61,9 @@ def fourier(a, dt):
 
 def smoothed(f, amplitude, centres, bandwidth=80.0):
     """Konno and Ohmachi (1998), doi:10.1785/BSSA0880010228: weights (sin(x)/x)^4, x = b log10(f/fc); wider bands where
-    frequencies are higher."""
+    frequencies are higher, and where `f` is too coarse for them: two of its frequencies on either side."""
     inside = f > 0
+    bandwidth = np.minimum(bandwidth, np.pi / np.log10(1 + 2 * (f[1] - f[0]) / centres))[:, None]
     x = bandwidth * np.log10(f[inside][None, :] / centres[:, None])
     weights = np.where(np.abs(x) < np.pi * 3, np.sinc(x / np.pi) ** 4, 0)
     return weights @ amplitude[inside] / weights.sum(axis=1)

@@ -102,6 +102,9 @@ class TransferFunction(ToleranceTest):
     def test_smoothing_keeps_a_constant(self):
         f = np.linspace(0, 50, 2001)
         self.assert_near(smoothed(f, np.full(2001, 3.0), np.geomspace(0.5, 20, 50)), 3, 3e-12, "round-off of means")
+        coarse, fine = np.arange(0, 20, 0.05), np.linspace(0.05, 0.5, 400)
+        line = smoothed(coarse, coarse, fine)  # no step from one frequency of the motion to the next
+        self.assert_below(np.abs(np.diff(line)).max(), 0.01, "a tenth of the distance of 0.05 Hz, at most")
 
 
 class Consolidation(ToleranceTest):
