@@ -11,6 +11,7 @@ import numpy as np
 
 import isostat
 from studies.drawing import BLUE, ORANGE, STYLE, legend_below
+from studies.ensembles import ensemble
 from studies.history import History
 from studies.tables import write_tables
 
@@ -130,10 +131,10 @@ def report(store, planned, folder):
 
 
 def row(grains, limit, twisting, compression=(), cyclic=()):
-    n = len(compression)
-    error = f"{np.std(compression, ddof=1) / np.sqrt(n):.3f}" if n > 1 else ""
+    mean, _, error, n = ensemble(compression)
+    slope = [f"{value:.3f}".replace("nan", "") for value in (mean, error)]
     median = np.median(cyclic) if len(cyclic) else np.nan
-    return [grains, f"{limit:g}", "yes" if twisting else "no", f"{np.mean(compression):.3f}" if n else "", error, n,
+    return [grains, f"{limit:g}", "yes" if twisting else "no", *slope, n,
             f"{np.isfinite(cyclic).sum()} of {len(cyclic)}", f"{median:.1f}" if np.isfinite(median) else f"> {CYCLES}"]
 
 

@@ -165,8 +165,9 @@ def fingerprint(name: str, study: Any) -> str:
 
 @functools.cache
 def default_scenes() -> list[str]:
-    commands = [[program(name), "--print-defaults"] for name in ("element_test", "soil_column")]
-    return [subprocess.run(command, check=True, capture_output=True, text=True).stdout for command in commands]
+    """Of element tests and of columns."""
+    column = subprocess.run([program("soil_column"), "--print-defaults"], check=True, capture_output=True, text=True)
+    return [_core.default_scene(), column.stdout]
 
 
 def stamp(name: str, study: Any) -> None:
