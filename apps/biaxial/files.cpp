@@ -2,6 +2,7 @@
 #include "apps/biaxial/files.hpp"
 
 #include "apps/deposit/instant.hpp"
+#include "apps/deposit/output.hpp"
 #include "base/files/replace_file.hpp"
 #include "dem/measure/summary.hpp"
 #include "fem/space/vtu.hpp"
@@ -16,14 +17,6 @@ namespace
 namespace fs = std::filesystem;
 
 double shear_strain(const Gradient &h) { return std::hypot(h[0] - h[8], h[2] + h[6]); }
-
-std::vector<double> along(int axis, const std::vector<Place> &places)
-{
-  std::vector<double> all;
-  for (const Place &place : places)
-    all.push_back(place[axis]);
-  return all;
-}
 } // namespace
 
 PointState point_state(const Gradient &gradient, const Stress &stress)

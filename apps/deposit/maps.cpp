@@ -17,14 +17,6 @@ std::vector<double> depths(const FiniteElementSpace &space)
   return all;
 }
 
-std::vector<double> along(int axis, const std::vector<Place> &places)
-{
-  std::vector<double> all;
-  for (const Place &place : places)
-    all.push_back(place[axis]);
-  return all;
-}
-
 /// f(corner of the mesh, its node's first displacement unknown) for all corners of all elements.
 template <typename F>
 void for_each_corner(const FiniteElementSpace &space, const F &f)

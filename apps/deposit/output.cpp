@@ -43,6 +43,14 @@ void write_column_vtu(const std::filesystem::path &path, const Discretisation<di
             {{"displacement", instant.displacement}, {"velocity", instant.velocity}}, fields);
 }
 
+std::vector<double> along(int axis, const std::vector<Place> &places)
+{
+  std::vector<double> all;
+  for (const Place &place : places)
+    all.push_back(place[axis]);
+  return all;
+}
+
 SeriesLayout profile_layout(std::vector<double> depths, std::vector<double> sigma_v0,
                             std::vector<double> shear_velocity)
 {

@@ -39,6 +39,9 @@ template <int dim>
 void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress);
 
+/// One coordinate of all places, m.
+std::vector<double> along(int axis, const std::vector<Place> &places);
+
 /// What profiles.h5 and maps.h5 hold of some points: of the start `depth` (m), `sigma_v0` (Pa) and `shear_velocity`
 /// (m/s), and over time all of point_columns.
 SeriesLayout profile_layout(std::vector<double> depths, std::vector<double> sigma_v0,

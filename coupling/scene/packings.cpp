@@ -49,7 +49,7 @@ constexpr Key specimens[] = {
 
 constexpr Key lots[] = {
   {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "Each Gauss point has one of this many seeds, from `realisation` on, by lot (with several `realisations` as "
+   .text = "Each Gauss point has one of this many seeds, from `realisation` on, at random (with several `realisations` as "
            "many that differ); 1: all points have the same, brought to the stress of their depth. "
            "1, or at least `realisations`.",
    .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},

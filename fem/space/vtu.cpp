@@ -62,12 +62,17 @@ std::vector<unsigned> patch_order(const dealii::DoFHandler<dim> &nodes, unsigned
   return order;
 }
 
-double cell_mean(const std::vector<double> &values, std::size_t cell, std::size_t n)
+std::vector<float> cell_means(const std::vector<PointField> &fields, std::size_t cell, std::size_t n)
 {
-  double mean = 0;
-  for (std::size_t q = cell * n; q < (cell + 1) * n; ++q)
-    mean += values[q] / static_cast<double>(n);
-  return mean;
+  std::vector<float> means;
+  for (const PointField &field : fields)
+    {
+      double mean = 0;
+      for (std::size_t q = cell * n; q < (cell + 1) * n; ++q)
+        mean += field.values[q] / static_cast<double>(n);
+      means.push_back(static_cast<float>(mean));
+    }
+  return means;
 }
 } // namespace
 
@@ -91,6 +96,7 @@ void write_vtu(const std::filesystem::path &path, const Discretisation<dim> &spa
           patch.vertices[v] = dealii::Point<3>(x, y, z);
         }
       patch.data.reinit(static_cast<unsigned>(elements.names.size()), static_cast<unsigned>(order.size()));
+      const std::vector<float> of_cell = cell_means(means, cell, space.points_per_cell());
       for (std::size_t a = 0; a < order.size(); ++a)
         {
           const unsigned *dofs = &space.cell_dofs[(cell * order.size() + a) * 3];
@@ -98,8 +104,8 @@ void write_vtu(const std::filesystem::path &path, const Discretisation<dim> &spa
           for (const NodeField &field : vectors)
             for (unsigned c = 0; c < 3; ++c)
               patch.data(row++, order[a]) = static_cast<float>(field.values[dofs[c]]);
-          for (const PointField &field : means)
-            patch.data(row++, order[a]) = static_cast<float>(cell_mean(field.values, cell, space.points_per_cell()));
+          for (const float mean : of_cell)
+            patch.data(row++, order[a]) = mean;
         }
     }
   dealii::DataOutBase::VtkFlags flags(when.time, static_cast<unsigned>(when.step));
