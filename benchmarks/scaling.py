@@ -77,10 +77,7 @@ def figure(results, threads, path):
                  for (name, _), r in results.items() if name != "row of copies"]
         if cubes:
             ax.plot(*zip(*cubes), "s", label=f"{t} thread{'s' if t > 1 else ''}, specimen")
-    ax.set_xscale("log")
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("grains")
-    ax.set_ylabel("ns per contact and step")
+    ax.set(xscale="log", ylim=(0, None), xlabel="grains", ylabel="ns per contact and step")
     ax.grid(alpha=0.3)
     ax.legend()
     fig.tight_layout()

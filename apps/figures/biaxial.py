@@ -73,8 +73,7 @@ def stress_strain(block):
     figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.0), constrained_layout=True)
     strain = 100 * block.history["axial_strain"]
     axes[0].plot(strain, block.history["axial_stress"] / 1e3, color=BLACK)
-    axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
-    axes[0].set_ylim(bottom=0)
+    axes[0].set(ylabel=r"Axial stress $\sigma_z$ (kPa)", ylim=(0, None))
     if "pore_pressure" in block.history:
         axes[1].plot(strain, block.history["pore_pressure"] / 1e3, color=BLUE)
         axes[1].set_ylabel(r"Excess pore pressure $\Delta u$ (kPa)")
@@ -87,8 +86,7 @@ def stress_strain(block):
     axes[2].set_ylabel("Shear strain of points (%)")
     axes[2].legend()
     for panel in axes:
-        panel.set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
-        panel.set_xlim(left=0)
+        panel.set(xlabel=r"Axial strain $\varepsilon_z$ (%)", xlim=(0, None))
     return figure
 
 
@@ -192,10 +190,8 @@ def band(block):
     for run, color in zip([block, *block.beside], (BLACK, ORANGE, BLUE, GREEN)):
         axes[0].plot(100 * run.history["axial_strain"], run.history["axial_stress"] / 1e3, color=color,
                      label=plain(run.name))
-    axes[0].set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
-    axes[0].set_ylabel(r"Axial stress $\sigma_z$ (kPa)")
-    axes[0].set_xlim(left=0)
-    axes[0].set_ylim(bottom=0)
+    axes[0].set(xlabel=r"Axial strain $\varepsilon_z$ (%)", ylabel=r"Axial stress $\sigma_z$ (kPa)", xlim=(0, None),
+                ylim=(0, None))
     if block.beside:
         axes[0].legend(loc="lower right")
     for panel, (field, low, bar, label) in zip(axes[1:], maps):

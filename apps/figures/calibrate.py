@@ -122,8 +122,7 @@ def convergence(results):
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_yscale("log")
     plain_log_ticks(axes.yaxis)
-    axes.set_xlabel("Trial")
-    axes.set_ylabel("Misfit (-)")
+    axes.set(xlabel="Trial", ylabel="Misfit (-)")
     axes.legend(loc="upper right")
     return figure
 

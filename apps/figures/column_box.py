@@ -42,9 +42,8 @@ class Mesh:
         bottom, top = outline.min(axis=0), outline.max(axis=0)
         axes.plot([0, self.corners[..., 0].max()], [0, 0], color=GREY, linewidth=0.6)
         margin = 0.02 * (top - bottom)
-        axes.set_xlim(bottom[0] - margin[0], top[0] + margin[0])
-        axes.set_ylim(bottom[1] - margin[1], top[1] + margin[1])
-        axes.set_aspect("equal")
+        axes.set(xlim=(bottom[0] - margin[0], top[0] + margin[0]), ylim=(bottom[1] - margin[1], top[1] + margin[1]),
+                 aspect="equal")
         axes.grid(False)
         axes.set_ylabel("z (m)")
         return elements

@@ -50,9 +50,7 @@ def isochrones(column):
         report("pore pressure", [np.abs(pressure[k] - exact.pressure(depth, time[k])).max() / exact.p0
                                  for k in range(len(time))], time, exact, "of the initial one")
         axes.legend(loc="upper right")
-    axes.set_xlim(left=0)
-    axes.set_xlabel("Excess pore pressure $u$ (kPa)")
-    axes.set_ylabel("Depth (m)")
+    axes.set(xlim=(0, None), xlabel="Excess pore pressure $u$ (kPa)", ylabel="Depth (m)")
     depth_axis(column, axes, depth)
     return figure
 
@@ -88,10 +86,7 @@ def settlement(column):
         second = axes.secondary_xaxis("top", functions=(lambda t: t * exact.c / exact.height**2,
                                                         lambda factor: factor * exact.height**2 / exact.c))
         second.set_xlabel("Time factor $T_v$")
-    axes.set_xscale("log")
-    axes.set_xlim(time[0], time[-1])
-    axes.set_ylim(bottom=0)
+    axes.set(xscale="log", xlim=(time[0], time[-1]), ylim=(0, None))
     axes.invert_yaxis()
-    axes.set_xlabel("Time (s)")
-    axes.set_ylabel("Settlement (mm)")
+    axes.set(xlabel="Time (s)", ylabel="Settlement (mm)")
     return figure

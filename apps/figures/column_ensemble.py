@@ -121,15 +121,13 @@ def over_depth(ensemble, panels):
                                 layout="constrained")
     for axes, (kind, name), letter in zip(rows[0], panels, "abc"):
         draw(axes, ensemble, kind, name, upright=True)
-        axes.set_xlabel(LABELS[name])
-        axes.set_xlim(left=0)
+        axes.set(xlabel=LABELS[name], xlim=(0, None))
         panel_letter(axes, letter)
         if name == "max_ru":
             axes.axvline(ensemble.numbers["liquefied_ru"], color=ORANGE, linewidth=0.8, linestyle="--")
         if name.endswith("I_R"):
             axes.axvline(1, color=ORANGE, linewidth=0.8, linestyle="--")
-    rows[0][0].set_ylabel("Depth (m)")
-    rows[0][0].set_ylim(bottom=0)
+    rows[0][0].set(ylabel="Depth (m)", ylim=(0, None))
     rows[0][0].invert_yaxis()
     rows[0][-1].legend(loc="best")
     return figure
@@ -150,10 +148,7 @@ def spectra(ensemble):
         return None
     figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
     draw(axes, ensemble, "spectra", "surface_Sa")
-    axes.set_xscale("log")
-    axes.set_xlabel("Period (s)")
-    axes.set_ylabel("$S_a$ of the surface (m/s$^2$)")
-    axes.set_ylim(bottom=0)
+    axes.set(xscale="log", xlabel="Period (s)", ylabel="$S_a$ of the surface (m/s$^2$)", ylim=(0, None))
     axes.legend()
     return figure
 

@@ -113,8 +113,7 @@ def finish_map(column, panels, depth, time, wet):
     side.set_xlim(time[0], time[0] + 1.12 * max(side.dataLim.x1 - time[0], 0.05 * (time[-1] - time[0])))
     side.set_title("first time", loc="right", fontsize=9, pad=5)
     axes.grid(False)
-    axes.set_xlim(time[0], time[-1])
-    axes.set_ylabel("Depth (m)")
+    axes.set(xlim=(time[0], time[-1]), ylabel="Depth (m)")
     for each, letter in zip((top, axes, side), "abc"):
         panel_letter(each, letter)
 
@@ -142,8 +141,7 @@ def draw_redundancy(column, axes, points, shades):
         axes.plot(grains["time"], grains[f"{prefix}_IR"], color=shade, linewidth=0.9, label=f"{depth:g} m")
         marked(axes, grains["time"], grains[f"{prefix}_IR"], onsets(column, prefix)[0], shade)
     axes.axhline(ISOSTATIC, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-    axes.set_ylim(bottom=0)
-    axes.set_ylabel(label_of(grains, [f"{prefix}_IR_constraints" for _, prefix in points]))
+    axes.set(ylim=(0, None), ylabel=label_of(grains, [f"{prefix}_IR_constraints" for _, prefix in points]))
     axes.set_title("dots: below 1 for the first time", loc="right", fontsize=8.5, pad=5)
     axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0)
 
@@ -154,8 +152,7 @@ def draw_ratio(column, axes, points, shades):
             axes.plot(column.time, column[f"{prefix}_ru"], color=shade)
             marked(axes, column.time, column[f"{prefix}_ru"], onsets(column, prefix)[1], shade)
     axes.axhline(LIQUEFIED_RU, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-    axes.set_ylim(min(0, axes.get_ylim()[0]), max(1.02, axes.get_ylim()[1]))
-    axes.set_ylabel("Pore pressure ratio $r_u$")
+    axes.set(ylim=(min(0, axes.get_ylim()[0]), max(1.02, axes.get_ylim()[1])), ylabel="Pore pressure ratio $r_u$")
     axes.set_title(f"dots: above {LIQUEFIED_RU} for the first time", loc="right", fontsize=8.5, pad=5)
 
 
@@ -195,6 +192,5 @@ def grains_history(column):
     panels[1 + wet + (n - 1) // 2].set_ylabel("Share of the contacts")
     for axes, letter in zip(panels[:2 + wet], "abc"):
         panel_letter(axes, letter)
-    panels[-1].set_xlim(grains.columns["time"][0], grains.columns["time"][-1])
-    panels[-1].set_xlabel("Time (s)")
+    panels[-1].set(xlim=(grains.columns["time"][0], grains.columns["time"][-1]), xlabel="Time (s)")
     return figure

@@ -48,12 +48,10 @@ def motions(column):
                 continue
             axes.plot(column.time, column[name], color=colour, linewidth=0.8)
             peak_mark(axes, column.time, column[name], colour, column.peaks.get(name))
-            axes.set_ylim(-limit, limit)
-            axes.set_ylabel(f"$a_{axis}$ (m/s$^2$)")
+            axes.set(ylim=(-limit, limit), ylabel=f"$a_{axis}$ (m/s$^2$)")
             panel_letter(axes, letter)
             axes.set_title(label, loc="right", fontsize=9, color=colour, pad=5)
-    panels[-1, 0].set_xlim(column.time[0], column.time[-1])
-    panels[-1, 0].set_xlabel("Time (s)")
+    panels[-1, 0].set(xlim=(column.time[0], column.time[-1]), xlabel="Time (s)")
     return figure
 
 
@@ -93,9 +91,7 @@ def finish_spectra(panels, damping, highest_frequency):
     """Grey: periods of what is above the highest frequency of interest."""
     for axes in panels.flat:
         axes.axvspan(PERIODS[0], max(PERIODS[0], 1 / highest_frequency), color="#eeeeee", zorder=0)
-        axes.set_xscale("log")
-        axes.set_xlim(PERIODS[0], PERIODS[-1])
-        axes.set_ylim(bottom=0)
+        axes.set(xscale="log", xlim=(PERIODS[0], PERIODS[-1]), ylim=(0, None))
         axes.grid(True, which="minor", axis="x", color="#f2f2f2", linewidth=0.4)
     for axes in panels[-1]:
         ticks = [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5]
@@ -157,8 +153,7 @@ def draw_transfer(column, axes, axis):
         axes.plot(centres, smooth, color=COLOURS[axis], linewidth=1.5, label="smoothed")
         top = 1.35 * np.nanmax(smooth)
     axes.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-    axes.set_xlim(0, f_max)
-    axes.set_ylim(0, top)
+    axes.set(xlim=(0, f_max), ylim=(0, top))
     axes.legend(loc="lower right", bbox_to_anchor=(0.85, 1.0), ncols=2, borderaxespad=0.2)
 
 

@@ -29,8 +29,7 @@ def peaks(column):
         axes.plot(values[at], depth[at], "o", color=BLACK, markersize=3.5, clip_on=False, zorder=5)
         axes.set_title(f"{values[at]:.3g} {unit}\nat {depth[at]:.3g} m", loc="right", fontsize=8.5, pad=5)
         against = "\nagainst the base" if column.base is None and name in ("peak_velocity", "peak_displacement") else ""
-        axes.set_xlabel(f"Largest {word} ({unit}){against}")
-        axes.set_xlim(left=0)
+        axes.set(xlabel=f"Largest {word} ({unit}){against}", xlim=(0, None))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         panel_letter(axes, letter)
         depth_axis(column, axes, depth)

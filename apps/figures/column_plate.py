@@ -22,8 +22,7 @@ def plate(column):
     panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
     panels["pressure"].set_ylabel("Normal stress beside it (kPa)")
     for name in ("force", "pressure"):
-        panels[name].set_xlabel("Way of the plate into the soil (mm)")
-        panels[name].set_ylim(bottom=min(0, panels[name].get_ylim()[0]))
+        panels[name].set(xlabel="Way of the plate into the soil (mm)", ylim=(min(0, panels[name].get_ylim()[0]), None))
     mesh, maps = Mesh(column.maps), column.maps
     gamma = 100 * abs(maps["gamma_xz"][-1])
     high = max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6)

@@ -25,14 +25,12 @@ def spreading(column):
     if column.has("surface_ux"):
         panels["time"].plot(column.time, column["surface_ux"], color=BLACK)
     panels["time"].axhline(0, color=GREY, linewidth=0.7)
-    panels["time"].set_xlim(column.time[0], column.time[-1])
-    panels["time"].set_xlabel("Time (s)")
+    panels["time"].set(xlim=(column.time[0], column.time[-1]), xlabel="Time (s)")
     of_rock = column.scene.get("base", {}).get("kind") == "compliant"
     panels["time"].set_ylabel("Surface, downslope" + (",\nwith the rock's motion (m)" if of_rock else " (m)"))
     depth = column.profiles["depth"]
     panels["moved"].plot(column.profiles["end_displacement"], column.profiles["node_depth"], color=BLUE)
-    panels["moved"].set_xlabel("Against the base,\nat the end (m)")
-    panels["moved"].set_ylabel("Depth (m)")
+    panels["moved"].set(xlabel="Against the base,\nat the end (m)", ylabel="Depth (m)")
     panels["strain"].plot(100 * column.profiles["end_gamma_xz"], depth, color=BLACK)
     panels["strain"].set_xlabel(r"$\gamma_{xz}$ at the end (%)")
     panels["stress"].plot(column.profiles["tau_0"] / 1e3, depth, color=RED, label=r"$\tau_0$")

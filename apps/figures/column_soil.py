@@ -109,8 +109,7 @@ def profiles(column):
             axes.plot(values[row], depth, color=TIMES(norm(time[row])), linewidth=1.2)
         if level is not None:
             axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-        axes.set_xlim(left=min(0.0, float(np.nanmin(values))))
-        axes.set_xlabel(label)
+        axes.set(xlim=(min(0.0, float(np.nanmin(values))), None), xlabel=label)
         axes.xaxis.set_major_locator(MaxNLocator(5))
         panel_letter(axes, letter)
         depth_axis(column, axes, depth)
@@ -126,9 +125,7 @@ def velocity(column):
     figure, axes = plt.subplots(figsize=(5.2, 4.0), layout="constrained")
     depth = column.profiles["depth"]
     axes.plot(speeds, depth, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
-    axes.set_xlim(left=0)
-    axes.set_xlabel("Velocity of shear waves at the start (m/s)")
-    axes.set_ylabel("Depth (m)")
+    axes.set(xlim=(0, None), xlabel="Velocity of shear waves at the start (m/s)", ylabel="Depth (m)")
     depth_axis(column, axes, depth)
     return figure
 
@@ -167,9 +164,7 @@ def map_over_time(column, axes, values, **style):
     shade = axes.pcolormesh(x, y, cells, rasterized=True, **style)
     depth_axis(column, axes, depth)
     axes.grid(False)
-    axes.set_xlim(time[0], time[-1])
-    axes.set_xlabel("Time (s)")
-    axes.set_ylabel("Depth (m)")
+    axes.set(xlim=(time[0], time[-1]), xlabel="Time (s)", ylabel="Depth (m)")
     return shade, (x, y), cells
 
 
@@ -283,8 +278,7 @@ def histories(column):
         panels[-1].plot(column.time, 1e3 * column["settlement"], color=BLACK)
         panels[-1].invert_yaxis()
         panels[-1].set_ylabel("Settlement (mm)")
-    panels[-1].set_xlim(column.time[0], column.time[-1])
-    panels[-1].set_xlabel("Time (s)")
+    panels[-1].set(xlim=(column.time[0], column.time[-1]), xlabel="Time (s)")
     return figure
 
 
@@ -297,6 +291,5 @@ def draw_ru(column, axes):
         if column.has(f"{prefix}_ru"):
             axes.plot(column.time, column[f"{prefix}_ru"], color=shade, label=point_label(depth, prefix))
     axes.axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-    axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
-    axes.set_ylabel("Pore pressure ratio $r_u$")
+    axes.set(ylim=(min(0, axes.get_ylim()[0]), None), ylabel="Pore pressure ratio $r_u$")
     axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0)

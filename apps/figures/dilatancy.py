@@ -42,8 +42,7 @@ def dilatancy(run):
     mark_level(middle, 0.0, "", GREY)
     middle.set_ylabel(r"Dilatancy $D = -\mathrm{d}\varepsilon_v/\mathrm{d}\varepsilon$")
     right.plot(rate, ratio, color=BLUE, linewidth=0.8)
-    right.set_xlabel(r"Dilatancy $D$")
-    right.set_ylabel(r"Stress ratio $q/p^\prime$")
+    right.set(xlabel=r"Dilatancy $D$", ylabel=r"Stress ratio $q/p^\prime$")
     for axes in (left, middle):
         axes.set_xlabel(run.strain_label)
     for axes, letter in zip((left, middle, right), "abc"):

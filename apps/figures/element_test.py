@@ -46,8 +46,7 @@ def stress_path(run):
     for axes, x in ((left, p), (right, 100 * run.strain)):
         draw_path(run, axes, x, q)
         axes.set_ylabel(r"Deviatoric stress $q$ (kPa)")
-    left.set_xlim(left=min(0.0, float(np.nanmin(p))))
-    left.set_xlabel(r"Mean effective stress $p^\prime$ (kPa)")
+    left.set(xlim=(min(0.0, float(np.nanmin(p))), None), xlabel=r"Mean effective stress $p^\prime$ (kPa)")
     right.set_xlabel(run.strain_label)
     if run.cyclic:
         right.axvline(0, color=BLACK, linewidth=0.6, zorder=1.4)
@@ -55,8 +54,7 @@ def stress_path(run):
     panel_letter(right, "b")
     for axes in volume:
         draw_path(run, axes, 100 * run.strain, 100 * (run["eps_x"] + run["eps_y"] + run["eps_z"]))
-        axes.set_xlabel(run.strain_label)
-        axes.set_ylabel(r"Volumetric strain $\varepsilon_v$ (%)")
+        axes.set(xlabel=run.strain_label, ylabel=r"Volumetric strain $\varepsilon_v$ (%)")
         panel_letter(axes, "c")
     legend_below(run, figure, left)
     return figure
@@ -66,8 +64,7 @@ def draw_pressure(run, axes):
     """p'/p0', over the decades that a liquefying specimen goes through; else from zero. Of what is not sheared p'."""
     if not run.sheared:
         axes.plot(run.progress, run["p"] / 1e3, color=BLACK, linewidth=0.9)
-        axes.set_ylabel(r"$p^\prime$ (kPa)")
-        axes.set_ylim(bottom=0)
+        axes.set(ylabel=r"$p^\prime$ (kPa)", ylim=(0, None))
         return
     ratio = np.clip(run.p_ratio, FLOOR, None)
     axes.plot(run.progress, ratio, color=BLACK, linewidth=0.9)
@@ -95,8 +92,7 @@ def redundancy(run):
         ("IR_no_twist", "without twisting", {"color": ORANGE, "linewidth": 0.7}),
         ("IR_sliding", "sliding only", {"color": GREEN, "linewidth": 0.7})]
     curves(run, top, [("IR", own, {"color": BLUE, "zorder": 3}), *thin])
-    top.set_ylim(bottom=0)
-    top.set_ylabel(r"Redundancy index $I_R$")
+    top.set(ylim=(0, None), ylabel=r"Redundancy index $I_R$")
     mark_level(top, 1.0, "isostatic\n$I_R = 1$")
     if run.sheared and np.all(constraints == FULL):
         mark_level(top, 0.35, "$0.35$")  # of full liquefaction, in Eq. (2)

@@ -75,9 +75,7 @@ def force_distribution(analysis):
             axes.plot(middle[seen], density[seen], "o-", markersize=2.5, linewidth=0.8, color=COLOURS[name],
                       label=analysis.label(name))
     for axes, letter, text in zip(panels, "ab", (r"$f_n/\langle f_n\rangle$", r"$|f_s|/\langle f_n\rangle$")):
-        axes.set_yscale("log")
-        axes.set_xlabel(text)
-        axes.set_xlim(left=0)
+        axes.set(yscale="log", xlabel=text, xlim=(0, None))
         panel_letter(axes, letter)
     panels[0].set_ylabel("Probability density")
     handles, labels = panels[0].get_legend_handles_labels()
@@ -138,8 +136,7 @@ def anisotropies(analysis):
                     axes.axvline(x[index], color=COLOURS[name], linewidth=0.8, linestyle=":", label=name)
             panel_letter(axes, "abcd"[2 * row + column])
     panels[0, 0].set_ylabel("Anisotropy along y")
-    panels[1, 0].set_ylabel(r"$F_{yy} - (F_{xx}+F_{zz})/2$")
-    panels[1, 0].set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+    panels[1, 0].set(ylabel=r"$F_{yy} - (F_{xx}+F_{zz})/2$", xlabel=r"Axial strain $\varepsilon_1$ (%)")
     panels[1, 1].set_xlabel("Snapshot")
     panels[1, 1].xaxis.set_major_locator(MaxNLocator(integer=True))
     for row in (0, 1):

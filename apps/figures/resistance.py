@@ -82,8 +82,7 @@ def resistance(campaign):
     axes.set_xscale("log")
     cycles = [n or max(applied, MIN_CYCLES) for _, n, applied, status in runs if status not in ("missing", "failed")]
     low, high = 0.7 * min(cycles + [REFERENCE]), 1.6 * max(cycles + [REFERENCE])
-    axes.set_xlim(low, high)
-    axes.set_ylim(0, 1.2 * max(run[0] for run in runs))
+    axes.set(xlim=(low, high), ylim=(0, 1.2 * max(run[0] for run in runs)))
     draw_runs(axes, runs)
     draw_means(axes, runs)
     if summary["fit"]:

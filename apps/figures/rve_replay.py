@@ -40,8 +40,7 @@ def path(run):
               "gamma": r"Shear strain $\gamma_{xz}$ (%)", "time": "Time (s)"}
     for panel, (x, y), letter in zip(axes, (("p", "tau"), ("gamma", "tau"), ("time", "p")), "abc"):
         both(panel, run, x, y)
-        panel.set_xlabel(labels[x])
-        panel.set_ylabel(labels[y])
+        panel.set(xlabel=labels[x], ylabel=labels[y])
         panel_letter(panel, letter)
     axes[0].set_xlim(left=0)
     axes[2].set_ylim(bottom=0)
@@ -54,14 +53,12 @@ def grains(run):
         return None
     figure, axes = plt.subplots(2, 1, figsize=(6.4, 4.2), sharex=True, constrained_layout=True)
     axes[0].plot(run.grains["time"], run.grains["p"] / 1e3, color=BLACK)
-    axes[0].set_ylabel("$p'$ (kPa)")
-    axes[0].set_ylim(bottom=0)
+    axes[0].set(ylabel="$p'$ (kPa)", ylim=(0, None))
     axes[1].plot(run.grains["time"], run.grains["IR"], color=BLUE,
                  label=index_label(run.grains.get("IR_constraints", 6)))
     axes[1].plot(run.grains["time"], np.asarray(run.grains["Z"]) / 4, color=ORANGE, label="$Z/4$")
     axes[1].axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)))
-    axes[1].set_ylim(bottom=0)
-    axes[1].set_xlabel("Time (s)")
+    axes[1].set(ylim=(0, None), xlabel="Time (s)")
     axes[1].legend()
     return figure
 

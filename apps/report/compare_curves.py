@@ -76,8 +76,7 @@ def stress_curves(pair, names):
     for axes, x, y in ((one, path_label, load_label), (two, pair[0].strain_label, load_label),
                        (three, progress_label, r"Mean effective stress $p^\prime$ (kPa)"),
                        (four, progress_label, last_label)):
-        axes.set_xlabel(x)
-        axes.set_ylabel(y)
+        axes.set(xlabel=x, ylabel=y)
         axes.locator_params(axis="x", nbins=5)
     for axes in (one, two):
         axes.axhline(0, color=GREY, linewidth=0.6, zorder=1.4)
@@ -182,8 +181,7 @@ def block_curves(pair, names):
                                                        ("shear_max", 100, "Largest shear strain (%)"))):
         draw_pair(axes, pair, names, lambda run: 100 * run.history["axial_strain"],
                   lambda run, name=name, factor=factor: factor * run.history[name])
-        axes.set_xlabel(r"Axial strain $\varepsilon_z$ (%)")
-        axes.set_ylabel(label)
+        axes.set(xlabel=r"Axial strain $\varepsilon_z$ (%)", ylabel=label)
     legend_of(figure, panels[0, 0])
     return figure
 

@@ -181,8 +181,7 @@ def over_depth(samples):
         panels[0, column].set_title(f"{word}, {points} points\nn = {len(results)}", fontsize=8.5)
         panels[0, column].axvline(LIQUEFIED, color=BLACK, linewidth=0.7, linestyle="--")
         panels[0, column].set_xlim(0, 1.1)
-        panels[1, column].set_xscale("log")
-        panels[1, column].set_xlim(0.02, 40)
+        panels[1, column].set(xscale="log", xlim=(0.02, 40))
         panels[0, column].set_xlabel("largest $r_u$")
         panels[1, column].set_xlabel("largest strain (%)")
     for axes in panels[:, 0]:

@@ -58,8 +58,7 @@ def draw_cycles(results, path):
                 panel.errorbar(steps, base + mean, yerr=half, color=colour, marker=marker, capsize=3, label=label)
         panel.set(xscale="log", xlabel="time steps to liquefaction [-]")
         title(panel, letter, domain)
-    axes[0].set_ylim(bottom=0)
-    axes[0].set_ylabel("cycles to liquefaction [-]")
+    axes[0].set(ylim=(0, None), ylabel="cycles to liquefaction [-]")
     axes[0].legend(fontsize=7, loc="lower left")
     finish(figure, path)
 

@@ -50,12 +50,9 @@ def monotonic(table, _):
             path.plot(anchor["p' (kPa)"], -342, "^", color=colour, markersize=5, mec="black", zorder=5)
     for panel in (path, curve):
         panel.axhline(0, color="black", linewidth=0.6)
-        panel.set_ylim(-350, 450)
-        panel.set_ylabel("Deviatoric stress $q$ (kPa)")
-    path.set_xlim(0, 500)
-    path.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
-    curve.set_xlim(-5, 5)
-    curve.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
+        panel.set(ylim=(-350, 450), ylabel="Deviatoric stress $q$ (kPa)")
+    path.set(xlim=(0, 500), xlabel=f"Mean effective stress {PRIME} (kPa)")
+    curve.set(xlim=(-5, 5), xlabel=r"Axial strain $\varepsilon_1$ (%)")
     for marker, text in (("s", "laboratory, instability"), ("o", f"laboratory, least {PRIME}"),
                          ("^", f"laboratory, least {PRIME} in extension ($q$ not read)")):
         path.plot([], [], marker, color="white", mec="black", markersize=5, label=text)
@@ -74,9 +71,7 @@ def dense(table, _):
             band(stress, rows["|eps_1| (%)"], rows["q (kPa)"] / 1e3, rows["q (kPa) s.d."] / 1e3, colour,
                  f"$E$ = {young:g} GPa")
             ratio.plot(rows["|eps_1| (%)"], rows["q (kPa)"] / rows["p' (kPa)"], color=colour, linewidth=1.1)
-    stress.set_ylabel("Deviatoric stress $q$ (MPa)")
-    stress.set_yscale("log")
-    stress.set_ylim(bottom=1e-2)
+    stress.set(ylabel="Deviatoric stress $q$ (MPa)", yscale="log", ylim=(1e-2, None))
     ratio.set_ylabel(f"$q$/{PRIME}")
     for panel in (stress, ratio):
         panel.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
@@ -100,8 +95,7 @@ def cycles(table, _):
     panel.axhline(17, color=GREY, linewidth=0.9, linestyle="--")
     panel.axhline(11, color=GREY, linewidth=0.9, linestyle=":")
     plain_logarithm(panel.yaxis)
-    panel.set_xlabel("Void ratio $e$")
-    panel.set_ylabel(f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
+    panel.set(xlabel="Void ratio $e$", ylabel=f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
     for marker, colour, text in (("^", RED, "$D_r$ = 0.64, not liquefied when the test ended"),
                                  ("o", BLUE, "5° to 11°"),
                                  ("^", BLUE, "5° to 11°, not liquefied")):
@@ -161,8 +155,7 @@ def redundancy(table, _):
     index.set_ylabel("Redundancy index $I_R$")
     bands(ratio, rows, [("p'/p0'", "black", None)])
     ratio.axhline(0.01, color=GREY, linewidth=0.8, linestyle="--")
-    ratio.set_yscale("log")
-    ratio.set_ylabel(f"{PRIME}/$p_0^\\prime$")
+    ratio.set(yscale="log", ylabel=f"{PRIME}/$p_0^\\prime$")
     bands(fractions, rows, (("f_S", BLUE, "sliding"), ("f_SR", GREEN, "both"), ("f_R", ORANGE, "rolling")))
     fractions.set_ylabel("Fraction of contacts")
     index.legend(ncols=4, loc="upper right")
@@ -228,8 +221,7 @@ def drained(table, _):
             axes[0, column].plot(100 * test.strain, (test.axial - test.radial) / 1e3, "--", color=colour, linewidth=0.9)
             axes[1, column].plot(100 * test.strain, 100 * test.volume_strain, "--", color=colour, linewidth=0.9)
         axes[0, column].set_title(f"{pressure} kPa")
-        axes[1, column].set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
-        axes[1, column].set_xlim(0, 15)
+        axes[1, column].set(xlabel=r"Axial strain $\varepsilon_1$ (%)", xlim=(0, 15))
     axes[0, 0].set_ylabel("Deviatoric stress $q$ (kPa)")
     axes[1, 0].set_ylabel(r"Volumetric strain $\varepsilon_v$ (%)")
     for density, colour in zip(plan.LABORATORY, (RED, GREEN, BLUE)):
@@ -293,8 +285,7 @@ def critical_states(table, folder):
         line.plot(p / 1e3, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,
                   label=f"{table['Gamma'][0]:.3f} \N{MINUS SIGN} {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
     plain_logarithm(line.xaxis)
-    line.set_xlabel(f"Mean effective stress {PRIME} (MPa)")
-    line.set_ylabel("Void ratio $e$")
+    line.set(xlabel=f"Mean effective stress {PRIME} (MPa)", ylabel="Void ratio $e$")
     legend_below(figure, line, 3, 0.12)
     if (folder / "reconsolidation.csv").exists():
         rows = Table(folder / "reconsolidation.csv")
@@ -315,8 +306,7 @@ def path(table, _):
     figure, ((stress, strain),) = panels(1, 2, sharey=True)
     stress.plot(table["p' (kPa)"], table["q (kPa)"], color=BLUE, linewidth=0.6)
     strain.plot(table["eps_1 (%)"], table["q (kPa)"], color=BLUE, linewidth=0.6)
-    stress.set_xlabel(f"Mean effective stress {PRIME} (kPa)")
-    stress.set_ylabel("Deviatoric stress $q$ (kPa)")
+    stress.set(xlabel=f"Mean effective stress {PRIME} (kPa)", ylabel="Deviatoric stress $q$ (kPa)")
     strain.set_xlabel(r"Axial strain $\varepsilon_1$ (%)")
     first = table.rows[0]
     figure.suptitle(f"{first['specimen']}, seed {first['seed']}, {PACE_NAMES[first['pace']]}: one specimen", fontsize=9)
