@@ -4,7 +4,6 @@
 tested: tests/studies/columns_test.py
 """
 import dataclasses
-import json
 import pathlib
 
 import isostat
@@ -40,11 +39,6 @@ class Run:
 def histories(store, planned):
     """{case: history} of what has been run."""
     return {run.case: isostat.read(store.folder(run)).history for run in planned if store.is_done(run)}
-
-
-def parsed(folder, name="summary"):
-    """summary.json or times.json of a run."""
-    return json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
 
 
 def library(path, executor, n, pressures, settings):

@@ -9,6 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
 STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
          "axes.spines.top": False, "axes.spines.right": False, "legend.fontsize": 7.5, "axes.axisbelow": True}
+plt.rcParams.update(STYLE)  # of every study that imports this
 
 
 class Table:
@@ -45,17 +46,22 @@ def panels(rows, columns, width=7.2, height=3.2, **more):
     return figure, axes
 
 
+def save(figure, path, **more):
+    figure.savefig(path, **more)
+    plt.close(figure)
+
+
 def legend_below(figure, panel, ncols, height):
     """Of the whole figure, in the lowest `height` of it."""
     figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
     figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
 
 
-def plain_logarithm(axis):
+def plain_logarithm(axis, form="{x:g}"):
     """Of one axis of a panel, with ticks at 1, 2, 5, 10 written as numbers."""
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter("{x:g}")
+    axis.set_major_formatter(form)
     axis.set_minor_formatter(NullFormatter())
 
 

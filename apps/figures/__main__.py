@@ -5,7 +5,6 @@
 
 What each program's figures show stands at the top of its module. The exit code is 2 if the folder cannot be drawn.
 """
-import argparse
 import importlib
 import pathlib
 import sys
@@ -13,6 +12,7 @@ import sys
 try:
     import matplotlib
 
+    from .command_line import CommandLine
     from .common import BadInput, note
 except ModuleNotFoundError as missing:
     if missing.name not in ("matplotlib", "numpy", "h5py"):
@@ -24,7 +24,7 @@ PROGRAMS = ("calibrate", "element_test", "resistance", "micromechanics", "soil_c
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="figures", description=__doc__.splitlines()[0])
+    parser = CommandLine(prog="figures", description=__doc__.splitlines()[0])
     parser.add_argument("program", choices=PROGRAMS, help="whose results they are")
     parser.add_argument("results", type=pathlib.Path, help="its results folder")
     parser.add_argument("--out", type=pathlib.Path, help="folder of the figures; default: RESULTS/figures")

@@ -7,12 +7,13 @@
 
 The exit code is 2 if a folder holds no results, 3 if there are figures and no report.
 """
-import argparse
 import pathlib
 import sys
 
 try:
     import matplotlib
+
+    from figures.command_line import CommandLine
 
     from . import run
     from .folder import NUMBERS, NoResults, find_results
@@ -22,29 +23,33 @@ except ModuleNotFoundError as missing:
     sys.exit(f"error: Python has no module {missing.name}: install it, apt-get install python3-{missing.name}")
 
 
-def parse():
-    parser = argparse.ArgumentParser(prog="isostat", description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    leave = commands.add_parser("leave", help="figures and report of results of a program")
-    leave.add_argument("program", choices=NUMBERS)
-    leave.add_argument("results", type=pathlib.Path)
-    again = commands.add_parser("report", help="the figures and report.html of results, once more")
-    again.add_argument("results", type=pathlib.Path, help="results folder of a run, finished or under way")
-    compare = commands.add_parser("compare", help="two runs side by side in one file")
-    compare.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
-    compare.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
-    compare.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
-                         help="file that is written; a page that is there is replaced (default: compare.html)")
-    return parser.parse_args()
+COMMANDS = {"leave": "Figures and report of results of a program", "compare": "Two runs side by side in one file",
+            "report": "The figures and report.html of results, once more"}
+
+
+def parse(command, words):
+    """Arguments of a command."""
+    line = CommandLine(prog=f"isostat {command}", description=COMMANDS[command])
+    if command == "compare":
+        line.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
+        line.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
+        line.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
+                          help="file that is written; a page that is there is replaced (default: compare.html)")
+        return line.parse_args(words)
+    if command == "leave":
+        line.add_argument("program", choices=NUMBERS)
+    line.add_argument("results", type=pathlib.Path, help="results folder of a run, finished or under way")
+    return line.parse_args(words)
 
 
 def main():
-    arguments = parse()
+    command, *words = sys.argv[1:]
+    arguments = parse(command, words)
     matplotlib.use("Agg")  # files only
     try:
-        if arguments.command == "leave":
+        if command == "leave":
             return run.leave(arguments.results, arguments.program)
-        if arguments.command == "report":
+        if command == "report":
             return run.leave(arguments.results, find_results(arguments.results).program)
         from . import compare  # pylint: disable=import-outside-toplevel  (a run does not need it)
         return compare.leave(arguments.first, arguments.second, arguments.output)

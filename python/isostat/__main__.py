@@ -15,6 +15,7 @@ import warnings
 from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.runs import program
+from isostat.figures.command_line import meant
 
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
              "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
@@ -57,7 +58,8 @@ def view(words):
 
 
 def refuse(name):
-    raise _core.InputError(f"{name}: is no command of isostat. See isostat --help.")
+    known = [*CAMPAIGNS, *VIEWS, *PACKINGS, *PROGRAMS]
+    raise _core.InputError(f"{name}: unknown command of isostat. {meant(name, known, 'isostat --help lists them.')}")
 
 
 def main(words=None):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat convert: a packing from one format into another, checked on the way.   tested: tests/apps/convert_test.py"""
-import argparse
 import sys
 
 from isostat import _core, packings
@@ -8,8 +7,8 @@ from isostat.campaign import command
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat convert", description="A packing from one format into another, checked "
-                                   "on the way: units, overlaps, box")
+    line = command.line_of("convert", "A packing from one format into another, checked on the way: units, overlaps, "
+                           "box")
     line.add_argument("source", metavar="IN", help="specimen, snapshot (.h5) or library.h5#s0007 of Isostat; LAMMPS dump "
                       "or data file (units si, atom_style sphere); text `x y z r` of YADE; CSV; VTP; folder of tables")
     line.add_argument("target", metavar="OUT", help="the same packing in another format, by its ending: .h5 .dump .data "

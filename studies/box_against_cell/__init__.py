@@ -2,13 +2,13 @@
 """Undrained triaxial compression in a box and in periodic cells of the same void ratio or friction."""
 import dataclasses
 
-import matplotlib.pyplot as plt
 import numpy as np
-from figures.common import STYLE
 
 from isostat import Scene
 from studies import APPS
+from studies.drawing import panels, save
 from studies.history import History
+from studies.scenes import cloud_edge
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {}, {}
@@ -32,7 +32,7 @@ class Run:
         if self.degrees:
             keys["specimen.preparation_friction"] = f"{self.degrees:g} deg"
         if self.quick:
-            keys |= {"grading.grains": FEW, "grading.cloud_edge": f"{10 * (FEW / 10000) ** (1 / 3):.15g} mm"}
+            keys |= {"grading.grains": FEW, "grading.cloud_edge": cloud_edge(FEW)}
         domain = "" if self.name == "box" else "_periodic"
         return Scene(APPS / f"scenes/monotonic_compression_dr64{domain}.toml", set=keys)
 
@@ -50,9 +50,7 @@ def runs(options):
 def report(store, planned, folder):
     tests = [(run.label, History(store.folder(run))) for run in planned if store.is_done(run)]
     for _, h in tests:
-        for name, column in vars(h).items():
-            if isinstance(column, np.ndarray):
-                setattr(h, name, column[int(h.summary["shear_stage_first_row"]):])
+        h.keep(slice(int(h.summary["shear_stage_first_row"]), None))
     header = ["run", "e", "prepared at, °", "Z", *(f"q; p' at {100 * s:g} %, kPa" for s in STRAINS)]
     write_tables(folder, {"box_against_cell": (header, [
         [label, f"{h.summary['void_ratio']:.3f}", f"{h.summary['preparation_friction_deg']:.2f}", f"{h.Z[0]:.2f}",
@@ -63,17 +61,14 @@ def report(store, planned, folder):
 
 
 def draw(tests, path):
-    plt.rcParams.update(STYLE)
-    figure, panels = plt.subplots(1, 3, figsize=(9.6, 3.2), layout="constrained")
+    figure, (row,) = panels(1, 3, 9.6)
     for (label, h), colour in zip(tests, COLOURS):
         small = h.eps_y <= 1e-3
-        panels[0].plot(100 * h.eps_y[small], h.q[small] / 1e3, color=colour,
-                       label=f"{label.split(', D_r')[0]}, e = {h.summary['void_ratio']:.3f}")
-        panels[1].plot(100 * h.eps_y, h.q / 1e3, color=colour)
-        panels[2].plot(h.p / 1e3, h.q / 1e3, color=colour)
-    for axes, x, letter in zip(panels, ("Axial strain (%)", "Axial strain (%)", "p' (kPa)"), "abc"):
+        row[0].plot(100 * h.eps_y[small], h.q[small] / 1e3, color=colour,
+                    label=f"{label.split(', D_r')[0]}, e = {h.summary['void_ratio']:.3f}")
+        row[1].plot(100 * h.eps_y, h.q / 1e3, color=colour)
+        row[2].plot(h.p / 1e3, h.q / 1e3, color=colour)
+    for axes, x in zip(row, ("Axial strain (%)", "Axial strain (%)", "p' (kPa)")):
         axes.set(xlabel=x, ylabel="q (kPa)")
-        axes.set_title(f"({letter})", loc="left", fontsize=9.5, fontweight="bold")
-    panels[0].legend(loc="lower right", fontsize=7.5)
-    figure.savefig(path)
-    plt.close(figure)
+    row[0].legend(loc="lower right")
+    save(figure, path)

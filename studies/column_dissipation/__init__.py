@@ -8,7 +8,9 @@ import numpy as np
 from figures.column_analysis import response_spectrum
 from figures.column_results import Column
 from figures.common import BLUE, GREY, ORANGE, panel_letter, plt
-from studies.columns import SCENES, Run, parsed
+from studies.columns import SCENES, Run
+from studies.drawing import save
+from studies.history import parsed
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {}, {}
@@ -73,7 +75,7 @@ def draw(columns, path):
     panels[0, 0].legend(loc="lower right", fontsize=8)
     panels[1, 0].set_xlabel("Time (s)")
     panels[1, 1].set_xlabel("Period (s)")
-    figure.savefig(path, dpi=110)
+    save(figure, path, dpi=110)
 
 
 def report(store, planned, folder):

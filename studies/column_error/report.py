@@ -8,10 +8,11 @@ import h5py
 import isostat
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib import ticker
 
-from studies.columns import parsed
-from studies.speed_error.figures import STYLE, front, spread_labels
+from studies.drawing import plain_logarithm, save
+from studies.ensembles import ensemble
+from studies.history import parsed
+from studies.speed_error.figures import front, spread_labels
 from studies.tables import write_tables
 
 LIQUEFIED = 0.95
@@ -105,8 +106,8 @@ def quantities(folder):
 
 
 def mean_and_error(values):
-    values = np.array([v for v in values if np.isfinite(v)] or [np.nan])
-    return values.mean(), values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
+    mean, _, error, _ = ensemble(values)
+    return mean, error
 
 
 def percent(value, error=np.nan):
@@ -321,12 +322,10 @@ def panel(axes, runs, level, key, factor, title, label):
         axes.axhline(factor * np.mean(floor), color="#1a1a1a", lw=0.7, ls=":")
         axes.text(0.01, factor * np.mean(floor) / 1.03, "reference, motion 1 ppm larger", fontsize=7.5, va="top",
                   transform=axes.get_yaxis_transform())
-    axes.set(xscale="log", yscale="log", xlabel="cost, 10⁶ grain-steps", ylabel=label)
+    axes.set(xlabel="cost, 10⁶ grain-steps", ylabel=label)
     axes.set_title(title, fontsize=9.5, loc="left")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:g}"))
-        axis.set_minor_formatter(ticker.NullFormatter())
+        plain_logarithm(axis)
     if not points:
         return
     axes.set_xlim(min(p[0] for p in points) / 1.8, max(p[0] for p in points) * 2.4)
@@ -337,18 +336,16 @@ def panel(axes, runs, level, key, factor, title, label):
 
 
 def draw(runs, path):
-    with plt.rc_context({**STYLE, "savefig.dpi": 150}):
-        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.4))
-        figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
-        panel(left, runs, "weak", "v", 100, "(a) weak motion, N = 250, far from liquefaction: surface velocity",
-              "rms error, % of the rms")
-        panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: onset of liquefaction",
-              "later than in the reference, s")
-        handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
-                   for c, m, text in LOOK.values()]
-        figure.legend(handles=handles, loc="upper center", ncol=5, fontsize=8, handletextpad=0.2, columnspacing=1.4)
-        figure.savefig(path)
-        plt.close(figure)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.4))
+    figure.subplots_adjust(left=0.065, right=0.975, top=0.85, bottom=0.1, wspace=0.17)
+    panel(left, runs, "weak", "v", 100, "(a) weak motion, N = 250, far from liquefaction: surface velocity",
+          "rms error, % of the rms")
+    panel(right, runs, "strong", "late", 1, "(b) strong motion, N = 250: onset of liquefaction",
+          "later than in the reference, s")
+    handles = [plt.Line2D([], [], color=c, marker=m, ls="", ms=9 if m == "*" else 5, label=text)
+               for c, m, text in LOOK.values()]
+    figure.legend(handles=handles, loc="upper center", ncol=5, fontsize=8, handletextpad=0.2, columnspacing=1.4)
+    save(figure, path, dpi=150)
 
 
 def write_csv(runs, path):

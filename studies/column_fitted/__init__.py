@@ -14,6 +14,7 @@ from figures.common import BLUE, plt
 from isostat.campaign.runs import Run as Process, complete
 from isostat.results import read_table
 from studies.columns import SCENES, Run, histories, library
+from studies.drawing import save
 from studies.tables import write_tables
 
 DEFAULTS, QUICK, PAGE = {}, {}, "column_others"
@@ -134,7 +135,7 @@ def draw(curves, fitted, results, path):
             axis.plot(100 * rows["d0_gamma_xz"], rows["d0_tau_xz"] / 1e3, color=colour, lw=0.9,
                       ls="-" if colour == BLUE else ":")
         axis.set(xlabel="shear strain (%)", ylabel="shear stress (kPa)", title=f"At 9.5 m, base at {peak} g")
-    figure.savefig(path, dpi=130)
+    save(figure, path, dpi=130)
 
 
 def compare(peak, grains, iwan):

@@ -10,6 +10,7 @@ from figures.common import BLUE, GREY, RED, plt
 from studies import column_cases as cases
 from studies.column_layers import Layers, equivalent_linear
 from studies.columns import Run, histories
+from studies.drawing import save
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {}, {}
@@ -101,8 +102,7 @@ def draw_masing(shown, path):
     axes[0].set(xlabel="shear strain (%)", ylabel="shear stress (kPa)", title="Soil in the middle of the column")
     axes[1].set(xlabel="time (s)", ylabel="acceleration below 10 Hz (m/s²)", title="Surface")
     axes[0].legend(frameon=False)
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
+    save(figure, path, dpi=130)
 
 
 # --- layer matrices --------------------------------------------------------------------------------------------------
@@ -130,8 +130,7 @@ def published(results, path):
     axes[1].set(xlabel="frequency (Hz)", ylabel="difference from nrattle (%)")
     for one in axes:
         one.legend(frameon=False)
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
+    save(figure, path, dpi=130)
     return table
 
 
@@ -162,8 +161,7 @@ def equivalent(results, path):
         axis.semilogx(PERIODS, ratio, color=colour, lw=1.3, label=f"{peak} m/s²")
     axis.set(xlabel="period (s)", ylabel="response spectrum: Iwan over equivalent linear (-)", xlim=(0.1, 2))
     axis.legend(frameon=False, title="peak of the outcrop")
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
+    save(figure, path, dpi=130)
     return table
 
 

@@ -3,8 +3,10 @@
 import numpy as np
 from scipy import signal
 
-from figures.common import BLACK, BLUE, GREY, ORANGE, RED, STYLE, panel_letter, plt
-from studies.columns import Run, histories, parsed
+from figures.common import BLACK, BLUE, GREY, ORANGE, RED, panel_letter, plt
+from studies.columns import Run, histories
+from studies.drawing import save
+from studies.history import parsed
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {}, {}
@@ -128,8 +130,7 @@ def draw_air(results, path):
     panels[1].legend(fontsize=8)
     panel_letter(panels[0], "a")
     panel_letter(panels[1], "b")
-    figure.savefig(path)
-    plt.close(figure)
+    save(figure, path)
 
 
 def cavitation(results):
@@ -198,5 +199,4 @@ def report(store, planned, folder):
     times = {run.case[1:]: parsed(store.folder(run), "times") for run in planned if run.case in results}
     write_tables(folder, {"air": air(results, times), **{
         table.__name__: table(results) for table in (cavitation, drainage, dilation, softening, wave_speed)}})
-    plt.rcParams.update(STYLE)
     draw_air(results, folder / "air.png")

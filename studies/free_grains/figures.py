@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws what the tables say."""
 import numpy as np
-import matplotlib.pyplot as plt
 
+from studies.drawing import panels, save
 from studies.ensembles import mean_and_interval
 from studies.free_grains import plan
 
-STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.grid": True, "grid.color": "#e4e4e4", "legend.frameon": False,
-         "axes.spines.top": False, "axes.spines.right": False}
 SERIES = (  # label, colour, marker, settings
     ("default, and other rates", "#0072b2", "o", (plan.NUMERICS[0], plan.DEFAULT, plan.SLOW, plan.SLOWEST)),
     ("local damping 0.2 instead of dashpots", "#cc79a7", "v", plan.LOCAL_SETTINGS),
@@ -18,19 +16,7 @@ SERIES = (  # label, colour, marker, settings
 RATES = ("default rate", "#0072b2", "o"), ("a tenth of it", "#d55e00", "s")
 
 
-def panels(n, **more):
-    figure, axes = plt.subplots(1, n, figsize=(4.4 * n, 3.5), squeeze=False, **more)
-    return figure, axes[0]
-
-
-def finish(figure, path):
-    figure.tight_layout()
-    figure.savefig(path)
-    plt.close(figure)
-
-
 def draw(results, folder):
-    plt.rcParams.update(STYLE)
     draw_cycles(results, folder / "cycles.png")
     draw_damping(results, folder / "damping.png")
     draw_hold(results, folder / "hold.png")
@@ -42,7 +28,7 @@ def title(panel, letter, domain):
 
 def draw_cycles(results, path):
     """Cycles against the time steps of a test: mean of the default plus the mean of the paired differences."""
-    figure, axes = panels(len(plan.DOMAINS), sharey=True)
+    figure, (axes,) = panels(1, len(plan.DOMAINS), 8.8, 3.5, sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
         reference = domain, plan.GRAINS, plan.DEFAULT
         if reference not in results.cyclic:
@@ -60,14 +46,14 @@ def draw_cycles(results, path):
         title(panel, letter, domain)
     axes[0].set(ylim=(0, None), ylabel="cycles to liquefaction [-]")
     axes[0].legend(fontsize=7, loc="lower left")
-    finish(figure, path)
+    save(figure, path)
 
 
 def draw_damping(results, path):
     """Cycles less those of the default on the same specimens (at least three) against local damping. Those of 0.1, of
     which there are more, on the specimens of the other values."""
     both = {**plan.DAMPING, 0.1: [plan.DEFAULT, plan.SLOW]}
-    figure, axes = panels(len(plan.DOMAINS), sharey=True)
+    figure, (axes,) = panels(1, len(plan.DOMAINS), 8.8, 3.5, sharey=True)
     for panel, domain, letter in zip(axes, plan.DOMAINS, "ab"):
         reference = domain, plan.GRAINS, plan.DEFAULT
         for rate, (label, colour, marker) in enumerate(RATES):
@@ -83,11 +69,11 @@ def draw_damping(results, path):
         title(panel, letter, domain)
     axes[0].set_ylabel("cycles less those of the default [-]")
     axes[0].legend()
-    finish(figure, path)
+    save(figure, path)
 
 
 def draw_hold(results, path):
-    figure, axes = panels(2)
+    figure, (axes,) = panels(1, 2, 8.8, 3.5)
     looks = {plan.DEFAULT: ("#0072b2", "damped"), plan.ALONE_SETTINGS[0]: ("#d55e00", "left alone")}
     runs = [run for run in results.of("hold") if run.seed == 1]
     for run in runs:
@@ -100,6 +86,4 @@ def draw_hold(results, path):
     axes[0].set(xlabel="time steps since loading stopped [-]", ylabel="p' lost [kPa]")
     axes[1].set(xlabel="time steps since loading stopped [-]", ylabel="kinetic energy [J]", yscale="log")
     axes[1].legend(fontsize=7, loc="center right")
-    for panel, letter in zip(axes, "ab"):
-        panel.set_title(f"({letter})", loc="left")
-    finish(figure, path)
+    save(figure, path)

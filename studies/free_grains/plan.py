@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is run: settings of [motion], and the scenes of the tests."""
-from studies.speed_error.plan import CYCLIC, DENSER, DOMAINS, GRAINS, HUNDREDTH, LOOSE, MANY, TENTH, of
+from studies.scenes import cyclic
 from studies.speed_error import plan as speed_plan
+from studies.speed_error.plan import DENSER, DOMAINS, GRAINS, HUNDREDTH, MANY, TENTH, of  # noqa: F401  (for the tables)
 
 HELD_STEPS = 100_000
 DEFAULT = speed_plan.DYNAMIC
@@ -12,7 +13,7 @@ EARLY = [DEFAULT, SLOW, SLOWEST, of("rate / 1000", 2.5e7, inertial_number=7e-7, 
          *[of(f"c = {c:g}, rate / 100", 2.5e6, **HUNDREDTH, free_grain_damping=c) for c in (0.01, 1)]]
 # monotonic tests have a default of their own, I = 4e-5
 ONE_WAY = [DEFAULT, of("I of cyclic tests", inertial_number=7e-4), of("I / 10", 2.5e6, inertial_number=4e-6)]
-LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": "false"}
+LOCAL, ALONE, PUSHING = {"contact_damping": 0, "damping": 0.2}, {"free_grain_damping": 0}, {"carry_grains": False}
 
 
 def at_two_rates(label, **motion):
@@ -36,17 +37,17 @@ class Run(speed_plan.Run):
     """Further kinds: early, one cycle from rest; liquefied; hold and hold-late, which end in a stage at rest."""
 
     def scene(self):
-        return super().scene() + ("record_steps = 500\n" if self.kind.startswith("hold") else "")
+        scene = super().scene()
+        return scene | {"output": scene["output"] | {"record_steps": 500}} if self.kind.startswith("hold") else scene
 
     @property
     def stages(self):
-        hold = f'[[stage]]\nkind = "hold"\nbalance = 1e-14\nmax_steps = {HELD_STEPS}\n'
-        rest = hold.replace("1e-14", "1e-9")
+        hold = {"kind": "hold", "balance": 1e-14, "max_steps": HELD_STEPS}
         return super().stages | {
-            "early": rest + CYCLIC.format("cycles = 1"),
-            "liquefied": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 6"),
-            "hold": CYCLIC.format("cycles = 5") + hold,
-            "hold-late": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 3") + hold}
+            "early": [hold | {"balance": 1e-9}, cyclic(cycles=1)],
+            "liquefied": [cyclic(cycles=100, reversals_after_liquefaction=6)],
+            "hold": [cyclic(cycles=5), hold],
+            "hold-late": [cyclic(cycles=100, reversals_after_liquefaction=3), hold]}
 
     share = speed_plan.Run.share | {"early": 0.02, "liquefied": 18, "hold": 4, "hold-late": 16}
 
@@ -58,24 +59,24 @@ def runs(n_seeds):
     result = [Run("prepare", s, domain) for domain in DOMAINS for s in seeds]
     result += [Run("prepare", s, "rigid-box", grains=MANY) for s in three]
 
-    def cyclic(settings, some=seeds, domains=DOMAINS, **more):
+    def tests(settings, some=seeds, domains=DOMAINS, **more):
         result.extend(Run("cyclic", s, domain, setting, **more)
                       for s in some for domain in domains for setting in settings)
 
-    cyclic([DEFAULT, SLOW])
-    cyclic(NUMERICS, half)
-    cyclic([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
+    tests([DEFAULT, SLOW])
+    tests(NUMERICS, half)
+    tests([DEFAULT, SLOW, *LARGE], three, box, grains=MANY)
     result += [Run("monotonic", s, "rigid-box", setting) for s in few for setting in ONE_WAY]
     result += [Run("liquefied", s, "rigid-box") for s in three]
     result += [Run("prepare", s, domain, degrees=DENSER) for domain in DOMAINS for s in few]
-    cyclic([DEFAULT, SLOW], few, degrees=DENSER)
+    tests([DEFAULT, SLOW], few, degrees=DENSER)
     result += [Run(kind, s, domain, setting) for kind in ("hold", "hold-late") for s in three for domain in DOMAINS
                for setting in (DEFAULT, ALONE_SETTINGS[0])]
-    cyclic([fast for fast, _ in DAMPING.values()], half)
-    cyclic(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
-    cyclic(PUSHED, few, box)
+    tests([fast for fast, _ in DAMPING.values()], half)
+    tests(LOCAL_SETTINGS + OLD_SETTINGS + ALONE_SETTINGS, few)
+    tests(PUSHED, few, box)
     result += [Run("liquefied", s, "rigid-box", SLOW) for s in three]
-    cyclic([SLOWEST])
-    cyclic([slow for _, slow in DAMPING.values()], few)
+    tests([SLOWEST])
+    tests([slow for _, slow in DAMPING.values()], few)
     result += [Run("early", s, domain, setting) for s in eight for domain in DOMAINS for setting in EARLY]
     return result

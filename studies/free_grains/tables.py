@@ -3,10 +3,52 @@
 import numpy as np
 
 from studies.ensembles import ensemble, mean_and_interval
-from studies.free_grains import paths, plan
+from studies.free_grains import plan
 from studies.history import History
 
 REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
+Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, stand in the reversal itself
+STRAIN_SPACING = 1e-5
+
+
+def cyclic_path(history, n_reversals):
+    """p'/p0' of the first half cycles at equal q and at the reversals, point by point; None if the test ended before.
+
+    Half cycle k runs from reversal k to reversal k + 1. There q is made monotonic by its running maximum along the
+    direction of loading; p' is interpolated linearly on Q_GRID (the first half cycle from 0) and at the reversal.
+    """
+    ends = history.reversal_rows
+    if len(ends) < n_reversals:
+        return None
+    points = []
+    begin, direction = 0, 1
+    for k in range(n_reversals):
+        rows = slice(begin, ends[k] + 1)
+        q = np.maximum.accumulate(direction * history.q[rows])
+        p = history.p[rows]
+        grid = Q_GRID[Q_GRID >= 1e3] if k == 0 else Q_GRID
+        points.append(np.interp(grid, q, p))
+        points.append(p[-1:])
+        begin, direction = ends[k], -direction
+    return np.concatenate(points) / history.p0
+
+
+def monotonic_path(history, strain):
+    """p'/p0' and q/p0' at equal axial strain from 0 to `strain`, shape (2, points); None if the test ended before."""
+    if history.eps_y[-1] < strain * (1 - 1e-3):
+        return None
+    grid = np.linspace(0, strain, round(strain / STRAIN_SPACING) + 1)
+    order = np.maximum.accumulate(history.eps_y)
+    return np.array([np.interp(grid, order, column) for column in (history.p, history.q)]) / history.p0
+
+
+def deviation(path, reference):
+    """Distance from the reference in the p'-q plane, over p0', point by point: its root mean square and its largest."""
+    if path is None or reference is None:
+        return None
+    difference = path - reference
+    distance = np.abs(difference) if difference.ndim == 1 else np.hypot(*difference)
+    return float(np.sqrt(np.mean(distance**2))), float(distance.max())
 
 
 class Cyclic:
@@ -21,7 +63,7 @@ class Cyclic:
         # not of the last two reversals before the onset: there p' falls by tens of kPa in a half cycle
         last = history.reversals[onset] - 2 if onset is not None else len(rows)
         self.p = np.array([history.p[rows[k - 1]] / 1e3 if k <= last else np.nan for k in REVERSALS])
-        self.path = paths.cyclic_path(history, 10)
+        self.path = cyclic_path(history, 10)
 
 
 class Results:
@@ -50,7 +92,7 @@ class Results:
     def path_distances(self, key, reference):
         """Largest distance of the cyclic path to reversal 10 from that of the reference, % of p0', seed by seed."""
         tests, others = self.cyclic[key], self.cyclic.get(reference, {})
-        found = [paths.deviation(tests[s].path, others[s].path) for s in tests if s in others]
+        found = [deviation(tests[s].path, others[s].path) for s in tests if s in others]
         return [100 * d[1] for d in found if d]
 
     def cycles_table(self):
@@ -110,12 +152,12 @@ class Results:
         rows = []
         for setting in settings:
             for strain in (0.001, 0.002, 0.003, 0.004, 0.005):
-                pairs = [[paths.monotonic_path(histories[key], strain) for key in ((setting, s), (reference, s))]
+                pairs = [[monotonic_path(histories[key], strain) for key in ((setting, s), (reference, s))]
                          for (some, s) in histories if some == setting and (reference, s) in histories]
                 pairs = [pair for pair in pairs if all(path is not None for path in pair)]
                 if pairs:
                     signed = mean_and_interval([100 * (test[0, -1] - slow[0, -1]) for test, slow in pairs])
-                    distances = [100 * paths.deviation(*pair)[1] for pair in pairs]
+                    distances = [100 * deviation(*pair)[1] for pair in pairs]
                     rows.append([setting.label, reference.label, len(pairs), f"{100 * strain:g}", *signed,
                                  np.mean(distances), ensemble(distances)[2]])
         return ["setting", "reference", "seeds", "axial strain (%)", "p' less that of the reference (% of p0')",

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the committed tables, nothing else: each figure from the CSV files of one folder."""
-import matplotlib.pyplot as plt
 import numpy as np
 
-from studies.paper import lab, plan, states
 from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
-                           plain_logarithm)
+                             plain_logarithm, save)
+from studies.paper import lab, plan, states
 from studies.paper.resistance import REFERENCE, fitted_ratios
 
 DENSITIES = dict(zip(plan.PAPER, (RED, GREEN, BLUE)))
@@ -14,15 +13,13 @@ PACE_NAMES = {plan.DEFAULT: "rate of the default", plan.SLOW: "a tenth of the de
 
 
 def draw(folder):
-    plt.rcParams.update(STYLE)
     for name, function in FIGURES.items():
         if all((folder / f"{table}.csv").exists() for table in function.tables):
             figure = function(Table(folder / f"{function.tables[0]}.csv"), folder)
             if figure is not None:
                 figure.set_dpi(STYLE["savefig.dpi"])
                 figure.draw_without_rendering()  # so that ticks are those that savefig lays out
-                figure.savefig(folder / f"{name}.png")
-                plt.close(figure)
+                save(figure, folder / f"{name}.png")
                 print(folder / f"{name}.png")
 
 

@@ -2,7 +2,8 @@
 """What is run: specimens by relative density or preparation friction, and the scene of each test."""
 import dataclasses
 
-from studies.speed_error import plan as speed_plan
+from studies.scenes import CONTACT, cyclic as cyclic_stage, scene_of
+from studies.speed_error.plan import HUNDREDTH, TENTH
 
 P0 = 200  # kPa, of the paper
 FRICTION = 18  # degrees
@@ -25,20 +26,6 @@ LARGE = 5000  # grains
 # hour each: the loosest that stand when friction is set (those of D_r = 0.30 lose their pressure), nearly the densest
 LARGE_DEGREES = {0.30: FRICTION, 0.88: 0.5}
 
-SCENE = speed_plan.GRADING.replace("{seed}", "{seed}{sizes}") + speed_plan.CONTACT.replace(
-    "10 GPa", "{young:g} GPa").replace("18 deg", "{friction:g} deg") + """
-[specimen]
-{specimen}
-
-[motion]
-{motion}
-{stages}
-[output]
-snapshots = "none"
-paraview = false
-record_stress = "1 kPa"
-record_strain = {record_strain}
-"""
 # the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)
 FIRST_STRAIN, FAST = 0.005, 4e-4
 DENSITY_OF_GRAINS, D50 = 2650, 0.45e-3
@@ -53,8 +40,8 @@ def strain_rate(inertial_number, pressure):
 class Way:
     """What differs as a specimen is made."""
 
-    specimen: str = ""  # a line of [specimen]
-    sizes: str = ""  # a line of [grading]
+    specimen: dict = dataclasses.field(default_factory=dict)  # keys of [specimen]
+    grading: dict = dataclasses.field(default_factory=dict)  # keys of [grading]
     pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
     cell: bool = False  # no walls
     own_limits: bool = True  # of the cell; else those of boxes define its density
@@ -62,34 +49,25 @@ class Way:
 
 
 NO_WALLS = "periodic cell"
-WAYS = {"": Way(), "compacted at 3/s": Way('compaction_rate = "3 1/s"'),
-        "compacted at 100/s": Way('compaction_rate = "100 1/s"'), "damping 0.05": Way("damping = 0.05"),
-        "damping 0.7": Way("damping = 0.7"), "friction raised at 20 kPa": Way(pressure=20),
+WAYS = {"": Way(), "compacted at 3/s": Way({"compaction_rate": "3 1/s"}),
+        "compacted at 100/s": Way({"compaction_rate": "100 1/s"}), "damping 0.05": Way({"damping": 0.05}),
+        "damping 0.7": Way({"damping": 0.7}), "friction raised at 20 kPa": Way(pressure=20),
         "friction raised as the test begins": Way(at_once=True),
-        "sizes of 10 to 90 %": Way(sizes="truncate = [10, 90]"), "thin cloud": Way(sizes="solid_fraction = 0.2"),
+        "sizes of 10 to 90 %": Way(grading={"truncate": [10, 90]}), "thin cloud": Way(grading={"solid_fraction": 0.2}),
         NO_WALLS: Way(cell=True),
         "periodic cell, void ratio of the boxes": Way(cell=True, own_limits=False)}
 
 
-@dataclasses.dataclass(frozen=True)
-class Pace:
-    """How fast a cyclic test is run."""
-
-    rates: str = ""  # lines of [motion]
-    damping: str = "damping = 0.1"
-    large: str = ""  # instead of both, with 10,000 grains
-
-
-LARGE_MOTION = "damping = 0.02\nload_per_wave = 0.02"  # docs/results/free_grains.md, other sizes
+DAMPED = {"damping": 0.1}
 # as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
-USUAL = "damping = 0.2\ncontact_damping = 0\nfree_grain_damping = 0\ncarry_grains = false"
+USUAL = {"damping": 0.2, "contact_damping": 0, "free_grain_damping": 0, "carry_grains": False}
 DEFAULT = "default"
 SLOW = "tenth"  # what happens after the onset needs it
-PACES = {DEFAULT: Pace(large=LARGE_MOTION),
-         SLOW: Pace("\ninertial_number = 7e-5\nload_per_wave = 0.01", large=f"{LARGE_MOTION}\ninertial_number = 7e-5"),
-         "hundredth": Pace("\ninertial_number = 7e-6\nload_per_wave = 0.001"),
-         "2/s": Pace('\nstrain_rate = "2 1/s"\n', damping=USUAL),
-         "10/s": Pace('\nstrain_rate = "10 1/s"\n', damping=USUAL)}
+# how fast a cyclic test is run: keys of [motion]
+PACES = {DEFAULT: DAMPED, SLOW: DAMPED | TENTH, "hundredth": DAMPED | HUNDREDTH,
+         "2/s": USUAL | {"strain_rate": "2 1/s"}, "10/s": USUAL | {"strain_rate": "10 1/s"}}
+LARGE_MOTION = {"damping": 0.02, "load_per_wave": 0.02}  # docs/results/free_grains.md, other sizes
+LARGE_PACES = {DEFAULT: LARGE_MOTION, SLOW: LARGE_MOTION | {"inertial_number": 7e-5}}  # with 10,000 grains
 PACE_DEGREES = 9  # preparation friction of their specimens
 
 
@@ -122,34 +100,32 @@ class Packing:
         more += [self.way] if self.way else []
         return ", ".join(more)
 
-    def settings(self):
+    def sections(self):
         """Of the scene: how it is made."""
         way = WAYS[self.way]
         hard_to_find = self.grains >= LARGE and self.young == 10 and not way.cell
         degrees = self.degrees or (hard_to_find and LARGE_DEGREES.get(self.relative_density))
-        lines = [f'domain = "{"periodic-cell" if way.cell else "rigid-box"}"',
-                 f'pressure = "{way.pressure or self.pressure:g} kPa"']
+        specimen = {"domain": "periodic-cell" if way.cell else "rigid-box",
+                    "pressure": f"{way.pressure or self.pressure:g} kPa"}
         if degrees:
-            lines.append(f'preparation_friction = "{degrees:g} deg"')
+            specimen["preparation_friction"] = f"{degrees:g} deg"
         else:
             e_min, e_max = self.limits
             # a search costs more than a test, and small boxes scatter; the loosest give way when friction is raised
             tolerance = 0.01 if self.grains > 2000 else 0.03 if self.relative_density > 0.25 else 0.10
-            lines += [f"relative_density = {self.relative_density}", f"e_min = {e_min}", f"e_max = {e_max}",
-                      f"density_tolerance = {tolerance}"]
-        lines += ['compaction_rate = "10 1/s"'] if self.young < 1 else []  # at the default some soft packings explode
-        lines += [way.specimen] if way.specimen else []
-        return {"grains": self.grains, "edge": 10 * (self.grains / 10000) ** (1 / 3), "seed": self.seed,
-                "sizes": f"\n{way.sizes}" if way.sizes else "", "young": self.young,
-                "friction": self.degrees if way.at_once else FRICTION,
-                "specimen": "\n".join(lines)}
+            specimen |= {"relative_density": self.relative_density, "e_min": e_min, "e_max": e_max,
+                         "density_tolerance": tolerance}
+        specimen |= {"compaction_rate": "10 1/s"} if self.young < 1 else {}  # at the default some soft packings explode
+        friction = self.degrees if way.at_once else FRICTION
+        return {"specimen": specimen | way.specimen, "grading": way.grading,
+                "contact": CONTACT | {"young": f"{self.young:g} GPa", "friction": f"{friction:g} deg"}}
 
     def stages(self):
         """With which its making ends, as stages of a test."""
         way = WAYS[self.way]
         if way.at_once:
-            return [f'[[stage]]\nkind = "friction"\nfriction = "{FRICTION} deg"\n']
-        return [f'[[stage]]\nkind = "compress"\npressure = "{self.pressure:g} kPa"\n'] if way.pressure else []
+            return [{"kind": "friction", "friction": f"{FRICTION} deg"}]
+        return [{"kind": "compress", "pressure": f"{self.pressure:g} kPa"}] if way.pressure else []
 
 
 @dataclasses.dataclass(frozen=True)
@@ -195,32 +171,27 @@ class Run:
         return paper and (self.pace != DEFAULT or self.packing.grains < LARGE)
 
     def scene(self):
-        p = self.packing
-        pace = PACES[self.pace]
-        large = pace.large if p.grains >= LARGE and self.kind == "cyclic" else ""
-        motion = large or pace.damping + pace.rates
-        return SCENE.format(title=self.name, **p.settings(), motion=motion,
-                            stages=self.stages(), record_strain="1e-4" if self.kind == "cyclic" else "2e-4")
+        p, is_cyclic = self.packing, self.kind == "cyclic"
+        motion = LARGE_PACES.get(self.pace) if p.grains >= LARGE and is_cyclic else None
+        return scene_of(self.name, p.grains, p.seed, stages=self.stages(), motion=motion or PACES[self.pace],
+                        record_stress="1 kPa", record_strain=1e-4 if is_cyclic else 2e-4, **p.sections())
 
     def stages(self):
         if self.kind == "prepare":
-            return ""
+            return []
         if self.kind == "cyclic":
-            amplitude = 2 * self.ratio * self.packing.pressure
             after = self.after if self.looks_behind_onset else 0
-            until = f"cycles = {self.max_cycles}, reversals_after_liquefaction = {after}, strain = 0.15"
-            drained = '[[stage]]\nkind = "compress"\n' if self.looks_behind_onset else ""
-            return (f'{"".join(self.packing.stages())}[[stage]]\nkind = "undrained-cyclic"\n'
-                    f'deviator_amplitude = "{amplitude:g} kPa"\n'
-                    f"until = {{ {until} }}\n{drained}")
-        kind = "drained" if self.kind == "drained" else "undrained-monotonic"
-        direction = "extension" if self.kind == "extension" else "compression"
-        stage = f'[[stage]]\nkind = "{kind}"\ndirection = "{direction}"\n'
+            load = cyclic_stage(f"{2 * self.ratio * self.packing.pressure:g} kPa", cycles=self.max_cycles,
+                                reversals_after_liquefaction=after, strain=0.15)
+            drained = [{"kind": "compress"}] if self.looks_behind_onset else []
+            return [*self.packing.stages(), load, *drained]
+        stage = {"kind": "drained" if self.kind == "drained" else "undrained-monotonic",
+                 "direction": "extension" if self.kind == "extension" else "compression"}
         if self.slow or self.strain <= FIRST_STRAIN:
-            return stage + f"strain = {self.strain:g}\n"
+            return [stage | {"strain": self.strain}]
         rate = strain_rate(FAST, self.packing.pressure)
-        return (stage + f"strain = {FIRST_STRAIN:g}\n" + stage +
-                f'strain = {self.strain - FIRST_STRAIN:g}\nstrain_rate = "{rate:.3g} 1/s"\n')
+        return [stage | {"strain": FIRST_STRAIN},
+                stage | {"strain": float(f"{self.strain - FIRST_STRAIN:g}"), "strain_rate": f"{rate:.3g} 1/s"}]
 
     def estimated_seconds(self):
         first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN

@@ -35,9 +35,7 @@ def history_of(run, folder):
         begin = history.e[rows][0]
         history.drained_strain = (begin - history.e[-1]) / (1 + begin)
         history.p0 = history.p[rows][0]
-        for name, column in vars(history).items():
-            if isinstance(column, np.ndarray):
-                setattr(history, name, column[rows])
+        history.keep(rows)
     return history
 
 

@@ -3,12 +3,12 @@
 import dataclasses
 
 import h5py
-import matplotlib.pyplot as plt
 import numpy as np
 
 import isostat
 from studies import APPS
-from studies.drawing import BLUE, ORANGE, STYLE, legend_below, panels
+from studies.drawing import BLUE, ORANGE, legend_below, panels, save
+from studies.scenes import cloud_edge
 from studies.small_strain import published
 
 DEFAULTS, QUICK = {"grains": 1000, "duration": 12.0}, {"grains": 300, "duration": 0.1}
@@ -44,7 +44,7 @@ class Library:
         scene, young = LIBRARIES[self.law]
         return {"scene": str(APPS / "scenes" / scene), "pressures": ["20 kPa", "100 kPa"],
                 "keys": {"contact.young": young, "grading.grains": self.grains,
-                         "grading.cloud_edge": f"{10 * (self.grains / 10000) ** (1 / 3):.15g} mm"}}
+                         "grading.cloud_edge": cloud_edge(self.grains)}}
 
     def estimated_seconds(self):
         return 60 * self.grains / 1000
@@ -103,7 +103,6 @@ def report(store, planned, folder):
     if not folders:
         return
     end = next(run.duration for run in planned if run.kind == "deposit")
-    plt.rcParams.update(STYLE)
     figure, axes = panels(1, 3, height=3.6, sharey=True)
     for (law, results), colour in zip(folders.items(), (BLUE, ORANGE)):
         depth, velocity, vertical, ru, gamma = profile(results, end)
@@ -119,5 +118,4 @@ def report(store, planned, folder):
     axes[0, 1].set(xlabel=f"Largest $r_u$ until {end:.3g} s")
     axes[0, 2].set(xlabel=rf"Largest $|\gamma|$ until {end:.3g} s (%)", xscale="log")
     legend_below(figure, axes[0, 0], 3, 0.08)
-    figure.savefig(folder / "deposit.png")
-    plt.close(figure)
+    save(figure, folder / "deposit.png")

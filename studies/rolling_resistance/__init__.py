@@ -10,9 +10,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import isostat
-from studies.drawing import BLUE, ORANGE, STYLE, legend_below
+from studies.drawing import BLUE, ORANGE, legend_below, save
 from studies.ensembles import ensemble
 from studies.history import History
+from studies.scenes import cloud_edge
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {"seeds": 5}, {"seeds": 1}
@@ -39,7 +40,7 @@ def prepare_box(results, grains, seed):
     made = isostat.prepare(isostat.Scene(
         contact=contact(0.5, True),
         grading={"curve": "karlsruhe-fine-sand", "grains": grains, "seed": seed,
-                 "cloud_edge": f"{10 * (grains / 10000) ** (1 / 3):.12g} mm"},
+                 "cloud_edge": cloud_edge(grains, ".12g")},
         specimen={"domain": "rigid-box", "pressure": "200 kPa", "relative_density": 0.64, "e_min": 0.568,
                   "e_max": 0.841}), cache=results.parent / "specimens", threads=1)
     isostat.write_specimen(results / "specimen.h5", made, overwrite=True)
@@ -140,7 +141,6 @@ def row(grains, limit, twisting, compression=(), cyclic=()):
 
 def draw(values, path):
     """Each law as a point: its slope and its cycles, beside the paper's."""
-    plt.rcParams.update(STYLE)
     figure, axes = plt.subplots(figsize=(5.4, 4.2), layout="constrained")
     for grains, marker in ((FEW, "o"), (MANY, "s")):
         for twisting, colour in ((True, BLUE), (False, ORANGE)):
@@ -157,5 +157,4 @@ def draw(values, path):
     axes.set(xlabel="q/p' in compression at 18 to 20 % strain (-)", yscale="log",
              ylabel=f"Cycles to liquefaction at q = 60 kPa (dashed: none in {CYCLES})")
     legend_below(figure, axes, 2, 0.17)
-    figure.savefig(path)
-    plt.close(figure)
+    save(figure, path)

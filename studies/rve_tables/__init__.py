@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 import isostat
+from studies.scenes import cloud_edge
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {"seeds": 3, "grains": 1000}, {"seeds": 1, "grains": 200}
@@ -67,9 +68,9 @@ class Run:
         return [1e-5, 1e-4, 1e-3, 1e-2, 0.05, 0.2] if self.kind == "rotation" else [1e-3, 1e-2, 0.05]
 
     def arguments(self):
-        edge = f"{10 * (self.grains / 10000) ** (1 / 3):.15g} mm"
         return {"twisting": self.twisting, "strains": self.strains, "sections": {
-            "grading": {"grains": self.grains, "cloud_edge": edge, "seed": self.seed}, "contact": CONTACT | TWISTING,
+            "grading": {"grains": self.grains, "cloud_edge": cloud_edge(self.grains), "seed": self.seed},
+            "contact": CONTACT | TWISTING,
             "specimen": {"domain": "periodic-cell", "consolidation": self.consolidation,
                          "preparation_friction": f"{self.degrees} deg"}}}
 

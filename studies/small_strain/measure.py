@@ -5,6 +5,8 @@ import types
 import isostat
 import numpy as np
 
+from studies.scenes import RESISTANCE, cloud_edge
+
 PRESSURES = (20, 50, 100, 200, 400, 800)  # kPa, of `stiffness`
 DEPTHS = (1, 2, 3, 5, 7, 10, 15, 20)  # m, of `velocity`
 BUOYANT_WEIGHT = 9.7e3  # N/m3, of saturated ground of 1,970 kg/m3 under water
@@ -18,10 +20,8 @@ NORMAL = np.eye(3, dtype=bool)
 def element(results, run, contact, **options):
     """The packing of a run, isotropically consolidated."""
     scene = isostat.Scene(
-        grading={"grains": run.grains, "seed": run.seed,
-                 "cloud_edge": f"{10 * (run.grains / 10000) ** (1 / 3):.3f} mm"},
-        contact={**contact, "friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5},
-                 "twisting": {"stiffness": 0.3}},
+        grading={"grains": run.grains, "seed": run.seed, "cloud_edge": cloud_edge(run.grains, ".3f")},
+        contact=contact | RESISTANCE,
         specimen={"domain": "periodic-cell", "pressure": f"{run.pressure} kPa",
                   "preparation_friction": f"{run.degrees} deg"})
     specimen = isostat.prepare(scene, cache=results.parent / "specimens")

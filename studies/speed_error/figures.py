@@ -3,13 +3,11 @@
 import numpy as np
 import matplotlib
 import matplotlib.pyplot as plt
-from matplotlib import ticker
 
+from studies.drawing import plain_logarithm, save
 from studies.ensembles import ensemble
 from studies.speed_error import plan
 
-STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-         "grid.color": "#e4e4e4", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False}
 DYNAMIC, STATIC = ("#d55e00", "s"), ("#0072b2", "o")  # Okabe and Ito: colours that colour-blind readers can tell apart
 KINDS = [("rigid-box", "(a) boxes"), ("periodic-cell", "(b) cells")]
 
@@ -57,64 +55,58 @@ def front(axes, points):
 
 
 def error_against_cost(results, path):
-    with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 2, figsize=(11, 4.8), sharey=True)
-        figure.subplots_adjust(left=0.065, right=0.955, top=0.93, bottom=0.11, wspace=0.06)
-        drawn = [(axes, [key for key in results.keys() if key[:2] == (domain, plan.GRAINS)])
-                 for axes, (domain, _) in zip(panels, KINDS)]
-        points = {}
-        for axes, keys in drawn:
-            for key in keys:
-                found = list(results.distances(key).values())
-                if not found or key[2] == plan.FINEST:
-                    continue
-                steps = np.nanmean([test.path_steps for test in results.cyclic[key].values()])
-                low, middle, high = np.quantile(found, (0.25, 0.5, 0.75))
-                colour, marker = look(key[2])
-                axes.errorbar(steps, middle, [[middle - low], [high - middle]], fmt=marker, color=colour, ms=5,
-                              elinewidth=0.7, capsize=2)
-                label = key[2].label.replace("static, ", "").replace("balance ", "")
-                points.setdefault(axes, []).append((steps, middle, label, colour))
-        for axes, (_, title) in zip(panels, KINDS):
-            axes.set(xscale="log", yscale="log", xlabel="time steps or evaluations of all forces to reversal 10")
-            axes.set_title(title, fontsize=9.5, loc="left")
-            for axis in (axes.xaxis, axes.yaxis):
-                axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-                axis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:,g}"))
-                axis.set_minor_formatter(ticker.NullFormatter())
-            axes.margins(0.2, 0.15)
-        panels[0].set_ylabel("distance to the finest path, % of p0'")
-        panels[0].legend([plt.Line2D([], [], color=c, marker=m, ls="") for c, m in (DYNAMIC, STATIC)],
-                         ["dynamic", "static: increment, balance"], loc="lower left", fontsize=8)
-        for axes, marks in points.items():
-            spread_labels(axes, marks)
-        figure.savefig(path)
-        plt.close(figure)
+    figure, panels = plt.subplots(1, 2, figsize=(11, 4.8), sharey=True)
+    figure.subplots_adjust(left=0.065, right=0.955, top=0.93, bottom=0.11, wspace=0.06)
+    drawn = [(axes, [key for key in results.keys() if key[:2] == (domain, plan.GRAINS)])
+             for axes, (domain, _) in zip(panels, KINDS)]
+    points = {}
+    for axes, keys in drawn:
+        for key in keys:
+            found = list(results.distances(key).values())
+            if not found or key[2] == plan.FINEST:
+                continue
+            steps = np.nanmean([test.path_steps for test in results.cyclic[key].values()])
+            low, middle, high = np.quantile(found, (0.25, 0.5, 0.75))
+            colour, marker = look(key[2])
+            axes.errorbar(steps, middle, [[middle - low], [high - middle]], fmt=marker, color=colour, ms=5,
+                          elinewidth=0.7, capsize=2)
+            label = key[2].label.replace("static, ", "").replace("balance ", "")
+            points.setdefault(axes, []).append((steps, middle, label, colour))
+    for axes, (_, title) in zip(panels, KINDS):
+        axes.set_xlabel("time steps or evaluations of all forces to reversal 10")
+        axes.set_title(title, fontsize=9.5, loc="left")
+        for axis in (axes.xaxis, axes.yaxis):
+            plain_logarithm(axis, "{x:,g}")
+        axes.margins(0.2, 0.15)
+    panels[0].set_ylabel("distance to the finest path, % of p0'")
+    panels[0].legend([plt.Line2D([], [], color=c, marker=m, ls="") for c, m in (DYNAMIC, STATIC)],
+                     ["dynamic", "static: increment, balance"], loc="lower left", fontsize=8)
+    for axes, marks in points.items():
+        spread_labels(axes, marks)
+    save(figure, path)
 
 
 def cycles(results, path):
     """Cycles of each setting less those of the static default, one dot for each specimen, and their mean."""
-    with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 2, figsize=(9.5, 3.6), sharey=True)
-        labels = list(dict.fromkeys(key[2].label for key in results.keys()
-                                    if any(np.isfinite(t.cycles) for t in results.cyclic[key].values())))
-        for axes, (domain, title) in zip(panels, KINDS):
-            for key in (key for key in results.keys() if key[:2] == (domain, plan.GRAINS) and key[2].label in labels):
-                values = np.array([a.cycles - b.cycles for a, b in results.pairs(key, plan.STATIC).values()])
-                values = values[np.isfinite(values)]
-                place, colour = labels.index(key[2].label), look(key[2])[0]
-                spread = place + np.linspace(-0.2, 0.2, len(values))
-                axes.plot(values, spread, "o", ms=3, color=colour, alpha=0.4, mew=0)
-                mean, _, error, n = ensemble(values)
-                axes.errorbar(mean, place, xerr=error if n > 1 else 0, fmt="D", ms=5, color=colour, elinewidth=2)
-            axes.axvline(0, color="#9a9a9a", lw=0.8, zorder=0)
-            axes.set_title(title, fontsize=9.5, loc="left")
-            axes.set_xlabel("cycles less those of the static default")
-        panels[0].set_yticks(range(len(labels)), labels)
-        panels[0].invert_yaxis()
-        figure.tight_layout()
-        figure.savefig(path)
-        plt.close(figure)
+    figure, panels = plt.subplots(1, 2, figsize=(9.5, 3.6), sharey=True)
+    labels = list(dict.fromkeys(key[2].label for key in results.keys()
+                                if any(np.isfinite(t.cycles) for t in results.cyclic[key].values())))
+    for axes, (domain, title) in zip(panels, KINDS):
+        for key in (key for key in results.keys() if key[:2] == (domain, plan.GRAINS) and key[2].label in labels):
+            values = np.array([a.cycles - b.cycles for a, b in results.pairs(key, plan.STATIC).values()])
+            values = values[np.isfinite(values)]
+            place, colour = labels.index(key[2].label), look(key[2])[0]
+            spread = place + np.linspace(-0.2, 0.2, len(values))
+            axes.plot(values, spread, "o", ms=3, color=colour, alpha=0.4, mew=0)
+            mean, _, error, n = ensemble(values)
+            axes.errorbar(mean, place, xerr=error if n > 1 else 0, fmt="D", ms=5, color=colour, elinewidth=2)
+        axes.axvline(0, color="#9a9a9a", lw=0.8, zorder=0)
+        axes.set_title(title, fontsize=9.5, loc="left")
+        axes.set_xlabel("cycles less those of the static default")
+    panels[0].set_yticks(range(len(labels)), labels)
+    panels[0].invert_yaxis()
+    figure.tight_layout()
+    save(figure, path)
 
 
 def draw(results, folder):

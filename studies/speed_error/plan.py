@@ -4,43 +4,12 @@ import dataclasses
 
 import numpy as np
 
+from isostat.scene import value_text
+from studies.scenes import cyclic, scene_of
+
 GRAINS, MANY = 2000, 10_000
 DOMAINS = ("rigid-box", "periodic-cell")
 LOOSE, DENSER = 10, 8  # preparation friction, degrees
-
-CONTACT = """[contact]
-young = "10 GPa"
-stiffness_ratio = 0.3
-friction = "18 deg"
-rolling = {{ stiffness = 0.3, limit = 0.5 }}
-twisting = {{ stiffness = 0.3 }}
-"""  # of format(), as the scenes are
-GRADING = """\
-title = "{title}"
-
-[grading]
-curve = "karlsruhe-fine-sand"
-grains = {grains}
-cloud_edge = "{edge:.15g} mm"     # grains of one size for every number of them
-seed = {seed}
-
-"""
-SCENE = GRADING + CONTACT + """
-[specimen]
-domain = "{domain}"
-pressure = "200 kPa"
-preparation_friction = "{degrees:g} deg"
-
-[motion]
-{motion}
-
-{stage}
-[output]
-snapshots = "none"
-paraview = false
-record_stress = "1 kPa"
-record_strain = {record_strain}
-"""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,18 +22,11 @@ class Setting:
 
     @property
     def name(self):
-        return "_".join(f"{key}={value}" for key, value in self.motion).replace('"', "") or "default"
+        return "_".join(f"{key}={value_text(value, key)}" for key, value in self.motion).replace('"', "") or "default"
 
 
 def of(label, steps=2.5e4, **motion):
     return Setting(label, tuple(motion.items()), steps)
-
-
-CYCLIC = """[[stage]]
-kind = "undrained-cyclic"
-deviator_amplitude = "60 kPa"
-until = {{ {} }}
-"""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -94,19 +56,16 @@ class Run:
 
     @property
     def stages(self):
-        return {"prepare": "",
-                "cyclic": CYCLIC.format("cycles = 100, reversals_after_liquefaction = 0"),
-                "path": CYCLIC.format("cycles = 5"),
-                "monotonic": '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.005\n'}
+        return {"prepare": [], "cyclic": [cyclic(cycles=100, reversals_after_liquefaction=0)],
+                "path": [cyclic(cycles=5)], "monotonic": [{"kind": "undrained-monotonic", "strain": 0.005}]}
 
     # time steps, or evaluations of forces, over those to the onset of a cyclic test
     share = {"prepare": 2.4, "cyclic": 1, "path": 0.15, "monotonic": 1.3}
 
     def scene(self):
-        return SCENE.format(title=self.name, grains=self.grains, seed=self.seed, domain=self.domain,
-                            degrees=self.degrees, edge=10 * (self.grains / 10000) ** (1 / 3),
-                            stage=self.stages[self.kind], record_strain="1e-4",
-                            motion="\n".join(f"{key} = {value}" for key, value in self.setting.motion))
+        specimen = {"domain": self.domain, "pressure": "200 kPa", "preparation_friction": f"{self.degrees:g} deg"}
+        return scene_of(self.name, self.grains, self.seed, specimen, self.stages[self.kind],
+                        motion=dict(self.setting.motion), record_stress="1 kPa", record_strain=1e-4)
 
     def estimated_seconds(self):
         denser = 3 if self.degrees < LOOSE and self.kind == "cyclic" else 1
@@ -115,7 +74,7 @@ class Run:
 
 def static(increment, balance, steps):
     short = [np.format_float_scientific(value, trim="-", exp_digits=1) for value in (increment, balance)]
-    return of(f"static, {short[0]}, balance {short[1]}", steps, drive='"static"', increment=increment, balance=balance)
+    return of(f"static, {short[0]}, balance {short[1]}", steps, drive="static", increment=increment, balance=balance)
 
 
 DYNAMIC = Run.setting

@@ -7,6 +7,7 @@ import subprocess
 from isostat.campaign.runs import program
 from studies import APPS
 from studies.ensembles import ensemble
+from studies.scenes import cloud_edge
 from studies.tables import write_csv
 
 DEFAULTS, QUICK = {"seeds": 3, "grains": 2000}, {"seeds": 1, "grains": 200}
@@ -38,10 +39,9 @@ class Run:
         return f"{self.domain}_n{self.grains}_s{self.seed}"
 
     def arguments(self):
-        edge = 10 * (self.grains / 10000) ** (1 / 3)
         return {"scene": str(APPS / "scenes/void_ratio_limits.toml"),
                 "keys": {"grading.grains": self.grains, "grading.seed": self.seed,
-                         "grading.cloud_edge": f"{edge:.15g} mm", "specimen.domain": self.domain}}
+                         "grading.cloud_edge": cloud_edge(self.grains), "specimen.domain": self.domain}}
 
     def estimated_seconds(self):
         return 60 * self.grains / 2000

@@ -33,6 +33,11 @@ class SceneMistakes(AppTest):
 
     def test_unknown_option(self):
         self.assertEqual(self.run_test("scene.toml", "--overwite").returncode, 2)
+        for command, option, meant in (("resistance", "--ratois", "ratios"), ("library", "--overwite=1", "overwrite"),
+                                       ("compare", "--outptu", "output"), ("study paper", "--jbos", "jobs")):
+            result = self.run_app("isostat", *command.split(), option)
+            self.assert_refused(result, f"error: {option.split('=')[0]}: unknown option. Did you mean --{meant}?\n"
+                                f"Run isostat {command} --help")
 
     def test_jobs(self):
         """0 is as many as there are cores, in every program; then the scene is looked for."""
@@ -204,7 +209,8 @@ class Bare(AppTest):
             result = self.run_app("isostat", *words)
             self.assert_done(result)
             self.assertRegex(result.stdout, "\n  library .*\n(?s:.*)\n  element_test ")
-        self.assert_refused(self.run_app("isostat", "librray"), "librray: is no command of isostat")
+        self.assert_refused(self.run_app("isostat", "librray"), "librray: unknown command of isostat. Did you mean "
+                            "library?")
 
     def test_a_scene_of_too_long_a_name(self):
         for words in (("element_test",), ("isostat", "library"), ("isostat", "resistance", "--ratios", "0.2")):

@@ -18,7 +18,7 @@ from support import BIN, AppTest, main  # noqa: E402  (the folders come first)
 sys.path[:0] = [str(BIN.parent / "python"), str(BIN.parent / "python/isostat")]
 sys.argv[0] = str(BIN / "isostat")  # next to the programs
 from isostat.campaign import engines, study  # noqa: E402
-from studies.column_error import plan as error_plan  # noqa: E402
+from studies import column_error as error_plan  # noqa: E402
 
 LIBRARIES = {"column_ensemble": (300, 3000), "column_error": (250, 500, 1000, 2000, 4000)}
 OTHERS = "column_dissipation", "column_fitted", "column_others", "column_phenomena"

@@ -8,17 +8,24 @@ import pathlib
 import subprocess
 import sys
 from collections.abc import Callable
+from typing import Any
 
 from isostat import _core
 from isostat.calls import stopped_by_signals
 from isostat.campaign.engines import ENGINE_TEXT, engine
 from isostat.campaign.folder import write_replacing
+from isostat.figures.command_line import CommandLine
 
 SCENES = next((folder for parent in pathlib.Path(__file__).parents[2:7]
                if (folder := parent / "share/isostat").is_dir()), pathlib.Path("apps"))
 
 
 WITHOUT_REPORT = 3  # exit code of `report leave`
+
+
+def line_of(name: str, description: str, **more: Any) -> CommandLine:
+    """The command line of a command of isostat."""
+    return CommandLine(prog=f"isostat {name}", description=description, **more)
 
 
 def shipped(folder: str, name: str) -> str:
@@ -41,12 +48,13 @@ def overrides(given: list[str]) -> dict[str, str]:
     return dict(word.split("=", 1) for word in given)
 
 
-def add_campaign(line: argparse.ArgumentParser, folder: str) -> None:
-    """Options of a campaign. folder: default of --output, as the help says it."""
+def add_campaign(line: argparse.ArgumentParser, folder: str, figures: bool = True) -> None:
+    """Options of a campaign. folder: default of --output, as the help says it. figures: they can be left out"""
     add_engine(line)
     line.add_argument("-o", "--output", type=pathlib.Path, help=f"results folder (default: {folder})")
-    line.add_argument("--overwrite", action="store_true", help="start anew: remove finished runs of this folder")
-    line.add_argument("--no-figures", action="store_true", help="leave no figure and no report")
+    line.add_argument("--overwrite", action="store_true", help="start again: remove finished runs of this folder")
+    if figures:
+        line.add_argument("--no-figures", action="store_true", help="leave no figure and no report")
 
 
 def add_engine(line: argparse.ArgumentParser, jobs: int = 1) -> None:

@@ -194,8 +194,8 @@ def list_library(options: argparse.Namespace) -> None:
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat library", description="A library of periodic specimens: realisations at "
-                                   "several pressures and densities in one file")
+    line = command.line_of("library", "A library of periodic specimens: realisations at several pressures and "
+                           "densities in one file")
     command.add_scene(line, "scene file (TOML) in a periodic cell; its stages are not run", nargs="?")
     line.add_argument("-n", "--realisations", type=command.count(1, 1000000), default=1,
                       help="seeds at each pressure and density, from grading.seed of the scene on (default 1)")

@@ -18,6 +18,7 @@ or with do(options, executor) in place of the first two.
 tested: tests/apps/study_test.py, tests/studies/columns_test.py
 """
 import argparse
+import ast
 import concurrent.futures
 import contextlib
 import functools
@@ -35,9 +36,10 @@ from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder, write_replacing
 from isostat.campaign.functions import FunctionRun
 from isostat.campaign.runs import Run, complete, program
+from isostat.figures.command_line import meant
 from isostat.running import as_scene
 
-FREE_OPTIONS = ("jobs", "engine", "output", "overwrite", "quiet", "no_figures", "dry_run", "tables")  # change no table
+FREE_OPTIONS = ("jobs", "engine", "output", "overwrite", "quiet", "dry_run", "tables")  # change no table
 QUICK_SECONDS = 20  # of CPU by estimate: of runs that `--quick` leaves in
 
 
@@ -83,18 +85,23 @@ class Store:
         return False
 
     def cpu_seconds(self, planned: Any) -> float:
-        return self.run(planned).cpu_seconds
+        """That have been spent on a run, as far as the next call goes on with what it left."""
+        with contextlib.suppress(_core.InputError):
+            run = self.run(planned)
+            return run.cpu_seconds if run.is_finished or run.is_of_this_scene else 0
+        return 0
 
 
 def what_is_left(store: Store, planned: list[Any]) -> tuple[list[Any], float]:
-    """The runs that have not ended, and their CPU seconds: those estimated, at the speed of what has been run."""
+    """The runs that have not ended, and their CPU seconds: those estimated, at the speed of what has been run, less those
+    that interrupted runs have had."""
     done: list[Any] = []
     left: list[Any] = []
     for run in planned:
         (done if store.is_done(run) else left).append(run)
     estimated = sum(run.estimated_seconds() for run in done)
-    speed = sum(map(store.cpu_seconds, done)) / estimated if estimated else 1
-    return left, (speed or 1) * sum(run.estimated_seconds() for run in left)
+    speed = (sum(map(store.cpu_seconds, done)) / estimated if estimated else 1) or 1
+    return left, sum(max(0, speed * run.estimated_seconds() - store.cpu_seconds(run)) for run in left)
 
 
 def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.futures.Executor) -> None:
@@ -193,25 +200,23 @@ def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) ->
     return page if of_page else options.output / "tables"
 
 
+def title_of(module: pathlib.Path) -> str:
+    """The first line of its docstring; it is not imported."""
+    return (ast.get_docstring(ast.parse(module.read_text(encoding="utf-8"))) or "").partition("\n")[0]
+
+
 def load(name: str) -> Any:
     folder = studies_folder()
     known = sorted(path.parent.name for path in folder.glob("*/__init__.py"))
     if name not in known:
-        raise _core.InputError(f"{name}: is no study. There are: {', '.join(known)}.")
+        raise _core.InputError(f"{name}: unknown study. {meant(name, known, 'None is like it.')} There are: {', '.join(known)}.")
     sys.path[:0] = [str(folder.parent), str(pathlib.Path(__file__).parents[1])]  # studies, figures
     os.environ.setdefault("MPLBACKEND", "Agg")  # figures are only saved
     return importlib.import_module(f"studies.{name}")
 
 
 def parse(words: list[str], name: str, study: Any) -> argparse.Namespace:
-    line = argparse.ArgumentParser(prog=f"isostat study {name}", description=study.__doc__,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
-    command.add_campaign(line, "results/studies/NAME, with --quick results/studies/NAME_quick")
-    line.add_argument("--seeds", type=command.count(1, 1000), help="specimens of each kind")
-    line.add_argument("--quick", action="store_true", help="a small part of it, in minutes")
-    line.add_argument("--dry-run", action="store_true", help="only say how many runs there are, and how long they take")
-    line.add_argument("--tables", type=pathlib.Path, help="folder of tables and figures (default: docs/results/NAME of the "
-                      "repository when all is done with default options, else tables below the results)")
+    line = line_of(name, study.__doc__)
     getattr(study, "add_options", lambda _: None)(line)
     line.set_defaults(name=name, **study.DEFAULTS)
     if "--quick" in words:
@@ -221,12 +226,26 @@ def parse(words: list[str], name: str, study: Any) -> argparse.Namespace:
     return options
 
 
+def line_of(name: str, description: str) -> argparse.ArgumentParser:
+    """With the options of every study."""
+    line = command.line_of(f"study {name}", description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    command.add_campaign(line, "results/studies/NAME, with --quick results/studies/NAME_quick", figures=False)
+    line.add_argument("--seeds", type=command.count(1, 1000), help="specimens of each kind")
+    line.add_argument("--quick", action="store_true", help="a small part of it, in minutes")
+    line.add_argument("--dry-run", action="store_true", help="only say how many runs there are, and how long they take")
+    line.add_argument("--tables", type=pathlib.Path, help="folder of tables and figures (default: docs/results/NAME of the "
+                      "repository when all is done with default options, else tables below the results)")
+    return line
+
+
 def main(words: list[str]) -> int:
     def with_study():
         if not words or words[0] in ("-h", "--help"):
             print("usage: isostat study NAME ...\n\n  " + "\n  ".join(
-                f"{path.parent.name:<20}{(load(path.parent.name).__doc__ or '').strip().splitlines()[0]}"
-                for path in sorted(studies_folder().glob("*/__init__.py"))))
+                f"{path.parent.name:<20}{title_of(path)}" for path in sorted(studies_folder().glob("*/__init__.py"))))
+            if words:
+                options = line_of("NAME", "").format_help().partition("\n\n")[2]
+                print(f"\n{options}\nSome studies have more: isostat study NAME --help")
             return
         study = load(words[0])
         options = parse(words[1:], words[0], study)

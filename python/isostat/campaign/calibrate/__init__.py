@@ -135,8 +135,8 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat calibrate", description="Calibration: finds parameters of a scene "
-                                   "from laboratory curves with small element tests")
+    line = command.line_of("calibrate", "Calibration: finds parameters of a scene from laboratory curves with small "
+                           "element tests")
     line.add_argument("plan", metavar="PLAN", nargs="?", type=lambda name: command.shipped("scenes/calibrate", name),
                       help="plan file (TOML); see docs/campaigns/calibrate.md")
     line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it takes, and stop")

@@ -67,8 +67,8 @@ def asked_members(options: argparse.Namespace) -> tuple:
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat ensemble", description="A soil column with many sets of packings, or with "
-                                   "many records, side by side: bands of all")
+    line = command.line_of("ensemble", "A soil column with many sets of packings, or with many records, side by side: "
+                           "bands of all")
     command.add_scene(line, "scene file (TOML) of soil_column; see docs/column_scene_reference.md")
     line.add_argument("-n", "--members", type=command.count(1, 10000),
                       help="so many members, each with other packings of the library; the same command goes on with those "

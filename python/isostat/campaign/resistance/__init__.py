@@ -82,8 +82,8 @@ def find_resistance(options: argparse.Namespace, executor: concurrent.futures.Ex
 
 
 def main(words: list[str]) -> int:
-    line = argparse.ArgumentParser(prog="isostat resistance", description="Liquefaction resistance: cyclic stress ratio "
-                                   "against cycles to initial liquefaction")
+    line = command.line_of("resistance", "Liquefaction resistance: cyclic stress ratio against cycles to initial "
+                           "liquefaction")
     command.add_scene(line, "scene file (TOML) with one cyclic stage, the last and only one that shears")
     line.add_argument("--ratios", required=True, help="cyclic stress ratios, e.g. 0.10,0.15,0.20: tau_amp / sigma'_v0 in "
                       "simple shear, q_amp / (2 p0') in triaxial tests")
