@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, panel_letter, plt
+from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, plt
 
 LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
 
@@ -78,13 +78,13 @@ def box_maps(column):
         worst = int(np.argmin(mean))
         fields.append(("redundancy", worst, maps["redundancy"][worst], 0, 2, "RdBu", r"$I_R$"))
     figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)
-    for (_, row, values, low, high, colours, label), axes, letter in zip(fields, panels[:, 0], "abcd"):
+    letters(panels)
+    for (_, row, values, low, high, colours, label), axes in zip(fields, panels[:, 0]):
         elements = mesh.show(axes, row, values, low, high, colours)
         figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01,
                         extend=cut_ends(mesh.means(values), low, high))
         axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5,
                        loc="right")
-        panel_letter(axes, letter)
     panels[-1, 0].set_xlabel("x (m)")
     return figure
 
@@ -110,6 +110,5 @@ def box_surface(column):
         panels[1, column_of_panels].set_xlabel("x (m)")
     panels[0, 0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, fontsize=7, handlelength=1.2)
     panels[1, 1].legend(fontsize=7)
-    for axes, letter in zip(panels.flat, "abcd"):
-        panel_letter(axes, letter)
+    letters(panels)
     return figure

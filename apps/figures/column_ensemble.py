@@ -7,11 +7,10 @@ A band holds 16 to 84 % of the members at each depth, period or time for itself;
 less than three members there is none. Members with the packings of an earlier one are left out.
 """
 import csv
-from string import ascii_lowercase
 
 import numpy as np
 
-from .common import BLACK, BLUE, GREY, ORANGE, BadInput, panel_letter, plt, read_history
+from .common import BLACK, BLUE, GREY, ORANGE, BadInput, letters, plt, read_history
 from .drawing import Drawing
 from .files import read_parsed
 
@@ -119,10 +118,10 @@ def over_depth(ensemble, panels):
         return None
     figure, rows = plt.subplots(1, len(panels), figsize=(2.6 * len(panels) + 0.6, 4.2), sharey=True, squeeze=False,
                                 layout="constrained")
-    for axes, (kind, name), letter in zip(rows[0], panels, "abc"):
+    letters(rows)
+    for axes, (kind, name) in zip(rows[0], panels):
         draw(axes, ensemble, kind, name, upright=True)
         axes.set(xlabel=LABELS[name], xlim=(0, None))
-        panel_letter(axes, letter)
         if name == "max_ru":
             axes.axvline(ensemble.numbers["liquefied_ru"], color=ORANGE, linewidth=0.8, linestyle="--")
         if name.endswith("I_R"):
@@ -171,11 +170,11 @@ def rows_in_time(ensemble, names, labels=None):
         return None
     figure, rows = plt.subplots(len(names), 1, figsize=(7.2, 1.8 * len(names) + 0.5), sharex=True, squeeze=False,
                                 layout="constrained")
-    for axes, name, letter in zip(rows[:, 0], names, ascii_lowercase):
+    letters(rows)
+    for axes, name in zip(rows[:, 0], names):
         # of different motions at one moment there is no median
         draw(axes, ensemble, "history", name, alone=ensemble.has_records and name.startswith("surface_a"))
         axes.set_ylabel(labels[name])
-        panel_letter(axes, letter)
     with_bands = [axes for axes in rows[:, 0] if axes.get_legend_handles_labels()[0]]
     if with_bands:
         with_bands[0].legend(loc="upper left", ncols=2)

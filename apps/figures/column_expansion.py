@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.colors import SymLogNorm
 
 from .column_soil import map_over_time
-from .common import BLACK, BLUE, ORANGE, panel_letter, plt
+from .common import BLACK, BLUE, ORANGE, letters, plt
 
 
 def expansion(column):
@@ -34,6 +34,5 @@ def expansion(column):
     bar.set_label(f"Volumetric strain (%), logarithmic beyond {linear:g} %\ncompression     expansion", fontsize=8.5)
     for name in names:
         axes.axhline(caps[name], color=BLACK, linewidth=0.9)
-    panel_letter(top, "a")
-    panel_letter(axes, "b")
+    letters([top, axes])
     return figure

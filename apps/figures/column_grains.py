@@ -7,7 +7,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .column_soil import (MIN_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
                                pore_pressure_ratio, time_bar, time_norm, times_of_motion)
-from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, panel_letter, plt
+from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, letters, plt
 
 ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
 MIN_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
@@ -38,14 +38,14 @@ def grains_profiles(column):
     targets = [time[0], *times_of_motion(column, SHARES), time[-1]]
     chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
     time_bar(figure, panels, norm, time[-1])
-    for axes, (values, label, level), letter in zip(panels, specs, "abc"):
+    letters(panels)
+    for axes, (values, label, level) in zip(panels, specs):
         for row in chosen:
             axes.plot(values[row], depth, ".-", color=TIMES(norm(time[row])), linewidth=0.9, markersize=3.5)
         if level is not None:
             axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         axes.set_xlabel(label)
         axes.xaxis.set_major_locator(MaxNLocator(5))
-        panel_letter(axes, letter)
         depth_axis(column, axes, depth)
     for axes in panels[:2]:
         axes.set_xlim(left=0)
@@ -114,8 +114,7 @@ def finish_map(column, panels, depth, time, wet):
     side.set_title("first time", loc="right", fontsize=9, pad=5)
     axes.grid(False)
     axes.set(xlim=(time[0], time[-1]), ylabel="Depth (m)")
-    for each, letter in zip((top, axes, side), "abc"):
-        panel_letter(each, letter)
+    letters([top, axes, side])
 
 
 # --- output depths ---------------------------------------------------------------------------------------------------
@@ -190,7 +189,6 @@ def grains_history(column):
     panels[1 + wet].legend(known.values(), known.keys(),
                            loc="lower right", bbox_to_anchor=(1, 1), ncols=4, borderaxespad=0.1, handlelength=1.4)
     panels[1 + wet + (n - 1) // 2].set_ylabel("Share of the contacts")
-    for axes, letter in zip(panels[:2 + wet], "abc"):
-        panel_letter(axes, letter)
+    letters(panels[:2 + wet])
     panels[-1].set(xlim=(grains.columns["time"][0], grains.columns["time"][-1]), xlabel="Time (s)")
     return figure

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
-from .common import BLACK, BLUE, GREY, ORANGE, note, panel_letter, plt
+from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
 
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
@@ -38,18 +38,18 @@ def motions(column):
     rows = len(column.moving)
     figure, panels = plt.subplots(2 * rows, 1, figsize=(7.2, 3.2 * rows + 0.5), sharex=True, squeeze=False,
                                   layout="constrained")
+    letters(panels)
     for row, axis in enumerate(column.moving):
         pair = panels[2 * row:2 * row + 2, 0]
         curves = ((f"input_a{axis}", f"{input_name(column)} (input)", BLACK), (f"surface_a{axis}", "surface", BLUE))
         limit = ROOM * max(column.peak(name) for name, _, _ in curves)
-        for axes, (name, label, colour), letter in zip(pair, curves, "abcdef"[2 * row:]):
+        for axes, (name, label, colour) in zip(pair, curves):
             if not column.has(name):
                 note(f"no column `{name}`; its curve is left out")
                 continue
             axes.plot(column.time, column[name], color=colour, linewidth=0.8)
             peak_mark(axes, column.time, column[name], colour, column.peaks.get(name))
             axes.set(ylim=(-limit, limit), ylabel=f"$a_{axis}$ (m/s$^2$)")
-            panel_letter(axes, letter)
             axes.set_title(label, loc="right", fontsize=9, color=colour, pad=5)
     panels[-1, 0].set(xlim=(column.time[0], column.time[-1]), xlabel="Time (s)")
     return figure
@@ -81,8 +81,7 @@ def spectra(column):
         bottom.plot(periods, of["surface"] / of["input"], color=BLACK)
         bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
-        panel_letter(top, "abc"[k])
-        panel_letter(bottom, "defghi"[k] if len(axes_moving) == 3 else "bcdef"[k + len(axes_moving) - 1])
+    letters(panels)
     finish_spectra(panels, column.spectrum_damping, column.damping["viscous_above"])
     return figure
 
@@ -174,11 +173,11 @@ def transfer(column):
     n = len(axes_moving)
     figure, panels = plt.subplots(n, 1, figsize=(7.2, 2.8 * n + 0.4), sharex=True, squeeze=False,
                                   layout="constrained")
-    for axes, axis, letter in zip(panels[:, 0], axes_moving, "ab"):
+    letters(panels if n > 1 else [])
+    for axes, axis in zip(panels[:, 0], axes_moving):
         draw_transfer(column, axes, axis)
         axes.set_ylabel(f"|surface / {input_name(column)}|")
         if n > 1:
-            panel_letter(axes, letter)
             axes.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
     panels[-1, 0].set_xlabel("Frequency (Hz)")
     return figure

@@ -5,7 +5,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .column_box import is_box
 from .column_soil import depth_axis
-from .common import BLACK, panel_letter, plt
+from .common import BLACK, letters, plt
 
 SPECS = (("peak_acceleration", "node_depth", 1, "acceleration", "m/s$^2$"),
          ("peak_velocity", "node_depth", 1, "velocity", "m/s"),
@@ -22,7 +22,8 @@ def peaks(column):
     figure, panels = plt.subplots(1, len(specs), figsize=(2.3 * len(specs), 4.0), sharey=True, squeeze=False,
                                   layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1)
-    for axes, (name, over, factor, word, unit), letter in zip(panels[0], specs, "abcd"):
+    letters(panels)
+    for axes, (name, over, factor, word, unit) in zip(panels[0], specs):
         values, depth = factor * column.profiles[name], column.profiles[over]
         at = int(np.argmax(values))
         axes.plot(values, depth, color=BLACK, linewidth=1.2)
@@ -31,7 +32,6 @@ def peaks(column):
         against = "\nagainst the base" if column.base is None and name in ("peak_velocity", "peak_displacement") else ""
         axes.set(xlabel=f"Largest {word} ({unit}){against}", xlim=(0, None))
         axes.xaxis.set_major_locator(MaxNLocator(4))
-        panel_letter(axes, letter)
         depth_axis(column, axes, depth)
     panels[0, 0].set_ylabel("Depth (m)")
     return figure

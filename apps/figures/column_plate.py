@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figure of a plate that moves into a box of soil."""
 from .column_box import Mesh
-from .common import BLACK, BLUE, GREY, cut_ends, panel_letter, plt
+from .common import BLACK, BLUE, GREY, cut_ends, letters, plt
 
 
 def has_plate(column):
@@ -31,6 +31,5 @@ def plate(column):
                     extend=cut_ends(mesh.means(gamma), 0, high))
     panels["map"].set_title(f"End, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5, loc="right")
     panels["map"].set_xlabel("x (m)")
-    for axes, letter in zip(panels.values(), "abc"):
-        panel_letter(axes, letter)
+    letters(list(panels.values()))
     return figure

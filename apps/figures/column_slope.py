@@ -3,7 +3,7 @@
 import numpy as np
 
 from .column_soil import depth_axis
-from .common import BLACK, BLUE, GREY, RED, panel_letter, plt
+from .common import BLACK, BLUE, GREY, RED, letters, plt
 
 LEFT = {"end_displacement", "end_gamma_xz", "tau_0", "node_depth"}
 
@@ -37,8 +37,8 @@ def spreading(column):
     panels["stress"].plot(column.profiles["sigma_v0"] / 1e3, depth, color=GREY, label=r"$\sigma_{n0}^\prime$")
     panels["stress"].set_xlabel("Stress at the start (kPa)")
     panels["stress"].legend()
-    for (name, axes), letter in zip(panels.items(), "abcd"):
-        panel_letter(axes, letter)
+    letters(list(panels.values()))
+    for name, axes in panels.items():
         if name != "time":
             depth_axis(column, axes, depth)
             axes.set_xlim(left=min(0.0, float(np.nanmin(axes.get_xlim()))))

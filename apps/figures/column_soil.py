@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, note, panel_letter, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, letters, note, plt
 
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
 EARLY = 0.25  # of the motion: half of its squared acceleration by then is early
@@ -104,14 +104,14 @@ def profiles(column):
     targets = [*times_of_motion(column, SHARES), time[-1]]
     chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
     time_bar(figure, panels, norm, time[-1])
-    for axes, (values, label, level), letter in zip(panels, specs, "abc"):
+    letters(panels)
+    for axes, (values, label, level) in zip(panels, specs):
         for row in chosen:
             axes.plot(values[row], depth, color=TIMES(norm(time[row])), linewidth=1.2)
         if level is not None:
             axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         axes.set(xlim=(min(0.0, float(np.nanmin(values))), None), xlabel=label)
         axes.xaxis.set_major_locator(MaxNLocator(5))
-        panel_letter(axes, letter)
         depth_axis(column, axes, depth)
     panels[0].set_ylabel("Depth (m)")
     return figure
@@ -182,8 +182,7 @@ def ru_map(column):
         axes.annotate(f"line: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
                       fontsize=9, color=RED)
     figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
-    panel_letter(top, "a")
-    panel_letter(axes, "b")
+    letters([top, axes])
     return figure
 
 
@@ -270,8 +269,7 @@ def histories(column):
     figure, panels = plt.subplots(wet + sinking, 1, figsize=(7.2, 2.5 * (wet + sinking) + 0.5), sharex=True,
                                   squeeze=False, layout="constrained")
     panels = list(panels[:, 0])
-    for axes, letter in zip(panels, "ab" if len(panels) > 1 else ""):
-        panel_letter(axes, letter)
+    letters(panels if len(panels) > 1 else [])
     if wet:
         draw_ru(column, panels[0])
     if sinking:

@@ -5,6 +5,7 @@ import re
 import sys
 import tomllib
 import warnings
+from string import ascii_lowercase
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -237,6 +238,12 @@ def panel_letter(axes, letter):
     axes.set_title(f"({letter})", loc="left", fontsize=9.5, fontweight="bold", pad=5)
 
 
+def letters(panels):
+    """(a), (b), ... of panels, row by row."""
+    for axes, letter in zip(np.ravel(panels), ascii_lowercase):
+        panel_letter(axes, letter)
+
+
 def mark_level(axes, level, text, colour=GREY):
     """A dashed horizontal line with its meaning at the right margin."""
     axes.axhline(level, color=colour, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
@@ -367,6 +374,5 @@ def two_rows(run, heights=(1, 1)):
     figure, panels = plt.subplots(2, 1, figsize=(6.6, 4.9), sharex=True, height_ratios=heights,
                                   layout="constrained")
     progress_axes(run, panels)
-    for axes, letter in zip(panels, "ab"):
-        panel_letter(axes, letter)
+    letters(panels)
     return figure, panels

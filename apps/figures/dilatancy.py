@@ -2,7 +2,7 @@
 """Stress ratio and dilatancy of a drained stage."""
 import numpy as np
 
-from .common import BLUE, GREY, ORANGE, mark_level, panel_letter, plt
+from .common import BLUE, GREY, ORANGE, letters, mark_level, plt
 
 SHARE = 0.05  # of the strain of the stage: window of the slopes, as in dem/measure/strength.hpp
 
@@ -45,6 +45,5 @@ def dilatancy(run):
     right.set(xlabel=r"Dilatancy $D$", ylabel=r"Stress ratio $q/p^\prime$")
     for axes in (left, middle):
         axes.set_xlabel(run.strain_label)
-    for axes, letter in zip((left, middle, right), "abc"):
-        panel_letter(axes, letter)
+    letters([left, middle, right])
     return figure

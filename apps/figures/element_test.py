@@ -13,7 +13,7 @@ missing costs its curve or panel, with a note.
 import numpy as np
 
 from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, ORANGE, Run, curves, draw_path, explain_median, index_label,
-                          legend_above, legend_below, mark_level, mark_onset, note, panel_letter, plt, two_rows)
+                          legend_above, legend_below, letters, mark_level, mark_onset, note, plt, two_rows)
 from .drawing import Drawing
 from .dilatancy import dilatancy
 from .simple_shear import rotation, shear_path
@@ -50,12 +50,10 @@ def stress_path(run):
     right.set_xlabel(run.strain_label)
     if run.cyclic:
         right.axvline(0, color=BLACK, linewidth=0.6, zorder=1.4)
-    panel_letter(left, "a")
-    panel_letter(right, "b")
+    letters([left, right, *volume])
     for axes in volume:
         draw_path(run, axes, 100 * run.strain, 100 * (run["eps_x"] + run["eps_y"] + run["eps_z"]))
         axes.set(xlabel=run.strain_label, ylabel=r"Volumetric strain $\varepsilon_v$ (%)")
-        panel_letter(axes, "c")
     legend_below(run, figure, left)
     return figure
 

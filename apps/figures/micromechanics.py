@@ -12,7 +12,7 @@ import re
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, panel_letter, plain, plt
+from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, letters, plain, plt
 from .drawing import Drawing
 from .files import read_parsed
 
@@ -74,9 +74,9 @@ def force_distribution(analysis):
             seen = density > 0
             axes.plot(middle[seen], density[seen], "o-", markersize=2.5, linewidth=0.8, color=COLOURS[name],
                       label=analysis.label(name))
-    for axes, letter, text in zip(panels, "ab", (r"$f_n/\langle f_n\rangle$", r"$|f_s|/\langle f_n\rangle$")):
+    letters(panels)
+    for axes, text in zip(panels, (r"$f_n/\langle f_n\rangle$", r"$|f_s|/\langle f_n\rangle$")):
         axes.set(yscale="log", xlabel=text, xlim=(0, None))
-        panel_letter(axes, letter)
     panels[0].set_ylabel("Probability density")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, 0.18, 1, 0.82))
@@ -134,7 +134,7 @@ def anisotropies(analysis):
             for name, index in analysis.chosen.items():
                 if name not in ("first", "last"):
                     axes.axvline(x[index], color=COLOURS[name], linewidth=0.8, linestyle=":", label=name)
-            panel_letter(axes, "abcd"[2 * row + column])
+    letters(panels)
     panels[0, 0].set_ylabel("Anisotropy along y")
     panels[1, 0].set(ylabel=r"$F_{yy} - (F_{xx}+F_{zz})/2$", xlabel=r"Axial strain $\varepsilon_1$ (%)")
     panels[1, 1].set_xlabel("Snapshot")

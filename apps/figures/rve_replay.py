@@ -5,7 +5,7 @@
 """
 import numpy as np
 
-from .common import BLACK, BLUE, ORANGE, RED, index_label, panel_letter, plt, read_history, read_summary
+from .common import BLACK, BLUE, ORANGE, RED, index_label, letters, plt, read_history, read_summary
 from .drawing import Drawing
 
 CAPTIONS = {
@@ -38,10 +38,10 @@ def path(run):
     figure, axes = plt.subplots(1, 3, figsize=(10.0, 3.1), constrained_layout=True)
     labels = {"p": "Effective pressure $p'$ (kPa)", "tau": r"Shear stress $\tau_{xz}$ (kPa)",
               "gamma": r"Shear strain $\gamma_{xz}$ (%)", "time": "Time (s)"}
-    for panel, (x, y), letter in zip(axes, (("p", "tau"), ("gamma", "tau"), ("time", "p")), "abc"):
+    letters(axes)
+    for panel, (x, y) in zip(axes, (("p", "tau"), ("gamma", "tau"), ("time", "p"))):
         both(panel, run, x, y)
         panel.set(xlabel=labels[x], ylabel=labels[y])
-        panel_letter(panel, letter)
     axes[0].set_xlim(left=0)
     axes[2].set_ylim(bottom=0)
     axes[2].legend()

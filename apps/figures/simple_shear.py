@@ -2,8 +2,7 @@
 """Figures of simple shear in a periodic cell: stress path, stress-strain curve, rotation of principal stresses."""
 import numpy as np
 
-from .common import (BLACK, GREY, coloured_parts, draw_path, legend_below, mark_onset, panel_letter, plt,
-                          progress_axes)
+from .common import (BLACK, GREY, coloured_parts, draw_path, legend_below, letters, mark_onset, plt, progress_axes)
 
 FAINT = 1e-3  # p'/p0' below which a handful of contacts carries the stress: it has no direction to speak of
 
@@ -13,10 +12,10 @@ def shear_path(run):
     tau = run["tau_xy"] / 1e3
     specs = ((run["sigma_y"] / 1e3, r"Vertical effective stress $\sigma_v^\prime$ (kPa)"),
              (run["p"] / 1e3, r"Mean effective stress $p^\prime$ (kPa)"), (100 * run.strain, run.strain_label))
-    for axes, (x, label), letter in zip(panels, specs, "abc"):
+    letters(panels)
+    for axes, (x, label) in zip(panels, specs):
         draw_path(run, axes, x, tau)
         axes.set_xlabel(label)
-        panel_letter(axes, letter)
     for axes in panels[:2]:
         axes.set_xlim(left=min(0.0, axes.dataLim.xmin))
     if run.cyclic:
@@ -46,8 +45,7 @@ def rotation(run):
     left.set_yticks(range(-90, 91, 45))
     left.set_ylabel(r"Direction of $\sigma_1^\prime$ from the vertical (deg)")
     right.set_xlabel(r"Stress ratio $\tau/\sigma_v^\prime$")
-    panel_letter(left, "a")
-    panel_letter(right, "b")
+    letters([left, right])
     handles, labels = left.get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
     figure.legend(handles, labels, loc="lower center", ncols=len(labels), markerscale=4)

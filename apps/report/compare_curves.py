@@ -6,7 +6,7 @@ import typing
 import numpy as np
 
 from figures import biaxial, element_test, soil_column
-from figures.common import BLACK, GREY, mark_level, panel_letter, plt
+from figures.common import BLACK, GREY, letters, mark_level, plt
 from figures.drawing import Drawing
 
 # The second run lies on the first one, which shows on both sides of it: curves that are equal are seen to be two.
@@ -42,8 +42,7 @@ def legend_of(figure, axes):
 def panels_of(rows, columns, width=7.6, height=3.0):
     figure, panels = plt.subplots(rows, columns, figsize=(width, 0.4 + height * rows), squeeze=False,
                                   layout="constrained")
-    for axes, letter in zip(panels.flat, "abcdef" if panels.size > 1 else ""):
-        panel_letter(axes, letter)
+    letters(panels if panels.size > 1 else [])
     return figure, panels
 
 
