@@ -11,8 +11,7 @@ import numpy as np
 
 from calibration_test import ROUND_OFF, CalibrationTest, plan_text, read
 from package import isostat
-from isostat.campaign.calibrate.curve import Curve, compare, compared_strains, total_misfit
-from isostat.campaign.calibrate.laboratory import read_laboratory
+from isostat.campaign.calibrate.curves import Curve, compare, compared_strains, read_laboratory, total_misfit
 
 HEADER = "eps_a[%],eps_v[%],sigma_v[kPa],sigma_r[kPa]\n"
 ROWS = "0,0,100,100\n1,0.2,200,100\n2,0.1,250,100\n4,-0.5,300,100\n"

@@ -14,9 +14,9 @@ import numpy as np
 
 from package import FolderTest, isostat
 from isostat.campaign import folder
-from isostat.campaign.calibrate import Folder, keys, plan as plans
+from isostat.campaign.calibrate import (ALGORITHMS, BudgetUsed, Folder, keys, plan as plans, search,
+                                        sobol_design)
 from isostat.campaign.calibrate.scenes import SceneMaker
-from isostat.campaign.calibrate.search import ALGORITHMS, BudgetUsed, search, sobol_design
 
 APPS = pathlib.Path(__file__).resolve().parents[2] / "apps"
 SAND = APPS / "scenes/calibrate/sand.toml"

@@ -21,7 +21,10 @@ import concurrent.futures
 import math
 import pathlib
 import re
+from collections.abc import Callable
 from typing import Any
+
+import numpy as np
 
 from isostat import _core
 from isostat.campaign import command
@@ -29,11 +32,13 @@ from isostat.campaign.calibrate.keys import default_plan, plan_text
 from isostat.campaign.calibrate.plan import read_plan, read_text
 from isostat.campaign.calibrate.report import Report, remarks
 from isostat.campaign.calibrate.scenes import SceneMaker
-from isostat.campaign.calibrate.search import BudgetUsed, nlopt, search, sobol_design
 from isostat.campaign.calibrate.trials import Trials
+from isostat.campaign.engines import library
 from isostat.campaign.folder import CampaignFolder
 
 BUDGET = re.compile(r"^\[budget\]\n[^\[]*", re.MULTILINE)
+ALGORITHMS = {"bobyqa": "LN_BOBYQA", "sbplx": "LN_SBPLX", "crs2": "GN_CRS2_LM"}
+SEED = 1  # of CRS2
 
 
 class Folder(CampaignFolder):
@@ -47,6 +52,60 @@ class Folder(CampaignFolder):
         budget = BUDGET.search(plan.read_text(encoding="utf-8", errors="replace")) if plan.is_file() else None
         text = BUDGET.sub(lambda _: budget[0], kept["plan.toml"]) if budget else kept["plan.toml"]
         super().check({**kept, "plan.toml": text}, owner, overwrite)
+
+
+class BudgetUsed(Exception):
+    """Raised by an objective whose budget is used up: why."""
+
+
+def nlopt() -> Any:
+    """The library.   Raises InputError (it is not installed)"""
+    return library("nlopt", "python3-nlopt", "calibrate")
+
+
+def sobol_design(dimensions: int, n: int) -> list[list[float]]:
+    """n points of a design: a Sobol sequence in the unit cube (Sobol 1967), without the origin."""
+    sequence = library("scipy.stats", "python3-scipy", "calibrate").qmc.Sobol(dimensions, scramble=False)
+    sequence.fast_forward(1)
+    return sequence.random(n).tolist()
+
+
+def search(settings: Any, start: list[float], objective: Callable[[list[float]], float]) -> str:
+    """Looks for a smaller value from `start` on, in the unit cube, by NLopt: BOBYQA (Powell 2009), Sbplx (Rowan 1990)
+    or CRS2 with local mutation (Kaelo and Ali 2006). It always asks for the same points in the same order, so that it
+    can be repeated from known values. The best point is not returned: the objective knows what it has been asked.
+
+    Returns why it ended.   Raises what the objective raises, but for BudgetUsed
+    """
+    optimiser = nlopt()
+    optimiser.srand(SEED)
+    n = len(start)
+    algorithm = optimiser.opt(getattr(optimiser, ALGORITHMS[settings.method]), n)
+    algorithm.set_lower_bounds(np.zeros(n))
+    algorithm.set_upper_bounds(np.ones(n))
+    algorithm.set_initial_step(np.full(n, settings.first_step))
+    algorithm.set_xtol_abs(settings.tolerance)
+    raised: list[BaseException] = []  # NLopt does not pass on all that is raised
+
+    def guarded(shares, _):
+        try:
+            return objective(shares.tolist()) if not raised else 0.0
+        except BaseException as error:
+            raised.append(error)
+            algorithm.force_stop()
+            return 0.0
+
+    algorithm.set_min_objective(guarded)
+    ending = f"steps became smaller than {settings.tolerance:g} of the bounds"
+    try:
+        algorithm.optimize(start)
+    except optimiser.ForcedStop:
+        pass
+    except optimiser.RoundoffLimited:
+        ending = "no step of the method makes the misfit smaller"
+    if raised and not isinstance(raised[0], BudgetUsed):
+        raise raised[0]
+    return str(raised[0]) if raised else ending
 
 
 def first_points(plan: Any, scenes: SceneMaker) -> list[list[float]]:
@@ -80,15 +139,13 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
 
     def objective(shares):
         values = values_at(scenes, shares)
-        if trials.find(values) is None:
-            if len(trials.all) >= plan.budget.trials:
-                raise BudgetUsed(f"budget.trials = {plan.budget.trials} are used up")
-            if trials.seconds > limit:
-                raise BudgetUsed("budget.time is used up; the same command goes on")
-        trials.evaluate([values])
-        return trials.all[trials.find(values)].misfit ** 2  # near the best a parabola, which the misfit itself is not
+        if not trials.is_known(values) and len(trials.all) >= plan.budget.trials:
+            raise BudgetUsed(f"budget.trials = {plan.budget.trials} are used up")
+        if not trials.is_known(values) and trials.seconds > limit:
+            raise BudgetUsed("budget.time is used up; the same command goes on")
+        return trials.evaluate([values])[0].misfit ** 2  # near the best a parabola, which the misfit itself is not
 
-    start = trials.all[trials.best()].values
+    start = trials.best().values
     return search(plan.optimiser, [p.share(value) for p, value in zip(scenes.parameters, start)], objective)
 
 
@@ -126,7 +183,8 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
     Folder(folder, kept, owner="calibration", overwrite=options.overwrite)
     try:
         ending = find_best(plan, scenes, trials)
-        trials.execute(sorted({0, trials.best()}), True)
+        start, best = trials.all[0], trials.best()
+        trials.execute([start] if best is start else [start, best], True)
     except KeyboardInterrupt:
         if trials.best() is not None:
             Report(trials, "it was interrupted; the same command goes on").leave(folder, False)

@@ -33,8 +33,8 @@ class Report:
     def __init__(self, trials: Trials, ending: str):
         self.trials, self.ending = trials, ending
         self.plan, self.scenes, self.parameters = trials.plan, trials.scenes, trials.scenes.parameters
-        self.best_number = trials.best() or 0
-        self.start, self.best = trials.all[0], trials.all[self.best_number]
+        self.start = trials.all[0]
+        self.best = trials.best() or self.start
         self.curves = list(zip(self.plan.curve, self.start.curves, self.best.curves))
 
     def parameter_table(self) -> str:
@@ -58,12 +58,12 @@ class Report:
         return text + (f"  {len(worse)} of {len(blind)} blind curves became WORSE: {', '.join(worse)}\n" * bool(worse))
 
     def summary(self) -> str:
-        failures = "".join(f"  failed: trial {number}, {curve.name}, {outcome.failure}\n"
-                           for number, trial in enumerate(self.trials.all, 1)
+        failures = "".join(f"  failed: trial {trial.number}, {curve.name}, {outcome.failure}\n"
+                           for trial in self.trials.all
                            for curve, outcome in zip(self.plan.curve, trial.curves) if outcome and outcome.failure)
         sizes = self.plan.specimens
         return (f"\n{self.plan.title}\n  {len(self.trials.all)} trials with {sizes.seeds} specimens of {sizes.grains} "
-                f"grains; best: trial {self.best_number + 1}\n  ended because {self.ending}\n{self.parameter_table()}"
+                f"grains; best: trial {self.best.number}\n  ended because {self.ending}\n{self.parameter_table()}"
                 f"{self.curve_table()}{failures}\n  this call: {self.trials.runs_done} runs in "
                 f"{command.duration_text(self.trials.seconds)}\n")
 
@@ -72,8 +72,8 @@ class Report:
         text = ("curve,blind (-),eps_1 (-),q laboratory (Pa),q start (Pa),q best (Pa),q best s.d. (Pa),second,"
                 "second laboratory,second start,second best,second best s.d.\n")
         for k, (curve, *outcomes) in enumerate(self.curves):
-            start, best = (self.trials.comparison(number, k) if outcome and not outcome.failure else None
-                           for number, outcome in zip((0, self.best_number), outcomes))
+            start, best = (self.trials.comparison(trial, k) if outcome and not outcome.failure else None
+                           for trial, outcome in zip((self.start, self.best), outcomes))
             there = best or start
             if not there:
                 continue
@@ -94,7 +94,7 @@ class Report:
         curves = [{"name": curve.name, "test": curve.test, "blind": curve.blind, "weight": curve.weight,
                    "start": start and start.misfit, "best": best and best.misfit, "scatter": scatter(best),
                    "failure": best.failure if best else ""} for curve, start, best in self.curves]
-        return {"title": self.plan.title, "trials": len(self.trials.all), "start": 1, "best": self.best_number + 1,
+        return {"title": self.plan.title, "trials": len(self.trials.all), "start": 1, "best": self.best.number,
                 "misfit_start": self.start.misfit, "misfit_best": self.best.misfit, "ending": self.ending,
                 "grains": self.plan.specimens.grains, "seeds": self.plan.specimens.seeds, "parameters": parameters,
                 "curves": curves}

@@ -10,10 +10,8 @@ from typing import Any
 
 from isostat import _core
 from isostat.campaign import command
-from isostat.campaign.calibrate.curve import Comparison, compare, read_model, total_misfit
-from isostat.campaign.calibrate.laboratory import read_laboratory
-from isostat.campaign.calibrate.parameter import Parameter
-from isostat.campaign.calibrate.scenes import SceneMaker
+from isostat.campaign.calibrate.curves import Comparison, compare, read_laboratory, read_model, total_misfit
+from isostat.campaign.calibrate.scenes import Parameter, SceneMaker
 from isostat.campaign.folder import write_replacing
 from isostat.campaign.runs import CRASHED, Run, complete
 
@@ -29,6 +27,7 @@ class Outcome:
 
 @dataclasses.dataclass
 class Trial:
+    number: int  # from 1
     id: str  # its folder, from the values
     values: list[float]  # of the parameters
     curves: list[Outcome | None]  # of the plan; None: not computed (blind)
@@ -53,8 +52,8 @@ class Trials:
                  quiet: bool):
         self.plan, self.scenes, self.folder, self.executor = plan, scenes, folder, executor
         self.laboratory = [read_laboratory(curve, scenes.pressure(curve)) for curve in plan.curve]
-        self.all: list[Trial] = []
-        self.last = 0  # the trial that ended last
+        self.by_id: dict[str, Trial] = {}
+        self.last: Trial | None = None  # to end
         self.runs_done, self.computed, self.begin = 0, 0, time.monotonic()  # of this call
         self.progress = command.Progress(self.state, quiet)
 
@@ -67,41 +66,45 @@ class Trials:
         return not any(outcome and outcome.failure and not curve.blind
                        for curve, outcome in zip(self.plan.curve, trial.curves))
 
-    def best(self) -> int | None:
+    @property
+    def all(self) -> list[Trial]:
+        return list(self.by_id.values())
+
+    def best(self) -> Trial | None:
         """Smallest misfit, the first of equals; of trials all of whose fitted curves ran, if there are any."""
-        done = [k for k, trial in enumerate(self.all) if trial.done]
-        return min(done, key=lambda k: (not self.is_complete(self.all[k]), self.all[k].misfit), default=None)
+        done = [trial for trial in self.all if trial.done]
+        return min(done, key=lambda trial: (not self.is_complete(trial), trial.misfit), default=None)
 
-    def find(self, values: list[float]) -> int | None:
-        name = trial_id(self.scenes.parameters, values)
-        return next((k for k, trial in enumerate(self.all) if trial.id == name), None)
+    def is_known(self, values: list[float]) -> bool:
+        return trial_id(self.scenes.parameters, values) in self.by_id
 
-    def evaluate(self, points: Iterable[list[float]]) -> None:
+    def evaluate(self, points: Iterable[list[float]]) -> list[Trial]:
         """The fitted curves of points, all runs side by side.
 
         Raises KeyboardInterrupt, RunFailure (a run crashed or was killed)
         """
-        fresh = []
+        trials = []
         for values in points:
-            if self.find(values) is None:
-                fresh.append(len(self.all))
-                self.all.append(Trial(trial_id(self.scenes.parameters, values), values, [None] * len(self.plan.curve)))
-        self.execute(fresh, False)
+            name = trial_id(self.scenes.parameters, values)
+            trials.append(self.by_id.setdefault(name, Trial(len(self.by_id) + 1, name, values,
+                                                            [None] * len(self.plan.curve))))
+        self.execute({trial.id: trial for trial in trials if not trial.done}.values(), False)
+        return trials
 
-    def place(self, trial: int, curve: Any, seed: int) -> pathlib.Path:
-        return self.folder / "runs" / self.all[trial].id / f"{curve.name}_seed{seed}"
+    def place(self, trial: Trial, curve: Any, seed: int) -> pathlib.Path:
+        return self.folder / "runs" / trial.id / f"{curve.name}_seed{seed}"
 
     @property
     def seeds(self) -> range:
         return range(self.plan.specimens.first_seed, self.plan.specimens.first_seed + self.plan.specimens.seeds)
 
-    def prepared_run(self, trial: int, curve: Any, seed: int) -> Run | None:
+    def prepared_run(self, trial: Trial, curve: Any, seed: int) -> Run | None:
         """None: it need not be run. If no scene can be made from the values, that is a failure of the run."""
         at = self.place(trial, curve, seed).absolute()
         if beside(at, "failed").exists():
             return None
         try:
-            text = self.scenes.trial(self.all[trial].values, curve, seed).text
+            text = self.scenes.trial(trial.values, curve, seed).text
         except _core.InputError as error:
             at.parent.mkdir(parents=True, exist_ok=True)
             write_replacing(beside(at, "failed"), str(error))
@@ -109,9 +112,9 @@ class Trials:
         run = Run(f"{at.parent.name}/{at.name}", text, beside(at, "toml"), at, beside(at, "log"))
         return None if run.is_finished else run
 
-    def execute(self, trials: Iterable[int], blind: bool) -> None:
+    def execute(self, trials: Iterable[Trial], blind: bool) -> None:
         """All runs of some trials that have not been done, side by side."""
-        trial_of: dict[Run, int] = {}
+        trial_of: dict[Run, Trial] = {}
         crashed = ""
         for trial in trials:
             runs = [self.prepared_run(trial, curve, seed) for curve in self.plan.curve if curve.blind == blind
@@ -119,7 +122,7 @@ class Trials:
             trial_of |= {run: trial for run in runs if run}
             if not any(runs):
                 self.conclude(trial, blind)
-        left = Counter(trial_of.values())
+        left = Counter(trial.id for trial in trial_of.values())
 
         def ended(run, code, _):
             nonlocal crashed
@@ -129,8 +132,8 @@ class Trials:
             self.runs_done += 1
             if code:
                 write_replacing(beside(run.results, "failed"), run.reason)
-            left[trial_of[run]] -= 1
-            if not left[trial_of[run]]:
+            left[trial_of[run].id] -= 1
+            if not left[trial_of[run].id]:
                 self.computed += 1
                 self.conclude(trial_of[run], blind)
 
@@ -139,7 +142,7 @@ class Trials:
             raise _core.RunFailure(f"{crashed}\n  It was stopped from outside or crashed. What has been run is kept, "
                                    "the same command tries it again.")
 
-    def outcome(self, trial: int, number: int) -> Outcome:
+    def outcome(self, trial: Trial, number: int) -> Outcome:
         curve = self.plan.curve[number]
         for seed in self.seeds:
             if (failed := beside(self.place(trial, curve, seed), "failed")).exists():
@@ -150,33 +153,31 @@ class Trials:
             return Outcome(self.plan.misfit.penalty, None, str(error))
         return Outcome(result.misfit, result.scatter)
 
-    def comparison(self, trial: int, number: int) -> Comparison:
+    def comparison(self, trial: Trial, number: int) -> Comparison:
         """The curves behind an outcome, which did not fail."""
         curve = self.plan.curve[number]
         models = [read_model(self.place(trial, curve, seed), curve) for seed in self.seeds]
         return compare(self.laboratory[number], models, curve, self.plan.misfit)
 
-    def conclude(self, number: int, blind: bool) -> None:
-        trial = self.all[number]
+    def conclude(self, trial: Trial, blind: bool) -> None:
         for k, curve in enumerate(self.plan.curve):
             if curve.blind == blind:
-                trial.curves[k] = self.outcome(number, k)
+                trial.curves[k] = self.outcome(trial, k)
         if blind:
             return
         trial.misfit = total_misfit([outcome.misfit if outcome else 0 for outcome in trial.curves], self.plan)
-        trial.done, self.last = True, number
+        trial.done, self.last = True, trial
         write_replacing(self.folder / "trials.csv", self.table())
         self.progress.say("")
 
     def state(self) -> str:
         """" 12 %  trial 7 of at most 60: misfit 0.1320, best 0.0980 in trial 4, ETA 20 min at most"."""
         done, most, best = sum(trial.done for trial in self.all), self.plan.budget.trials, self.best()
-        if best is None:
+        if best is None or self.last is None:
             return f"  0 %  of at most {most} trials"
-        trial = self.all[self.last]
-        failed = "" if self.is_complete(trial) else " (a run FAILED)"
-        text = (f"{100 * done / most:3.0f} %  trial {self.last + 1} of at most {most}: "
-                f"misfit {trial.misfit:.4f}{failed}, best {self.all[best].misfit:.4f} in trial {best + 1}")
+        failed = "" if self.is_complete(self.last) else " (a run FAILED)"
+        text = (f"{100 * done / most:3.0f} %  trial {self.last.number} of at most {most}: "
+                f"misfit {self.last.misfit:.4f}{failed}, best {best.misfit:.4f} in trial {best.number}")
         if self.computed and done < most:
             text += f", ETA {command.duration_text((most - done) * self.seconds / self.computed)} at most"
         return text
@@ -186,10 +187,10 @@ class Trials:
         fitted = [(k, curve.name) for k, curve in enumerate(self.plan.curve) if not curve.blind]
         rows = [["trial (-)", *(parameter.label for parameter in self.scenes.parameters), "misfit (-)",
                  *(f"misfit of {name} (-)" for _, name in fitted), "failed curves", "folder"]]
-        for number, trial in enumerate(self.all, 1):
+        for trial in self.all:
             if trial.done:
                 outcomes = [(name, trial.curves[k]) for k, name in fitted]
-                rows.append([str(number), *(p.number(value) for p, value in zip(self.scenes.parameters, trial.values)),
+                rows.append([str(trial.number), *(p.number(value) for p, value in zip(self.scenes.parameters, trial.values)),
                              f"{trial.misfit:.6f}", *(f"{outcome.misfit:.6f}" for _, outcome in outcomes if outcome),
                              " ".join(name for name, outcome in outcomes if outcome and outcome.failure),
                              f"runs/{trial.id}"])
