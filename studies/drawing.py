@@ -51,12 +51,6 @@ def save(figure, path, **more):
     plt.close(figure)
 
 
-def legend_below(figure, panel, ncols, height):
-    """Of the whole figure, in the lowest `height` of it."""
-    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
-    figure.legend(*panel.get_legend_handles_labels(), loc="lower center", ncols=ncols)
-
-
 def plain_logarithm(axis, form="{x:g}"):
     """Of one axis of a panel, with ticks at 1, 2, 5, 10 written as numbers."""
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})

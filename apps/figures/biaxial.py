@@ -11,17 +11,7 @@ import h5py
 import numpy as np
 
 from .common import BLACK, BLUE, GREEN, ORANGE, BadInput, cut_ends, plain, plt, read_history, read_summary
-from .drawing import Drawing
-
-CAPTIONS = {
-    "fig_stress_strain": "axial stress and volumetric strain (undrained: pore pressure) against axial strain, and "
-                         "the scatter of the shear strain",
-    "fig_shear_maps": "shear strain since the start over the block at several axial strains",
-    "fig_rate_maps": "shear strain between two of them: where the block deforms at the time",
-    "fig_band": "axial stress beside that of other runs (named by their folders), shear strain at the end, where it "
-                "came last, void ratio",
-    "fig_grain_maps": "void ratio and redundancy index at the end, of packings",
-}
+from .drawing import Drawing, draws
 
 PANELS = 5
 
@@ -69,7 +59,10 @@ class Block:
         return image
 
 
+@draws("fig_stress_strain")
 def stress_strain(block):
+    """Axial stress and volumetric strain (undrained: pore pressure) against axial strain, and the scatter of the shear
+    strain."""
     figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.0), constrained_layout=True)
     strain = 100 * block.history["axial_strain"]
     axes[0].plot(strain, block.history["axial_stress"] / 1e3, color=BLACK)
@@ -102,7 +95,9 @@ def map_row(block, fields, labels, bar):
     return figure
 
 
+@draws("fig_shear_maps")
 def shear_maps(block):
+    """Shear strain since the start over the block at several axial strains."""
     chosen = block.chosen()
     return map_row(block, [100 * block.maps["shear_strain"][k] for k in chosen],
                    [f"{100 * block.strain[k]:.2g} %" for k in chosen], "Shear strain (%)")
@@ -116,7 +111,9 @@ def differences(block):
         yield before, now, came / came.mean()
 
 
+@draws("fig_rate_maps")
 def rate_maps(block):
+    """Shear strain between two of them: where the block deforms at the time."""
     rows = list(differences(block))
     report_band(block, rows[-1][2])
     return map_row(block, [field for _, _, field in rows],
@@ -171,8 +168,11 @@ def band_words(block, field):
             "horizontal")
 
 
+@draws("fig_band")
 def band(block):
-    """All of a band in one figure. Shear strains are over their mean."""
+    """Axial stress beside that of other runs (named by their folders), shear strain at the end, where it came last,
+    void ratio."""
+    # all of a band; shear strains over their mean
     before, _, came = list(differences(block))[-1]
     total = block.maps["shear_strain"][-1] / block.maps["shear_strain"][-1].mean()
     for when, field in ("the start", total), (f"{100 * block.strain[before]:.2g} %", came):
@@ -203,7 +203,9 @@ def band(block):
     return figure
 
 
+@draws("fig_grain_maps")
 def grain_maps(block):
+    """Void ratio and redundancy index at the end, of packings."""
     if not block.maps["redundancy"].any():
         return None
     figure, axes = plt.subplots(1, 2, figsize=(5.4, 3.6), constrained_layout=True)
@@ -217,12 +219,4 @@ def grain_maps(block):
     return figure
 
 
-FIGURES = {
-    "fig_stress_strain": stress_strain,
-    "fig_shear_maps": shear_maps,
-    "fig_rate_maps": rate_maps,
-    "fig_band": band,
-    "fig_grain_maps": grain_maps,
-}
-
-DRAWING = Drawing(Block, FIGURES, CAPTIONS)
+DRAWING = Drawing(Block, [stress_strain, shear_maps, rate_maps, band, grain_maps])

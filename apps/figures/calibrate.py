@@ -9,15 +9,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain, plain_log_ticks, plt
-from .drawing import Drawing
+from .drawing import Drawing, draws
 from .files import read_parsed
-
-CAPTIONS = {
-    "curves": "each laboratory curve with the model's at the start and at the best set: q and volumetric strain over "
-              "axial strain, of undrained tests the stress path; band: standard deviation over the seeds",
-    "convergence": "misfit of each trial, and the best so far",
-    "tradeoffs": "misfit over each parameter, and as colour over each pair of them",
-}
 
 COLUMNS = 4  # curves side by side
 SHOWN = 3.0  # misfits beyond so many times the best have one colour
@@ -86,7 +79,10 @@ def draw_curve(upper, lower, curve):
     lower.set_xlabel(r"$\varepsilon_1$ (%)" if curve.drained else r"$p^\prime$ (kPa)")
 
 
+@draws("curves")
 def curves(results):
+    """Each laboratory curve with the model's at the start and at the best set: q and volumetric strain over axial
+    strain, of undrained tests the stress path; band: standard deviation over the seeds."""
     n = len(results.curves)
     if n == 0:
         return None
@@ -108,7 +104,9 @@ def curves(results):
     return figure
 
 
+@draws("convergence")
 def convergence(results):
+    """Misfit of each trial, and the best so far."""
     figure, axes = plt.subplots(figsize=(6.2, 3.4), layout="constrained")
     good = ~results.failed
     axes.plot(results.trial[good], results.misfit[good], "o", color=BLUE, markersize=4, markerfacecolor="none",
@@ -139,8 +137,10 @@ def short(label):
     return label.partition(".")[2].replace(".", " ").replace("_", " ").replace(" of ", "\nof ")
 
 
+@draws("tradeoffs")
 def tradeoffs(results):
-    """Below the diagonal pairs, on it each parameter against the misfit."""
+    """Misfit over each parameter, and as colour over each pair of them."""
+    # below the diagonal pairs, on it each parameter against the misfit
     labels, n = list(results.values), len(results.parameters)
     figure, panels = plt.subplots(n, n, figsize=(1.6 + 2.2 * n, 1.2 + 2.0 * n), squeeze=False, layout="constrained")
     lowest = results.misfit[results.best]
@@ -169,4 +169,4 @@ def tradeoffs(results):
     return figure
 
 
-DRAWING = Drawing(Calibration, {"curves": curves, "convergence": convergence, "tradeoffs": tradeoffs}, CAPTIONS)
+DRAWING = Drawing(Calibration, [curves, convergence, tradeoffs])

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, plt
+from .drawing import draws
 
 LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
 
@@ -59,9 +60,10 @@ class Mesh:
         return np.array([top[x] for x in sorted(top)]), np.array(sorted(top))
 
 
+@draws("fig_box")
 def box_maps(column):
-    """r_u where its mean is largest and at the end, shear strain at the end, I_R where its mean is smallest, over the
-    mesh as it has moved."""
+    """r_u where its mean is largest and at the end, shear strain at the end, of packings I_R where its mean is
+    smallest, over the mesh as it has moved."""
     if not is_box(column) or column.plate:
         return None
     maps, mesh = column.maps, Mesh(column.maps)
@@ -89,8 +91,9 @@ def box_maps(column):
     return figure
 
 
+@draws("fig_surface")
 def box_surface(column):
-    """Displacement of the surface along x and upwards: in time at three places, and over the box at several times."""
+    """Displacement of the surface in time and over the box."""
     if not is_box(column) or column.plate:
         return None
     maps, mesh = column.maps, Mesh(column.maps)

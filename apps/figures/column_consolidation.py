@@ -6,6 +6,7 @@ from matplotlib.colors import LogNorm
 from .column_analysis import Terzaghi
 from .column_soil import TIMES, depth_axis, time_bar
 from .common import BLACK, BLUE, note, plt
+from .drawing import draws
 
 TIME_FACTORS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5)
 MIN_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front
@@ -27,8 +28,9 @@ def chosen_rows(time, exact):
     return np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
 
 
+@draws("fig_isochrones")
 def isochrones(column):
-    """Excess pore pressure over the depth at several times."""
+    """Excess pore pressure over the depth, beside Terzaghi's series if it applies."""
     pressure = column.profile("u")
     if not column.consolidation or pressure is None:
         return None
@@ -65,8 +67,9 @@ def report(what, differences, time, exact, unit):
               f"{exact.time_factor(time[at]):.3g} (T >= {MIN_COMPARED})")
 
 
+@draws("fig_settlement")
 def settlement(column):
-    """Settlement against the logarithm of time."""
+    """Settlement against time, beside Terzaghi's if it applies."""
     if not column.consolidation or not column.has("settlement"):
         return None
     after = column.time > 0

@@ -11,19 +11,8 @@ import csv
 import numpy as np
 
 from .common import BLACK, BLUE, GREY, ORANGE, BadInput, letters, plt, read_history
-from .drawing import Drawing
+from .drawing import Drawing, draws
 from .files import read_parsed
-
-CAPTIONS = {
-    "fig_ensemble_profiles": "over the depth: largest r_u, shear strain and acceleration; black: median, shaded: 16 "
-                             "to 84 % of the members, grey: each member",
-    "fig_ensemble_redundancy": "packings of grains: smallest and last redundancy index I_R over the depth, likewise",
-    "fig_ensemble_spectra": "response spectra of the surface, likewise (of two axes the larger)",
-    "fig_ensemble_histories": "acceleration and settlement of the surface, and largest r_u anywhere, likewise; of "
-                              "slopes and boxes also its displacement along x",
-    "fig_ensemble_ru": "r_u at each of the scene's depths, likewise",
-    "fig_ensemble_numbers": "numbers of each member (points), their mean with its standard error (bar), and the band",
-}
 
 LABELS = {"max_ru": "largest $r_u$", "max_gamma": "largest shear strain (%)",
           "max_acceleration": "largest acceleration (m/s$^2$)", "min_I_R": "smallest $I_R$",
@@ -132,17 +121,24 @@ def over_depth(ensemble, panels):
     return figure
 
 
+@draws("fig_ensemble_profiles")
 def profiles(ensemble):
+    """Over the depth: largest r_u, shear strain and acceleration; black: median, shaded: 16 to 84 % of the members,
+    grey: each member."""
     wet = np.any(ensemble.bands["points"]["max_ru_mean"] > 0)
     return over_depth(ensemble, ([("points", "max_ru")] if wet else [])
                       + [("points", "max_gamma"), ("nodes", "max_acceleration")])
 
 
+@draws("fig_ensemble_redundancy")
 def redundancy(ensemble):
+    """Packings of grains: smallest and last redundancy index I_R over the depth, likewise."""
     return over_depth(ensemble, [("grains", "min_I_R"), ("grains", "final_I_R")])
 
 
+@draws("fig_ensemble_spectra")
 def spectra(ensemble):
+    """Response spectra of the surface, likewise (of two axes the larger)."""
     if ensemble.curve("spectra", "surface_Sa") is None:
         return None
     figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
@@ -152,11 +148,16 @@ def spectra(ensemble):
     return figure
 
 
+@draws("fig_ensemble_histories")
 def histories(ensemble):
+    """Acceleration and settlement of the surface, and largest r_u anywhere, likewise; of slopes and boxes also its
+    displacement along x."""
     return rows_in_time(ensemble, ("surface_ax", "surface_ay", "surface_ux", "max_ru", "settlement"))
 
 
+@draws("fig_ensemble_ru")
 def pore_pressure(ensemble):
+    """r_u at each of the scene's depths, likewise."""
     depths = ensemble.numbers.get("depths") or []
     return rows_in_time(ensemble, [f"d{k}_ru" for k in range(len(depths))],
                         {f"d{k}_ru": f"$r_u$, {depth:.3g} m" for k, depth in enumerate(depths)})
@@ -182,7 +183,9 @@ def rows_in_time(ensemble, names, labels=None):
     return figure
 
 
+@draws("fig_ensemble_numbers")
 def numbers(ensemble):
+    """Numbers of each member (points), their mean with its standard error (bar), and the band."""
     shown = [(name, label, factor) for name, label, factor in NUMBERS
              if name in ensemble.members and np.nan_to_num(ensemble.members[name]).any()]
     figure, row = plt.subplots(1, len(shown), figsize=(1.35 * len(shown) + 0.4, 3.4), squeeze=False,
@@ -202,6 +205,4 @@ def numbers(ensemble):
     return figure
 
 
-DRAWING = Drawing(Ensemble, {"fig_ensemble_profiles": profiles, "fig_ensemble_redundancy": redundancy,
-                             "fig_ensemble_spectra": spectra, "fig_ensemble_histories": histories,
-                             "fig_ensemble_ru": pore_pressure, "fig_ensemble_numbers": numbers}, CAPTIONS)
+DRAWING = Drawing(Ensemble, [profiles, redundancy, spectra, histories, pore_pressure, numbers])

@@ -5,10 +5,13 @@ from matplotlib.colors import SymLogNorm
 
 from .column_soil import map_over_time
 from .common import BLACK, BLUE, ORANGE, letters, plt
+from .drawing import draws
 
 
+@draws("fig_expansion")
 def expansion(column):
-    """Net expansion under each less permeable layer and settlement, above the volumetric strain over depth and time."""
+    """Below less permeable layers: net expansion and settlement, above the volumetric strain over depth and time, on
+    one scale for both signs."""
     caps = dict(zip((f"expansion_{k}" for k in range(len(column.columns))), column.capped_boundaries()))
     names = [name for name in caps if name in column.columns]
     strain = column.profile("eps_zz")

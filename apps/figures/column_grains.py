@@ -8,6 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from .column_soil import (MIN_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
                                pore_pressure_ratio, time_bar, time_norm, times_of_motion)
 from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, letters, plt
+from .drawing import draws
 
 ISOSTATIC = 1.0  # redundancy index below which the contacts cannot hold the grains
 MIN_Z = 2  # coordination number below which the fabric of the few contacts left means nothing
@@ -24,8 +25,9 @@ def label_of(grains, names=("IR_constraints",)):
     return "Redundancy index\n" + index_label(np.concatenate([np.ravel(grains.get(name, 6)) for name in names]))
 
 
+@draws("fig_grains_profiles")
 def grains_profiles(column):
-    """Redundancy index, coordination number and fabric over the depth at several times."""
+    """Packings of grains: redundancy index I_R, coordination number, fabric over the depth."""
     grains = column.grains.profiles
     if "IR" not in grains:
         return None
@@ -71,8 +73,9 @@ def draw_onset(axes, depth, time, reached, **style):
     axes.plot(*zip(*at) if at else ([], []), linestyle="none", **style)
 
 
+@draws("fig_grains_map")
 def grains_map(column):
-    """I_R over depth and time, below the motion, with the borders of I_R < 1 and r_u > 0.95; their onset beside it."""
+    """I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95."""
     grains = column.grains.profiles
     if "IR" not in grains or len(grains["time"]) < 2:
         return None
@@ -170,8 +173,9 @@ def draw_yielding(column, axes, depth, prefix):
                   ha="left", va="center", fontsize=9)
 
 
+@draws("fig_grains_history")
 def grains_history(column):
-    """Redundancy index and r_u at the output depths; the shares of the contacts that yield, a panel for each."""
+    """I_R, r_u and yielding contacts at the output depths."""
     grains = column.grains
     points = [(depth, prefix) for depth, prefix in grains.points if f"{prefix}_IR" in grains.columns]
     if not points or len(grains.columns["time"]) < 2:

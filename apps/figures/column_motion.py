@@ -4,6 +4,7 @@ import numpy as np
 
 from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
 from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
+from .drawing import draws
 
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
@@ -31,8 +32,10 @@ def peak_mark(axes, t, a, colour, of_all_steps=None):
                   fontsize=9, color=colour, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
 
 
+@draws("fig_motions")
 def motions(column):
-    """A row for each direction that moves: what comes in, and the surface, on one scale."""
+    """Acceleration of input and surface, for each direction that moves."""
+    # on one scale
     if column.consolidation or not column.moving:
         return None
     rows = len(column.moving)
@@ -63,8 +66,10 @@ def column_spectrum(column, where, axis):
     return PERIODS, response_spectrum(a, dt, PERIODS, column.spectrum_damping)
 
 
+@draws("fig_spectra")
 def spectra(column):
-    """Response spectra of input and surface, and their ratio."""
+    """Response spectra of input and surface of every step (spectra.csv), and their ratio; grey: periods that belong to
+    frequencies above analysis.highest_frequency."""
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
     if column.consolidation or not axes_moving:
         return None
@@ -163,8 +168,10 @@ def broad(column, axis):
     return strong.any() and f[strong][-1] > 4 * f[strong][0]
 
 
+@draws("fig_transfer", {"one elastic layer": "beside its exact curve, from which the largest difference is printed",
+                        "other soil": "smoothed, too (Konno and Ohmachi 1998, b = 80)"})
 def transfer(column):
-    """Fourier amplitudes of the surface over those of the input, along the horizontal."""
+    """Fourier amplitudes, surface over input."""
     if column.consolidation or len(column.time) < 8:
         return None
     axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}") and broad(column, axis)]

@@ -6,6 +6,7 @@ from matplotlib.ticker import MaxNLocator
 from .column_box import is_box
 from .column_soil import depth_axis
 from .common import BLACK, letters, plt
+from .drawing import draws
 
 SPECS = (("peak_acceleration", "node_depth", 1, "acceleration", "m/s$^2$"),
          ("peak_velocity", "node_depth", 1, "velocity", "m/s"),
@@ -13,8 +14,10 @@ SPECS = (("peak_acceleration", "node_depth", 1, "acceleration", "m/s$^2$"),
          ("peak_gamma", "depth", 100, r"shear strain $\gamma$", "%"))
 
 
+@draws("fig_peaks")
 def peaks(column):
-    """Largest values of all steps over the depth, each with its own largest and where that is."""
+    """Largest horizontal acceleration, velocity and displacement and largest shear strain of all steps over the depth;
+    a dot marks the largest of each, whose value and depth are above it."""
     specs = [spec for spec in SPECS if column.profiles and {spec[0], spec[1]} <= column.profiles.keys()
              and column.profiles[spec[0]].any()]
     if not column.shaken or is_box(column) or not specs:

@@ -2,14 +2,16 @@
 """Figure of a plate that moves into a box of soil."""
 from .column_box import Mesh
 from .common import BLACK, BLUE, GREY, cut_ends, letters, plt
+from .drawing import draws
 
 
 def has_plate(column):
     return bool(column.plate)
 
 
+@draws("fig_plate")
 def plate(column):
-    """Force against the plate and pressure beside it over its way; displacement and shear strain at the end."""
+    """Force against it and normal stress beside it over its way, shear strain at the end."""
     if not has_plate(column) or not column.maps:
         return None
     figure, panels = plt.subplot_mosaic([["force", "pressure"], ["map", "map"]], figsize=(7.2, 5.6),

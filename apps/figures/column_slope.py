@@ -4,6 +4,7 @@ import numpy as np
 
 from .column_soil import depth_axis
 from .common import BLACK, BLUE, GREY, RED, letters, plt
+from .drawing import draws
 
 LEFT = {"end_displacement", "end_gamma_xz", "tau_0", "node_depth"}
 
@@ -13,9 +14,10 @@ def is_slope(column):
     return LEFT <= column.profiles.keys() and np.abs(column.profiles["end_displacement"]).max() > 1e-6
 
 
+@draws("fig_spreading")
 def spreading(column):
-    """Displacement of the surface in time; at the end displacement and shear strain over the depth, beside the static
-    shear stress at the start."""
+    """Displacement of the surface in time; at the end displacement and shear strain over the depth, beside static shear
+    stress and normal effective stress of the start."""
     if not is_slope(column):
         return None
     figure, panels = plt.subplot_mosaic([["time", "time", "time"], ["moved", "strain", "stress"]],

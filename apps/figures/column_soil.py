@@ -6,6 +6,7 @@ from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import MaxNLocator
 
 from .common import BLACK, BLUE, GREY, ORANGE, RED, letters, note, plt
+from .drawing import draws
 
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
 EARLY = 0.25  # of the motion: half of its squared acceleration by then is early
@@ -79,8 +80,10 @@ def pore_pressure_ratio(column):
     return ru if ru is not None and np.nanmax(np.abs(ru)) > MIN_RU else None
 
 
+@draws("fig_profiles")
 def profiles(column):
-    """Largest strain and stress ratio so far, and r_u at the moment, at several times."""
+    """Largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the depth at several
+    times."""
     if not column.shaken or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
@@ -117,8 +120,9 @@ def profiles(column):
     return figure
 
 
+@draws("fig_velocity")
 def velocity(column):
-    """Velocity of shear waves at the start over depth, where it varies."""
+    """Velocity of shear waves of small strain over the depth at the start, where it varies."""
     speeds = column.profiles.get("shear_velocity") if column.profiles else None
     if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
         return None
@@ -168,8 +172,9 @@ def map_over_time(column, axes, values, **style):
     return shade, (x, y), cells
 
 
+@draws("fig_ru_map")
 def ru_map(column):
-    """r_u over depth and time, below the motion that makes it."""
+    """r_u over depth and time, below the input."""
     ru = pore_pressure_ratio(column)
     if column.consolidation or ru is None or len(column.profiles["time"]) < 2:
         return None
@@ -218,8 +223,9 @@ def point_label(depth, prefix):
     return f"{depth:.3g} m" if depth is not None else prefix
 
 
+@draws("fig_loops")
 def loops(column):
-    """A row for each output depth: shear loops and stress paths, coloured by time."""
+    """Shear loops and stress paths at the output depths, coloured by time."""
     axes_moving = moving_shears(column) if column.shaken else []
     if not axes_moving or not column.points:
         return None
@@ -259,8 +265,8 @@ def sinks(column):
     return column.peak("settlement") > 1e-6
 
 
+@draws("fig_histories", {"wet": "r_u at the output depths and its largest value anywhere", "sinking": "settlement"})
 def histories(column):
-    """r_u at the output depths and its largest value anywhere; settlement."""
     if not column.shaken:
         return None
     wet, sinking = is_wet(column), sinks(column)

@@ -362,12 +362,17 @@ def draw_path(run, axes, x, y):
                   label=rf"$p^\prime/p_0^\prime < {run.liquefied_ratio:g}$")
 
 
-def legend_below(run, figure, axes):
-    """The legend of a path; without liquefaction there is nothing to tell apart."""
+def legend_below(figure, axes, height, ncols=None, **more):
+    """Of one panel or several that share it, in the lowest `height` of the figure; in one row unless ncols says else."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
+    figure.legend(handles, labels, loc="lower center", ncols=ncols or len(labels), **more)
+
+
+def legend_of_path(run, figure, axes):
+    """Without liquefaction there is nothing to tell apart."""
     if run.onset is not None:
-        handles, labels = axes.get_legend_handles_labels()
-        figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
-        figure.legend(handles, labels, loc="lower center", ncols=len(labels))
+        legend_below(figure, axes, 0.07)
 
 
 def two_rows(run, heights=(1, 1)):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .common import BLUE, GREY, ORANGE, letters, mark_level, plt
+from .drawing import draws
 
 SHARE = 0.05  # of the strain of the stage: window of the slopes, as in dem/measure/strength.hpp
 
@@ -20,7 +21,10 @@ def rates(axial, volumetric):
     return found
 
 
+@draws("fig_dilatancy")
 def dilatancy(run):
+    """Of the last drained stage (a) q/p' and (b) the rate of dilatancy D = -d eps_v/d eps against axial strain, (c)
+    q/p' against D."""
     if not run.drained_stages or run.shear:
         return None
     stage = run.drained_stages[-1]

@@ -8,29 +8,40 @@ from .common import BadInput, plain, plt, use_style
 from .files import replacing
 
 
+def draws(name, parts=None):
+    """Of a function draw(results) -> figure, or None if there is nothing to draw: the name of the figure. Its caption
+    is the docstring of the function, with the parts {kind of results: text} that fit."""
+    def mark(draw):
+        draw.name, draw.parts = name, parts or {}
+        return draw
+    return mark
+
+
 @dataclasses.dataclass
 class Drawing:
     """The figures of a program.
 
     read      folder -> results, with a `title` or None; raises BadInput, OSError, KeyError, ValueError on wrong files
-    figures   {name: draw}, draw(results) -> figure, or None if there is nothing to draw
-    captions  {name: what it shows}, or {name: {kind of results: a part of it}} with "" for all kinds
-    undrawn   called with name and results for each of these
+    all       what draws them, in their order
+    undrawn   called with name and results for each without a figure
     kinds     results -> the kinds they are of
     """
 
     read: typing.Callable
-    figures: dict
-    captions: dict
+    all: list
     undrawn: typing.Callable = lambda name, results: None
     kinds: typing.Callable = lambda results: set()
 
+    @property
+    def figures(self):
+        return {draw.name: draw for draw in self.all}
+
     def caption(self, name, kinds):
-        """The parts of a figure's caption that fit results of these kinds, as a sentence."""
-        parts = self.captions[name]
-        if isinstance(parts, dict):
-            parts = "; ".join(text for kind, text in parts.items() if not kind or kind in kinds)
-        return f"{parts if parts[1] == '_' else parts[0].upper() + parts[1:]}."
+        """As a sentence, with the parts that fit results of these kinds."""
+        draw = self.figures[name]
+        own = " ".join((draw.__doc__ or "").split()).removesuffix(".")
+        text = "; ".join(filter(None, (own, *(part for kind, part in draw.parts.items() if kind in kinds))))
+        return f"{text if text[1] == '_' else text[0].upper() + text[1:]}."
 
     def results(self, folder, beside=()):
         """What is read from a results folder, with that of others beside it.   Raises BadInput"""

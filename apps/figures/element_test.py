@@ -13,28 +13,18 @@ missing costs its curve or panel, with a note.
 import numpy as np
 
 from .common import (BLACK, BLUE, FLOOR, GREEN, GREY, ORANGE, Run, curves, draw_path, explain_median, index_label,
-                          legend_above, legend_below, letters, mark_level, mark_onset, note, plt, two_rows)
-from .drawing import Drawing
+                          legend_above, legend_of_path, letters, mark_level, mark_onset, note, plt, two_rows)
+from .drawing import Drawing, draws
 from .dilatancy import dilatancy
 from .simple_shear import rotation, shear_path
-
-CAPTIONS = {
-    "fig_stress_path": {"triaxial": "(a) q against p', (b) q against axial strain",
-                        "drained triaxial": "(c) volumetric strain against axial strain",
-                        "simple shear": "tau against (a) sigma'_v, (b) p', (c) gamma"},
-    "fig_dilatancy": "of the last drained stage (a) q/p' and (b) the rate of dilatancy D = -d eps_v/d eps against "
-                     "axial strain, (c) q/p' against D",
-    "fig_redundancy": "(a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts, "
-                      "(b) p'/p0', of a test without a shear stage p'",
-    "fig_contact_fractions": "(a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield",
-    "fig_fabric": "(a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]",
-    "fig_principal_stress": "direction of the major principal stress against (a) cycles or gamma, (b) tau / sigma'_v",
-}
 
 FULL = 6  # constraints of a contact as Eq. (2) counts them
 NEAR_LIQUEFACTION = 0.1  # p'/p0' that has to be passed for a logarithmic axis
 
 
+@draws("fig_stress_path", {"triaxial": "(a) q against p', (b) q against axial strain",
+                           "drained triaxial": "(c) volumetric strain against axial strain",
+                           "simple shear": "tau against (a) sigma'_v, (b) p', (c) gamma"})
 def stress_path(run):
     if not run.sheared:
         return None
@@ -54,7 +44,7 @@ def stress_path(run):
     for axes in volume:
         draw_path(run, axes, 100 * run.strain, 100 * (run["eps_x"] + run["eps_y"] + run["eps_z"]))
         axes.set(xlabel=run.strain_label, ylabel=r"Volumetric strain $\varepsilon_v$ (%)")
-    legend_below(run, figure, left)
+    legend_of_path(run, figure, left)
     return figure
 
 
@@ -80,7 +70,10 @@ def draw_pressure(run, axes):
                       color=GREY)
 
 
+@draws("fig_redundancy")
 def redundancy(run):
+    """(a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts, (b) p'/p0', of a test
+    without a shear stage p'."""
     if not run.has("IR"):
         return None
     figure, (top, bottom) = two_rows(run, (1.25, 1))
@@ -101,7 +94,9 @@ def redundancy(run):
     return figure
 
 
+@draws("fig_contact_fractions")
 def contact_fractions(run):
+    """(a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield."""
     if not any(run.has(name) for name in ("f_S", "f_R", "f_SR", "f_NSR")):
         return None
     figure, (top, bottom) = two_rows(run, (1.6, 1))
@@ -119,7 +114,9 @@ def contact_fractions(run):
     return figure
 
 
+@draws("fig_fabric")
 def fabric(run):
+    """(a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]."""
     if not any(run.has(name) for name in ("Fxx", "Fyy", "Fzz", "F_yx", "F_yz")):
         return None
     figure, (top, bottom) = two_rows(run)
@@ -140,16 +137,6 @@ def fabric(run):
     return figure
 
 
-FIGURES = {
-    "fig_stress_path": stress_path,
-    "fig_dilatancy": dilatancy,
-    "fig_redundancy": redundancy,
-    "fig_contact_fractions": contact_fractions,
-    "fig_fabric": fabric,
-    "fig_principal_stress": rotation,
-}
-
-
 def undrawn(name, run):
     # of simple shear, of drained stages, of stages that shear alone
     meant = {"fig_principal_stress": run.shear, "fig_dilatancy": False, "fig_stress_path": run.sheared}
@@ -164,4 +151,4 @@ def kinds(run):
     return {"triaxial", "drained triaxial"} if run.drained else {"triaxial"}
 
 
-DRAWING = Drawing(Run, FIGURES, CAPTIONS, undrawn, kinds)
+DRAWING = Drawing(Run, [stress_path, dilatancy, redundancy, contact_fractions, fabric, rotation], undrawn, kinds)

@@ -6,37 +6,14 @@
 Onset is the first snapshot with p'/p0' < 0.01; without one, that of the smallest p' stands in for it,
 if it is neither the first nor the last.
 """
-import csv
-import re
-
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, BadInput, letters, plain, plt
-from .drawing import Drawing
+from .common import BLACK, BLUE, GREEN, GREY, ORANGE, RED, legend_below, letters, plain, plt, read_history
+from .drawing import Drawing, draws
 from .files import read_parsed
 
-CAPTIONS = {
-    "fig_force_distribution": "probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot",
-    "fig_roses": "contact normals in the x-y plane and about y: number (bars) and mean force (line)",
-    "fig_anisotropies": "a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain",
-}
-
 COLOURS = {"first": BLUE, "onset": RED, "smallest p'": RED, "last": ORANGE}
-
-
-def read_table(path):
-    """Columns by name without the unit."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from error
-    if len(rows) < 2:
-        raise BadInput(f"{path}: no data rows")
-    names = [re.sub(r"\s*\(.*\)$", "", cell) for cell in rows[0]]
-    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
-    return {name: values[:, k] for k, name in enumerate(names)}
 
 
 class Analysis:
@@ -45,9 +22,9 @@ class Analysis:
     title = None
 
     def __init__(self, folder):
-        self.rows = read_table(folder / "micromechanics.csv")
-        self.forces = read_table(folder / "force_distribution.csv")
-        self.roses = read_table(folder / "roses.csv")
+        self.rows = read_history(folder / "micromechanics.csv")
+        self.forces = read_history(folder / "force_distribution.csv")
+        self.roses = read_history(folder / "roses.csv")
         onset = read_parsed(folder / "micromechanics.json")["onset"]
         last = len(self.rows["p"]) - 1
         self.chosen = {"first": 0}
@@ -64,7 +41,9 @@ class Analysis:
         return f"{name}: $\\varepsilon_1$ = {100 * self.rows['eps_y'][k]:.3f} %, p' = {self.rows['p'][k] / 1e3:.3g} kPa"
 
 
+@draws("fig_force_distribution")
 def force_distribution(analysis):
+    """Probability density of fn/<fn> and |fs|/<fn>, first, onset and last snapshot."""
     figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.3), layout="constrained", sharey=True)
     for name, index in analysis.chosen.items():
         of_snapshot = analysis.forces["snapshot"] == index
@@ -78,13 +57,13 @@ def force_distribution(analysis):
     for axes, text in zip(panels, (r"$f_n/\langle f_n\rangle$", r"$|f_s|/\langle f_n\rangle$")):
         axes.set(yscale="log", xlabel=text, xlim=(0, None))
     panels[0].set_ylabel("Probability density")
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.get_layout_engine().set(rect=(0, 0.18, 1, 0.82))
-    figure.legend(handles, labels, loc="lower center", ncols=1)
+    legend_below(figure, panels[0], 0.18, 1)
     return figure
 
 
+@draws("fig_roses")
 def roses(analysis):
+    """Contact normals in the x-y plane and about y: number (bars) and mean force (line)."""
     n = len(analysis.chosen)
     figure, panels = plt.subplots(2, n, figsize=(2.5 * n + 0.4, 5.6), subplot_kw={"projection": "polar"},
                                   layout="constrained", squeeze=False)
@@ -108,14 +87,14 @@ def roses(analysis):
             axes.tick_params(labelsize=7, pad=0)
             if row == 0:
                 axes.set_title(plain(name) + "\n" + analysis.label(name).split(": ")[1].replace(", ", "\n"), fontsize=8)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.get_layout_engine().set(rect=(0, 0.06, 1, 0.94))
-    figure.legend(handles, labels, loc="lower center", ncols=3)
+    legend_below(figure, panels[0, 0], 0.06)
     return figure
 
 
+@draws("fig_anisotropies")
 def anisotropies(analysis):
-    """Left against strain; right against the number of the snapshot, which sets cycles before liquefaction apart."""
+    """a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain."""
+    # left against strain; right against the number of the snapshot, which sets cycles before liquefaction apart
     rows = analysis.rows
     if len(rows["p"]) < 2:
         return None
@@ -146,6 +125,4 @@ def anisotropies(analysis):
     return figure
 
 
-FIGURES = {"fig_force_distribution": force_distribution, "fig_roses": roses, "fig_anisotropies": anisotropies}
-
-DRAWING = Drawing(Analysis, FIGURES, CAPTIONS)
+DRAWING = Drawing(Analysis, [force_distribution, roses, anisotropies])

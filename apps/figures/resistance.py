@@ -8,14 +8,9 @@ import csv
 import numpy as np
 from matplotlib.transforms import ScaledTranslation
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, plt
-from .drawing import Drawing
+from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, legend_below, plt
+from .drawing import Drawing, draws
 from .files import read_parsed
-
-CAPTIONS = {
-    "resistance": "cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those "
-                  "that did not liquefy, mean over realisations, fit CSR = a N^-b with the CSR at 15 cycles",
-}
 
 MIN_CYCLES = 0.25  # liquefaction before the first reversal
 REFERENCE = 15  # cycles that stand for an earthquake of magnitude 7.5
@@ -30,26 +25,20 @@ def read_runs(path):
              float(row["N_applied"]), row["status"]) for row in rows]
 
 
-def shift(axes, points):
-    """Upwards on the page."""
-    return ScaledTranslation(0, points / 72, axes.figure.dpi_scale_trans)
-
-
 def draw_runs(axes, runs):
-    """Dots, arrows for what did not liquefy; those that agree stand one above the other."""
-    labels = {"liquefied": "realisation", "censored": "not liquefied", "strain": "strain limit before liquefaction"}
+    """Dots, arrows for what did not liquefy; each further run of the same result is a ring around the first."""
+    labels = {"liquefied": "realisation (rings: several with the same result)", "censored": "not liquefied",
+              "strain": "strain limit before liquefaction"}
     drawn = [(ratio, n or max(applied, MIN_CYCLES), status) for ratio, n, applied, status in runs if status in labels]
     for ratio, n, status in sorted(set(drawn)):
-        times = drawn.count((ratio, n, status))
-        for k in range(times):
-            place = axes.transData + shift(axes, 5.5 * (k - (times - 1) / 2))
-            colour = BLUE if status == "liquefied" else ORANGE
-            axes.plot(n, ratio, "x" if status == "strain" else "o", color=colour, markersize=5, markerfacecolor="none",
-                      markeredgewidth=1.1, zorder=3, transform=place, label=labels[status])
+        colour = BLUE if status == "liquefied" else ORANGE
+        for k in range(drawn.count((ratio, n, status))):
+            axes.plot(n, ratio, "x" if status == "strain" else "o", color=colour, markersize=5 + 4 * k, zorder=3,
+                      markerfacecolor="none", markeredgewidth=1.1, label=labels[status])
             labels[status] = None
-            if status == "censored":
-                axes.plot(n, ratio, marker=r"$\rightarrow$", color=colour, markersize=11, markeredgewidth=0, zorder=3,
-                          transform=place + ScaledTranslation(9 / 72, 0, axes.figure.dpi_scale_trans))
+        if status == "censored":
+            axes.plot(n, ratio, marker=r"$\rightarrow$", color=colour, markersize=11, markeredgewidth=0, zorder=3,
+                      transform=axes.transData + ScaledTranslation((9 + 2 * k) / 72, 0, axes.figure.dpi_scale_trans))
 
 
 def draw_means(axes, runs):
@@ -63,22 +52,30 @@ def draw_means(axes, runs):
         axes.plot(*zip(*means), "-D", color=BLACK, linewidth=1.0, markersize=4, zorder=4, label="mean of realisations")
 
 
-def draw_fit(axes, fit, low, high):
-    n = np.geomspace(low, high, 200)
+def draw_fit(axes, fit, ends, reached):
+    """Between the fewest and the most cycles that were reached a full line; dashed where it is extrapolated."""
     text = rf"$CSR = {fit['a']:.3f}\,N^{{-{fit['b']:.3f}}}$"
     if fit["b_error"] is None:
         text += "  (of two runs: no error)"
     else:
         text += rf"  ($b \pm {fit['b_error']:.3f}$, $R^2 = {fit['R2']:.2f}$)"
-    axes.plot(n, fit["a"] * n ** -fit["b"], color=RED, linewidth=1.2, linestyle=(0, (5, 2)), zorder=2, label=text)
+    low, high = min(reached), max(reached)
+    for part, line, label in (((low, high), "-", text), ((ends[0], low), (0, (4, 2)), None),
+                              ((high, ends[1]), (0, (4, 2)), "extrapolated")):
+        n = np.geomspace(*part, 100)
+        axes.plot(n, fit["a"] * n ** -fit["b"], color=RED, linewidth=1.2, linestyle=line, zorder=2, label=label)
     axes.axvline(REFERENCE, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    outside = "" if low <= REFERENCE <= high else ", extrapolated"
     axes.plot(REFERENCE, fit["CSR_15"], "s", color=RED, markersize=5.5, zorder=5,
-              label=f"CSR at {REFERENCE} cycles: {fit['CSR_15']:.3f}")
+              label=f"CSR at {REFERENCE} cycles: {fit['CSR_15']:.3f}{outside}")
 
 
+@draws("resistance")
 def resistance(campaign):
+    """Cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that did not
+    liquefy, mean over realisations, fit CSR = a N^-b (dashed where it is extrapolated) with the CSR at 15 cycles."""
     runs, summary = campaign.runs, campaign.summary
-    figure, axes = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
+    figure, axes = plt.subplots(figsize=(6.2, 4.8), layout="constrained")
     axes.set_xscale("log")
     cycles = [n or max(applied, MIN_CYCLES) for _, n, applied, status in runs if status not in ("missing", "failed")]
     low, high = 0.7 * min(cycles + [REFERENCE]), 1.6 * max(cycles + [REFERENCE])
@@ -86,11 +83,11 @@ def resistance(campaign):
     draw_runs(axes, runs)
     draw_means(axes, runs)
     if summary["fit"]:
-        draw_fit(axes, summary["fit"], low, high)
+        draw_fit(axes, summary["fit"], (low, high), [n for _, n, *_ in runs if n])
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlabel(rf"Cycles to initial liquefaction $N$ ($p^\prime/p_0^\prime < {summary['liquefaction_ratio']:g}$)")
     axes.set_ylabel(f"Cyclic stress ratio {RATIO_NAMES[summary['test']]}")
-    axes.legend(loc="upper right")
+    legend_below(figure, axes, 0.17, 2)
     return figure
 
 
@@ -105,4 +102,4 @@ class Campaign:
             raise BadInput("no run has ended; nothing to draw")
 
 
-DRAWING = Drawing(Campaign, {"resistance": resistance}, CAPTIONS)
+DRAWING = Drawing(Campaign, [resistance])

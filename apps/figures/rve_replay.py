@@ -6,13 +6,7 @@
 import numpy as np
 
 from .common import BLACK, BLUE, ORANGE, RED, index_label, letters, plt, read_history, read_summary
-from .drawing import Drawing
-
-CAPTIONS = {
-    "fig_path": "stress path, stress against strain and effective pressure over time, in the column and alone",
-    "fig_grains": "redundancy index and coordination number over time, below the pressure",
-}
-
+from .drawing import Drawing, draws
 
 class Replay:
     def __init__(self, folder):
@@ -34,7 +28,9 @@ def both(axes, run, x, y):
         axes.plot(scale[0] * values[0], scale[1] * values[1], color=colour, linewidth=width, label=label)
 
 
+@draws("fig_path")
 def path(run):
+    """Stress path, stress against strain and effective pressure over time, in the column and alone."""
     figure, axes = plt.subplots(1, 3, figsize=(10.0, 3.1), constrained_layout=True)
     labels = {"p": "Effective pressure $p'$ (kPa)", "tau": r"Shear stress $\tau_{xz}$ (kPa)",
               "gamma": r"Shear strain $\gamma_{xz}$ (%)", "time": "Time (s)"}
@@ -48,7 +44,9 @@ def path(run):
     return figure
 
 
+@draws("fig_grains")
 def grains(run):
+    """Redundancy index and coordination number over time, below the pressure."""
     if len(run.grains["time"]) < 2:
         return None
     figure, axes = plt.subplots(2, 1, figsize=(6.4, 4.2), sharex=True, constrained_layout=True)
@@ -63,5 +61,4 @@ def grains(run):
     return figure
 
 
-FIGURES = {"fig_path": path, "fig_grains": grains}
-DRAWING = Drawing(Replay, FIGURES, CAPTIONS)
+DRAWING = Drawing(Replay, [path, grains])

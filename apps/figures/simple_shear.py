@@ -2,7 +2,9 @@
 """Figures of simple shear in a periodic cell: stress path, stress-strain curve, rotation of principal stresses."""
 import numpy as np
 
-from .common import (BLACK, GREY, coloured_parts, draw_path, legend_below, letters, mark_onset, plt, progress_axes)
+from .common import (BLACK, GREY, coloured_parts, draw_path, legend_below, legend_of_path, letters, mark_onset, plt,
+                     progress_axes)
+from .drawing import draws
 
 FAINT = 1e-3  # p'/p0' below which a handful of contacts carries the stress: it has no direction to speak of
 
@@ -21,12 +23,14 @@ def shear_path(run):
     if run.cyclic:
         panels[2].axvline(0, color=BLACK, linewidth=0.6, zorder=1.4)
     panels[0].set_ylabel(r"Shear stress $\tau$ (kPa)")
-    legend_below(run, figure, panels[0])
+    legend_of_path(run, figure, panels[0])
     return figure
 
 
+@draws("fig_principal_stress")
 def rotation(run):
-    """Angle of the major principal compression from the vertical; points, because it jumps where tau changes sign."""
+    """Direction of the major principal stress against (a) cycles or gamma, (b) tau / sigma'_v."""
+    # points, because it jumps where tau changes sign
     if not run.shear or not run.has("sigma1_angle"):
         return None
     strong = run.p_ratio > FAINT
@@ -46,7 +50,5 @@ def rotation(run):
     left.set_ylabel(r"Direction of $\sigma_1^\prime$ from the vertical (deg)")
     right.set_xlabel(r"Stress ratio $\tau/\sigma_v^\prime$")
     letters([left, right])
-    handles, labels = left.get_legend_handles_labels()
-    figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
-    figure.legend(handles, labels, loc="lower center", ncols=len(labels), markerscale=4)
+    legend_below(figure, left, 0.07, markerscale=4)
     return figure

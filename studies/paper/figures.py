@@ -2,8 +2,9 @@
 """Draws the committed tables, nothing else: each figure from the CSV files of one folder."""
 import numpy as np
 
-from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, legend_below, of_tables, panels,
-                             plain_logarithm, save)
+from isostat.figures.common import legend_below
+from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, of_tables, panels, plain_logarithm,
+                             save)
 from studies.paper import lab, plan, states
 from studies.paper.resistance import REFERENCE, fitted_ratios
 
@@ -53,7 +54,7 @@ def monotonic(table, _):
     for marker, text in (("s", "laboratory, instability"), ("o", f"laboratory, least {PRIME}"),
                          ("^", f"laboratory, least {PRIME} in extension ($q$ not read)")):
         path.plot([], [], marker, color="white", mec="black", markersize=5, label=text)
-    legend_below(figure, path, 3, 0.12)
+    legend_below(figure, path, 0.12, 3)
     return figure
 
 
@@ -99,7 +100,7 @@ def cycles(table, _):
         panel.plot([], [], marker, color=colour, markersize=4, label=text, mfc="none" if marker == "^" else colour)
     panel.plot([], [], "--", color=GREY, label="paper: 17")
     panel.plot([], [], ":", color=GREY, label="laboratory: 11")
-    legend_below(figure, panel, 3, 0.13)
+    legend_below(figure, panel, 0.13, 3)
     for pace, face in ((plan.DEFAULT, "none"), (plan.SLOW, BLUE)):
         rows = after.where(pace=pace)
         sides = [rows[f"largest strain after, {side} (%)"] for side in ("compression", "extension")]
@@ -199,7 +200,7 @@ def anisotropy(table, _):
     against.set_xlabel(r"Axial strain $|\Delta\varepsilon_1|$ of the half cycle (%)")
     numbers.set_xlabel("Number of the half cycle after the onset")
     against.set_ylabel("$|F_{[y-x]}|$ at its end")
-    legend_below(figure, against, 2, 0.13)
+    legend_below(figure, against, 0.13, 2)
     return figure
 
 
@@ -224,7 +225,7 @@ def drained(table, _):
     for density, colour in zip(plan.LABORATORY, (RED, GREEN, BLUE)):
         axes[0, 0].plot([], [], color=colour, label=f"$D_r$ = {density:.2f}")
     axes[0, 0].plot([], [], "--", color=GREY, label="laboratory (Wichtmann and Triantafyllidis 2016)")
-    legend_below(figure, axes[0, 0], 4, 0.05)
+    legend_below(figure, axes[0, 0], 0.05, 4)
     return figure
 
 
@@ -283,7 +284,7 @@ def critical_states(table, folder):
                   label=f"{table['Gamma'][0]:.3f} \N{MINUS SIGN} {table['lambda'][0]:.4f} ln({PRIME}/kPa)")
     plain_logarithm(line.xaxis)
     line.set(xlabel=f"Mean effective stress {PRIME} (MPa)", ylabel="Void ratio $e$")
-    legend_below(figure, line, 3, 0.12)
+    legend_below(figure, line, 0.12, 3)
     if (folder / "reconsolidation.csv").exists():
         rows = Table(folder / "reconsolidation.csv")
         labels = sorted(rows.values("specimen"), key=lambda label: float(label.split()[0]))

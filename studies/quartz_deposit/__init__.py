@@ -6,8 +6,9 @@ import h5py
 import numpy as np
 
 import isostat
+from isostat.figures.common import legend_below
 from studies import APPS
-from studies.drawing import BLUE, ORANGE, legend_below, panels, save
+from studies.drawing import BLUE, ORANGE, panels, save
 from studies.scenes import cloud_edge
 from studies.small_strain import published
 
@@ -117,5 +118,5 @@ def report(store, planned, folder):
     axes[0, 0].set(xlabel="$V_s$ at the start (m/s)", ylabel="Depth (m)", xlim=(0, None), ylim=(20, 0))
     axes[0, 1].set(xlabel=f"Largest $r_u$ until {end:.3g} s")
     axes[0, 2].set(xlabel=rf"Largest $|\gamma|$ until {end:.3g} s (%)", xscale="log")
-    legend_below(figure, axes[0, 0], 3, 0.08)
+    legend_below(figure, axes[0, 0], 0.08, 3)
     save(figure, folder / "deposit.png")

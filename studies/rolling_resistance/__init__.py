@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import isostat
-from studies.drawing import BLUE, ORANGE, legend_below, save
+from isostat.figures.common import legend_below
+from studies.drawing import BLUE, ORANGE, save
 from studies.ensembles import ensemble
 from studies.history import History
 from studies.scenes import cloud_edge
@@ -156,5 +157,5 @@ def draw(values, path):
     axes.axhline(CYCLES, color="#999999", lw=0.6, ls="--")
     axes.set(xlabel="q/p' in compression at 18 to 20 % strain (-)", yscale="log",
              ylabel=f"Cycles to liquefaction at q = 60 kPa (dashed: none in {CYCLES})")
-    legend_below(figure, axes, 2, 0.17)
+    legend_below(figure, axes, 0.17, 2)
     save(figure, path)
