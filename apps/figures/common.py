@@ -363,7 +363,7 @@ def draw_path(run, axes, x, y):
 
 
 def legend_below(figure, axes, height, ncols=None, **more):
-    """Of one panel or several that share it, in the lowest `height` of the figure; in one row unless ncols says else."""
+    """Of one panel or several that share it, in the lowest `height` of the figure; in one row unless told otherwise."""
     handles, labels = axes.get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
     figure.legend(handles, labels, loc="lower center", ncols=ncols or len(labels), **more)

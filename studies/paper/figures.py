@@ -3,8 +3,8 @@
 import numpy as np
 
 from isostat.figures.common import legend_below
-from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, of_tables, panels, plain_logarithm,
-                             save)
+from studies.drawing import (BLUE, GREEN, GREY, ORANGE, RED, STYLE, Table, band, bands, of_tables, panels,
+                             plain_logarithm, save)
 from studies.paper import lab, plan, states
 from studies.paper.resistance import REFERENCE, fitted_ratios
 

@@ -136,6 +136,8 @@ def leave(folder: pathlib.Path, text: str, program: str, figures: bool) -> None:
     write_replacing(folder / "summary.txt", text)
     print(text, end="")
     if figures:
+        if sys.stderr.isatty():
+            print("  drawing figures ...", file=sys.stderr, flush=True)
         print(f"  {drawn(folder, program)}")
 
 
