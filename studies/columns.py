@@ -7,7 +7,7 @@ import dataclasses
 import pathlib
 
 import isostat
-from isostat.campaign.runs import Run as Process, complete
+from isostat.campaign.library import make_library, parse
 from isostat.column import ColumnScene
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -46,15 +46,9 @@ def library(path, executor, n, pressures, settings):
     pressure, less those that cannot be prepared, which miss their density."""
     if path.exists():
         return
-    cache = path.parent / "specimens"
-    scenes = [isostat.Scene(SCENES / "rve_library.toml", set=settings | {
-        "specimen.pressure": pressure, "specimen.cache": cache, "grading.seed": seed, "output.folder": "runs",
-        "output.snapshots": "none", "output.paraview": False}) for pressure in pressures for seed in range(1, n + 1)]
-    runs = [Process.below(path.with_suffix(""), f"specimen_{k}", scene) for k, scene in enumerate(scenes, 1)]
-    print(f"{path.name}: preparing {len(runs)} specimens", flush=True)
-    complete(executor, [run for run in runs if not run.is_finished])
-    for run in runs:
-        if not run.is_finished:
-            print(f"{run.name} is not in {path.name}: {run.last_line}", flush=True)
-    isostat.write_library(path, [isostat.prepare(scene, cache=cache, threads=1)
-                                 for run, scene in zip(runs, scenes) if run.is_finished])
+    words = [f"--set={key}={value}" for key, value in settings.items()]
+    try:
+        make_library(parse([str(SCENES / "rve_library.toml"), "-n", str(n), "--pressures", ",".join(pressures), "-o",
+                            str(path), *words]), executor)
+    except isostat.RunFailure as error:
+        print(error, flush=True)

@@ -11,10 +11,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from .files import Damaged, read_parsed
+from .files import NOT_SHEARED, Damaged, read_parsed
 
 LIQUEFIED = 0.01  # p'/p0' below which a specimen counts as liquefied, unless its scene says otherwise
-NOT_SHEARED = ("compress", "friction", "rebalance", "hold", "k0-compress", "repeat")  # kinds of stage
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
 SAME_VOLUME = 1e-6  # change of e below which a test is at constant volume
 TURNS = 1.5  # path over range of the strain from which a test counts as turning back

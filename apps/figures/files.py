@@ -9,8 +9,7 @@ import re
 
 REMEDY = ("Restore it from a copy, or delete it and finish the run anew: its command is in provenance.txt, and "
           "--resume goes on from a checkpoint.")
-
-
+NOT_SHEARED = ("compress", "friction", "rebalance", "hold", "k0-compress", "repeat")  # kinds of stage
 NUMBERS = itertools.count()
 
 

@@ -27,8 +27,7 @@ def read_runs(path):
 
 def draw_runs(axes, runs):
     """Dots, arrows for what did not liquefy; each further run of the same result is a ring around the first."""
-    labels = {"liquefied": "realisation (rings: several with the same result)", "censored": "not liquefied",
-              "strain": "strain limit before liquefaction"}
+    labels = {"liquefied": "realisation", "censored": "not liquefied", "strain": "strain limit before liquefaction"}
     drawn = [(ratio, n or max(applied, MIN_CYCLES), status) for ratio, n, applied, status in runs if status in labels]
     for ratio, n, status in sorted(set(drawn)):
         colour = BLUE if status == "liquefied" else ORANGE
@@ -72,8 +71,9 @@ def draw_fit(axes, fit, ends, reached):
 
 @draws("resistance")
 def resistance(campaign):
-    """Cyclic stress ratio against cycles to initial liquefaction: every realisation, arrows for those that did not
-    liquefy, mean over realisations, fit CSR = a N^-b (dashed where it is extrapolated) with the CSR at 15 cycles."""
+    """Cyclic stress ratio against cycles to initial liquefaction: every realisation (a ring around it: another with the
+    same result), arrows for those that did not liquefy, mean over realisations, fit CSR = a N^-b (dashed where it is
+    extrapolated) with the CSR at 15 cycles."""
     runs, summary = campaign.runs, campaign.summary
     figure, axes = plt.subplots(figsize=(6.2, 4.8), layout="constrained")
     axes.set_xscale("log")

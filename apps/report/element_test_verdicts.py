@@ -2,100 +2,21 @@
 """What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
 import numpy as np
 
-from figures.common import LIQUEFIED
 from figures.column_results import quantity
+from figures.common import LIQUEFIED
+from figures.files import NOT_SHEARED
 
-SERVO = ("compress", "rebalance", "hold", "k0-compress")
-REACHED = 1 - 1e-6  # of a strain: rows have ten digits
 # From where on a test counts as fast, docs/guide/rate.md: inertial number, largest indicator.
 FAST_INERTIA, FAST_INDICATOR = 1e-3, 0.2
 
 
-def stage_rows(run, number):
-    """Rows of a stage of the scene, of one that is repeated the last time, as a slice, and how often it was done; None
-    if it left no rows."""
-    rows, times = np.flatnonzero(run.whole["stage"] == number), 1
-    if rows.size and "done" in run.whole:
-        done = run.whole["done"][rows]
-        rows, times = rows[done == done[-1]], len(np.unique(done))
-    return (slice(rows[0], rows[-1] + 1), times) if rows.size else None
-
-
-def steps_of(run, rows):
-    """Time steps of a stage: to its last row, from the last one of the stage before."""
-    before = run.whole["step"][rows.start - 1] if rows.start > 0 else 0
-    return run.whole["step"][rows.stop - 1] - before
-
-
-def strain_of(stage, run, rows):
-    """The strain that ends the stage, as an amount."""
-    name = "gamma_xy" if stage["kind"].endswith("simple-shear") or stage.get("drive") == "xy" else "eps_y"
-    return abs(run.whole[name][rows.stop - 1]), "gamma" if name == "gamma_xy" else "axial strain"
-
-
-def cyclic_end(stage, run, rows):
-    """By which of its conditions a cyclic stage ended, or None."""
-    until, reversals = stage["until"], run.whole["reversals"]
-    last = reversals[rows.stop - 1]
-    liquefied = np.flatnonzero(run.whole["liquefied"] > 0)
-    if liquefied.size and last - reversals[liquefied[0]] >= until["reversals_after_liquefaction"]:
-        return f"{until['reversals_after_liquefaction']} reversals after liquefaction"
-    if last >= 2 * until["cycles"]:
-        return f"{until['cycles']} cycles"
-    strain, name = strain_of(stage, run, rows)
-    return f"{name} of {100 * until['strain']:g} %" if strain >= REACHED * until["strain"] else None
-
-
-def path_end(stage, run, rows):
-    """By which of its conditions a path ended, as far as columns tell; it has no other end but its limit of steps."""
-    if stage["drive"] == "none":
-        return "its path and balance"
-    until = stage.get("until", {})
-    return f"the first of {', '.join(until)}" if until else None
-
-
-def shear_end(stage, run, rows):
-    """What a stage that shears reached, or None if that was not its target."""
-    if stage["kind"] == "path":
-        return None if limit_reached(stage, run, rows) else path_end(stage, run, rows)
-    if "until" in stage:
-        return cyclic_end(stage, run, rows)
-    strain, name = strain_of(stage, run, rows)
-    return f"{name} of {100 * stage['strain']:g} %" if strain >= REACHED * stage["strain"] else None
-
-
-def limit_reached(stage, run, rows):
-    return stage.get("max_steps", 0) > 0 and steps_of(run, rows) + 1 >= stage["max_steps"]
-
-
-def early_endings(results):
-    """A line for each stage that its limit of steps ended, or that had nothing to do, as the summary tells them."""
-    for end in results.numbers.get("ended_early", []):
-        name, _, text = end["text"].partition(": ")
-        yield f"{name[0].upper()}{name[1:]}:", f"{text}.", "attention"
-
-
-def endings(results, run):
-    """A line for each stage that shears, and for each other one that its limit of steps ended."""
-    told = {(end["stage"], end["times"]) for end in results.numbers.get("ended_early", [])}
-    for number, stage in enumerate(results.scene.get("stage", [])):
-        rows, times = stage_rows(run, number) or (None, 0)
-        if rows is None or (number, times) in told:
-            continue
-        name, limited = f"Stage {number}, {stage['kind']}:", limit_reached(stage, run, rows)
-        if times > 1:
-            name = f"Stage {number}, {stage['kind']}, the last of {times} times:"
-        if stage["kind"] in SERVO:
-            if limited:
-                yield name, f"ended by its limit of {stage['max_steps']} time steps, not by its balance.", "attention"
-            continue
-        target = shear_end(stage, run, rows)
-        if target:
-            yield name, f"ended at its target, {target}.", "good"
-        elif limited:
-            strain, what = strain_of(stage, run, rows)
-            yield name, (f"ended by its limit of {stage['max_steps']} time steps at {what} = {100 * strain:.4g} %, "
-                         "before its target."), "attention"
+def endings(results):
+    """A line for each stage that shears, and for each other that its limit of steps ended, as the summary says it."""
+    stages = results.scene.get("stage", [])
+    for end in results.numbers.get("ended", []):
+        if end["early"] or stages[end["stage"]]["kind"] not in NOT_SHEARED:
+            name, _, text = end["text"].partition(": ")
+            yield f"{name[0].upper()}{name[1:]}:", f"{text}.", "attention" if end["early"] else "good"
 
 
 def liquefaction(results, run):
@@ -183,7 +104,5 @@ def tolerances(results):
 
 def lines(results, run):
     """(name, sentence, kind) of each verdict.   @param run  figures.common.Run, or None"""
-    found = []
-    if run is not None:
-        found += [*endings(results, run), *early_endings(results), *liquefaction(results, run)]
-    return [*found, *rate(results), *tolerances(results)]
+    liquefied = liquefaction(results, run) if run is not None else ()
+    return [*endings(results), *liquefied, *rate(results), *tolerances(results)]

@@ -28,7 +28,8 @@ def summary_parts(results, said):
     as those of campaigns and of older runs, its text as it is; without a text the numbers."""
     numbers = results.numbers or {}
     if "rows" in numbers:
-        return [html.properties(row for row in numbers["rows"] if len(row[1]) < SENTENCE or row[1] not in said)]
+        said = said.lower()
+        return [html.properties(row for row in numbers["rows"] if len(row[1]) < SENTENCE or row[1].lower() not in said)]
     if results.summary.strip():
         return [html.text_block(results.summary, "summary")]
     return [html.properties((named(results.program, key), shown(converted(results.program, key, value)))
@@ -89,7 +90,7 @@ class Page:
         missing = html.paragraph(f"No figures: {reason}") if reason else ""
         sections = [
             html.section("How it went", f'<ul class="verdicts">\n{items}\n</ul>' if items else "", name="verdicts"),
-            html.section("Summary", *summary_parts(r, " ".join(v.text for v in found)), name="summary"),
+            html.section("Summary", *summary_parts(r, " ".join(f"{v.name} {v.text}" for v in found)), name="summary"),
             html.section("Figures", html.figures(self.figures), missing, name="figures"),
             html.section("Going on, and repeating it", *resume_parts(r), name="resume"),
             html.section("Scene", html.text_block(r.scene_text, "scene") if r.scene_text else "", name="scene"),

@@ -181,8 +181,9 @@ def draw_resistance(rows, ratios, path):
             axes[0, 0].plot([row["cycles"] for row in of], [row["CSR"] for row in of], marker, color=COLOURS[law],
                             markersize=4, markerfacecolor="none", label=f"{LABELS[law]}, {pressure} kPa")
         found = [mean(ratios, "K_sigma", law=law, **{"p0' (kPa)": p}) for p in PRESSURES]
-        axes[0, 1].errorbar(PRESSURES, [m for m, _, _ in found], [s for _, s, _ in found], color=COLOURS[law],
-                            marker="o", markersize=4, linewidth=1, capsize=2, label=LABELS[law])
+        means, errors, _ = np.transpose(found)
+        axes[0, 1].errorbar(PRESSURES, means, np.nan_to_num(errors), color=COLOURS[law], marker="o", markersize=4,
+                            linewidth=1, capsize=2, label=LABELS[law])
     plain_logarithm(axes[0, 0].xaxis)
     axes[0, 0].set(xlabel="Cycles to liquefaction", ylabel=r"$\tau_{amp}/\sigma_{v0}^\prime$", ylim=(0.13, 0.32))
     axes[0, 0].legend(fontsize=6, ncols=2, loc="upper right")

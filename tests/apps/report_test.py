@@ -122,7 +122,7 @@ class Reports(ReportTest):
 
     def test_target(self):
         words = self.assert_whole("whole")
-        self.assertIn("Stage 0, undrained-monotonic: ended at its target, axial strain of 0.1 %.", words)
+        self.assertIn("Stage 0 (undrained-monotonic): ended by strain = 0.1 % (0.1 % reached).", words)
         self.assertIn("Rate: controlled, I = 4e-05 at p0', or less: the load changes by 10 % of p0' at most", words)
         self.assertRegex(words, r"largest quasi-static indicator before liquefaction is [0-9.]+; above 0\.2 a test")
         self.assertIn('<li class="good"><strong>Rate:', self.report("whole"))
@@ -166,7 +166,7 @@ class Reports(ReportTest):
         self.assert_done(self.run_app("isostat", "report", "out"))
         text = (self.folder / "out/report.html").read_text(encoding="utf-8")
         self.assertIn("Not finished:", text)
-        self.assertNotIn("ended at its target", text)
+        self.assertNotIn("ended by", text)
         (self.folder / "out/history.csv").unlink()
         self.assertEqual(self.run_app("isostat", "report", "out").returncode, 2)
         text = (self.folder / "out/report.html").read_text(encoding="utf-8")

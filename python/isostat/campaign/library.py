@@ -193,7 +193,7 @@ def list_library(options: argparse.Namespace) -> None:
     print_library(path)
 
 
-def main(words: list[str]) -> int:
+def parse(words: list[str]) -> argparse.Namespace:
     line = command.line_of("library", "A library of periodic specimens: realisations at several pressures and "
                            "densities in one file")
     command.add_scene(line, "scene file (TOML) in a periodic cell; its stages are not run", nargs="?")
@@ -210,7 +210,11 @@ def main(words: list[str]) -> int:
     use = line.add_mutually_exclusive_group()
     use.add_argument("--append", action="store_true", help="add what a library that is there lacks")
     use.add_argument("--overwrite", action="store_true", help="replace a library that is there")
-    options = line.parse_args(words)
+    return line.parse_args(words)
+
+
+def main(words: list[str]) -> int:
+    options = parse(words)
     if options.list:
         return command.run(lambda: list_library(options))
     return command.run_campaign(options, lambda executor: make_library(options, executor))

@@ -11,12 +11,12 @@ from isostat import _core
 from isostat.campaign.resistance.outcome import Kind, Outcome
 from isostat.campaign.runs import Run
 from isostat.campaign.scenes import below_campaign, in_si
+from isostat.figures.files import NOT_SHEARED
 from isostat.scene import Scene
 
 ENOUGH = 0.04  # of gamma, beyond which nothing is left to be seen
 KINDS = {"undrained-cyclic": Kind("triaxial", "q_amp / (2 p0')", "eps_y", 1.5),
          "undrained-cyclic-simple-shear": Kind("simple shear", "tau_amp / sigma'_v0", "gamma_xy", 1)}
-AT_REST = ("compress", "k0-compress", "rebalance", "hold", "friction", "repeat")  # stages that do not shear
 
 
 def parse_ratios(text: str) -> list[float]:
@@ -65,7 +65,7 @@ class Campaign:
         self.shared = shared
 
     def _cyclic(self) -> Kind:
-        n_shear = sum(stage["kind"] not in AT_REST and not stage.get("consolidation") for stage in self.stages)
+        n_shear = sum(stage["kind"] not in NOT_SHEARED and not stage.get("consolidation") for stage in self.stages)
         if not any(stage["kind"] in KINDS for stage in self.stages):
             raise _core.InputError(f"{self.title}: no cyclic stage, so there is no CSR to vary. Give a scene with kind = "
                                    "\"undrained-cyclic-simple-shear\" or \"undrained-cyclic\", e.g. "
