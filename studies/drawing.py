@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the figures of the campaign share: tables as columns, one style, panels, bands."""
-import csv
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
+
+from studies.tables import read_csv
 
 BLUE, ORANGE, GREEN, RED, GREY = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#777777"
 STYLE = {"savefig.dpi": 200, "font.size": 8.5, "axes.grid": True, "grid.color": "#e8e8e8", "legend.frameon": False,
@@ -16,12 +16,11 @@ class Table:
     """Columns by name; numbers where they are numbers."""
 
     def __init__(self, path):
-        with open(path, newline="", encoding="utf-8") as file:
-            self.rows = list(csv.DictReader(file))
+        self.rows = read_csv(path)
 
     def where(self, **conditions):
         """Rows whose columns have these values."""
-        return self.of([row for row in self.rows if all(row[name] == str(value) for name, value in conditions.items())])
+        return self.of([row for row in self.rows if all(str(row[name]) == str(v) for name, v in conditions.items())])
 
     @classmethod
     def of(cls, rows):
@@ -33,7 +32,7 @@ class Table:
         return list(dict.fromkeys(row[name] for row in self.rows))
 
     def __getitem__(self, name):
-        return np.array([float(row[name] or "nan") for row in self.rows])
+        return np.array([float(row[name]) for row in self.rows])
 
     def __bool__(self):
         return bool(self.rows)

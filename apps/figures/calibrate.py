@@ -8,7 +8,7 @@ import csv
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, number, plain, plain_log_ticks, plt
+from .common import BLACK, BLUE, GREY, ORANGE, RED, BadInput, legend_below, number, plain, plain_log_ticks, plt
 from .drawing import Drawing, draws
 from .files import read_parsed
 
@@ -57,7 +57,7 @@ class Calibration:
 
 def draw_band(axes, x, values):
     axes.fill_between(x, values["best"] - values["best s.d."], values["best"] + values["best s.d."], color=BLUE,
-                      alpha=0.2, linewidth=0)
+                      alpha=0.2, linewidth=0, label="best, s.d. over seeds")
 
 
 def draw_curve(upper, lower, curve):
@@ -100,7 +100,7 @@ def curves(results):
         if k % columns == 0:
             upper.set_ylabel(r"$q$ (kPa)")
             lower.set_ylabel(r"$\varepsilon_v$ (%)" if results.curves[k].drained else r"$q$ (kPa)")
-    panels[0][0].legend(loc="best")
+    legend_below(figure, panels[0][0], 0.07 / blocks)
     return figure
 
 
@@ -165,7 +165,8 @@ def tradeoffs(results):
                 axes.set_ylim(*scale_of(axes.set_yscale, results.parameters[i]))
             axes.set_ylabel("Misfit (-)" if i == j else short(labels[i]) if j == 0 else "", fontsize=8)
             axes.set_xlabel(short(labels[j]) if i == n - 1 else "", fontsize=8)
-    figure.colorbar(colours, ax=panels[:, -1], label="Misfit (-)", extend="max", shrink=min(0.8, 2 / n), aspect=25)
+    figure.colorbar(colours, ax=panels[:, -1], label="Misfit (-); star: best", extend="max", shrink=min(0.8, 2 / n),
+                    aspect=25)
     return figure
 
 

@@ -10,7 +10,7 @@ import csv
 
 import numpy as np
 
-from .common import BLACK, BLUE, GREY, ORANGE, BadInput, letters, plt, read_history
+from .common import BLACK, BLUE, GREY, ORANGE, BadInput, legend_below, letters, plt, read_history
 from .drawing import Drawing, draws
 from .files import read_parsed
 
@@ -89,8 +89,9 @@ def draw(axes, ensemble, kind, name, upright=False, alone=False):
     """Band, median and members; `upright`: the abscissa is the depth, downwards; `alone`: members without the rest."""
     x, band = ensemble.curve(kind, name)
     has_band = np.isfinite(band["p16"]).any()
-    for x_member, y in ensemble.each(kind, name):
-        axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6)
+    for k, (x_member, y) in enumerate(ensemble.each(kind, name)):
+        axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6,
+                  label=None if k or alone else "member")
     if alone:
         return
     if has_band:
@@ -111,10 +112,10 @@ def over_depth(ensemble, panels):
     for axes, (kind, name) in zip(rows[0], panels):
         draw(axes, ensemble, kind, name, upright=True)
         axes.set(xlabel=LABELS[name], xlim=(0, None))
-        if name == "max_ru":
-            axes.axvline(ensemble.numbers["liquefied_ru"], color=ORANGE, linewidth=0.8, linestyle="--")
-        if name.endswith("I_R"):
-            axes.axvline(1, color=ORANGE, linewidth=0.8, linestyle="--")
+        level = {"max_ru": ensemble.numbers["liquefied_ru"], "min_I_R": 1, "final_I_R": 1}.get(name)
+        if level:
+            axes.axvline(level, color=ORANGE, linewidth=0.8, linestyle="--")
+            axes.set_title(f"dashed: {level:g}", loc="right", fontsize=8.5, pad=5)
     rows[0][0].set(ylabel="Depth (m)", ylim=(0, None))
     rows[0][0].invert_yaxis()
     rows[0][-1].legend(loc="best")
@@ -193,15 +194,17 @@ def numbers(ensemble):
     for axes, (name, label, factor) in zip(row[0], shown):
         values, table = factor * ensemble.members[name], ensemble.numbers["numbers"][name]
         if table["p16"] is not None:
-            axes.axhspan(factor * table["p16"], factor * table["p84"], color=BLUE, alpha=0.25, linewidth=0)
-        axes.plot(np.zeros(len(values)), values, "o", color=GREY, markersize=4, markerfacecolor="none")
+            axes.axhspan(factor * table["p16"], factor * table["p84"], color=BLUE, alpha=0.25, linewidth=0,
+                         label="16 to 84 %")
+        axes.plot(np.zeros(len(values)), values, "o", color=GREY, markersize=4, markerfacecolor="none", label="member")
         axes.errorbar([0.25], [factor * table["mean"]], yerr=[factor * (table["standard_error"] or 0)], fmt="s",
-                      color=BLACK, markersize=4, capsize=3)
+                      color=BLACK, markersize=4, capsize=3, label="mean, standard error")
         axes.set_xlim(-0.3, 0.5)
         axes.set_xticks([])
         axes.set_title(label, fontsize=8.5)
         if values.min() >= 0:
             axes.set_ylim(0, 1.08 * max(axes.get_ylim()[1], values.max()))
+    legend_below(figure, row[0][0], 0.09)
     return figure
 
 

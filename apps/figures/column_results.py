@@ -37,27 +37,28 @@ def of_layer(table):
             "saturation": float(table.get("saturation", 1))}
 
 
+def table_if_there(path, otherwise):
+    """Columns by name, none if there is no such table; of one that cannot be read a note says what comes of it."""
+    try:
+        return read_history(path) if path.exists() else {}
+    except BadInput as error:
+        note(f"{error}; {otherwise}")
+        return {}
+
+
 class Grains:
     """What the packings of a column left: `points` of its grain_history with their prefix, `profiles` by name."""
 
     def __init__(self, folder):
-        self.columns = self._read(folder / "grain_history/history.csv")
+        self.columns = table_if_there(folder / "grain_history/history.csv", "its figures are left out")
         self.points = [(float(self.columns[f"{prefix}_depth"][0]), prefix) for prefix in self._prefixes(self.columns)]
-        rows = self._read(folder / "grain_profiles/history.csv")
+        rows = table_if_there(folder / "grain_profiles/history.csv", "its figures are left out")
         prefixes = self._prefixes(rows)
         self.profiles = {"time": rows["time"]} if prefixes else {}
         if prefixes:
             self.profiles["depth"] = np.array([rows[f"{prefix}_depth"][0] for prefix in prefixes])
             for name in [cell[3:] for cell in rows if cell.startswith("p0_") and cell != "p0_depth"]:
                 self.profiles[name] = np.array([rows[f"{prefix}_{name}"] for prefix in prefixes]).T  # [time x depth]
-
-    @staticmethod
-    def _read(path):
-        try:
-            return read_history(path) if path.exists() else {}
-        except BadInput as error:
-            note(f"{error}; its figures are left out")
-            return {}
 
     @staticmethod
     def _prefixes(columns):
@@ -79,8 +80,7 @@ class Column:
         self.scene = self._read(folder / "scene.toml", tomllib.loads)
         self.profiles = self._read_profiles(folder / "profiles.h5")
         self.maps = self._read_profiles(folder / "maps.h5")  # of a box
-        path = folder / "plate/history.csv"
-        self.plate = read_history(path) if path.exists() else {}  # of an analysis of a plate
+        self.plate = table_if_there(folder / "plate/history.csv", "its figure is left out")
         self.grains = Grains(folder)
         self._read_scene()
         summary = self._read(folder / "summary.json")
@@ -93,7 +93,7 @@ class Column:
         prefixes = sorted({match[1] for match in map(re.compile(r"(d\d+)_").match, self.columns) if match},
                           key=lambda prefix: int(prefix[1:]))
         self.points = [(self._depth(prefix, k, summary), prefix) for k, prefix in enumerate(prefixes)]
-        self.spectra = self._read_spectra(folder / "spectra.csv")
+        self.spectra = table_if_there(folder / "spectra.csv", "response spectra are those of the rows of the history")
 
     @property
     def shaken(self):
@@ -106,14 +106,6 @@ class Column:
             return float(self[f"{prefix}_depth"][0])
         depths = summary.get("depths") or []
         return depths[k] if k < len(depths) else None
-
-    @staticmethod
-    def _read_spectra(path):
-        try:
-            return read_history(path) if path.exists() else {}
-        except BadInput as error:
-            note(f"{error}; response spectra are those of the rows of the history")
-            return {}
 
     @staticmethod
     def _read(path, *parse):

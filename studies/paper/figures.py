@@ -277,7 +277,7 @@ def critical_states(table, folder):
         if rows:
             line.plot(rows["p' (kPa)"] / 1e3, rows["e"], marker, color=colour, markersize=4,
                       mfc="none" if walls else colour, label=label)
-    table = Table.of([row for row in table.rows if row.get("Gamma")]) if "Gamma" in table.rows[0] else None
+    table = Table.of([row for row in table.rows if np.isfinite(row["Gamma"])]) if "Gamma" in table.rows[0] else None
     if table:
         p = np.quantile(table["p' (kPa)"], (0, 1))
         line.plot(p / 1e3, table["Gamma"][0] - table["lambda"][0] * np.log(p), color="black", linewidth=0.9,

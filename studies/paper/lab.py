@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Laboratory tests on Karlsruhe fine sand (apps/laboratory)."""
-import csv
 import dataclasses
 
 import numpy as np
 
 from isostat.results import read_table
 from studies import APPS
+from studies.tables import read_csv
 
 FOLDER = APPS / "laboratory"
 
@@ -31,27 +31,18 @@ class Drained:
                                             ("strain", "volume_strain", "axial", "radial")})
 
 
-def rows_of(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def drained_tests():
-    programme = {row["test_id"]: row for row in rows_of(FOLDER / "drained/programme.csv")}
+    programme = {row["test_id"]: row for row in read_csv(FOLDER / "drained/programme.csv")}
     return [drained_test(path, programme[path.stem]) for path in sorted((FOLDER / "drained").glob("TMD*.csv"))]
 
 
 def drained_test(path, entry):
     columns = read_table(path)
-    return Drained(path.stem, float(entry["e_0[-]"]), float(entry["Dr_0[%]"]) / 100,
-                   100 * round(float(entry["sigma_r0[kPa]"]) / 100), columns["eps_a[%]"] / 100,
-                   columns["eps_v[%]"] / 100, 1e3 * columns["sigma_v[kPa]"], 1e3 * columns["sigma_r[kPa]"])
+    return Drained(path.stem, entry["e_0[-]"], entry["Dr_0[%]"] / 100, 100 * round(entry["sigma_r0[kPa]"] / 100),
+                   columns["eps_a[%]"] / 100, columns["eps_v[%]"] / 100, 1e3 * columns["sigma_v[kPa]"],
+                   1e3 * columns["sigma_r[kPa]"])
 
 
 def undrained_anchors():
     """Single states of undrained tests; a number that was not read is nan."""
-    anchors = rows_of(FOLDER / "undrained_anchors.csv")
-    for row in anchors:
-        for name in ("eps_1 (%)", "p' (kPa)", "q (kPa)"):
-            row[name] = float(row[name] or "nan")
-    return anchors
+    return read_csv(FOLDER / "undrained_anchors.csv")
