@@ -83,7 +83,8 @@ def read_curves(pair):
         try:
             read.append(curves.drawing.results(results.path))
         except BadInput as error:
-            raise NoResults(f"{results.path}: {error}. Give the folder as the run has left it.") from error
+            where = "" if str(error).startswith(str(results.path)) else f"{results.path}: "
+            raise NoResults(f"{where}{error}. Give the folder as the run has left it.") from error
     kinds = [curves.kind(item) for item in read]
     if kinds[0] != kinds[1]:
         raise NoResults(f"{pair[0].path} is {kinds[0]}, {pair[1].path} {kinds[1]}: their curves are of different "

@@ -234,8 +234,9 @@ def read_plan(path: str) -> SimpleNamespace:
         places = [os.path.join(os.path.dirname(path), name), name, *more]
         for place in filter(os.path.isfile, places):
             return os.path.normpath(place)
-        tried = " nor ".join(map(os.path.abspath, places))
-        raise document.refuse(key, f"is not there: neither {tried}. A relative path counts from the folder of the plan "
+        tried = list(dict.fromkeys(map(os.path.abspath, places)))  # the folder of the plan may be the working one
+        missing = f"neither {' nor '.join(tried)}" if len(tried) > 1 else f"no {tried[0]}"
+        raise document.refuse(key, f"is not there: {missing}. A relative path counts from the folder of the plan "
                               "or else from the working directory; correct it.", name)
 
     plan.scene_path = found("scene", plan.scene, str(command.SCENES / "scenes" / plan.scene))
