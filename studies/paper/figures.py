@@ -287,7 +287,7 @@ def critical_states(table, folder):
     legend_below(figure, line, 0.12, 3)
     if (folder / "reconsolidation.csv").exists():
         rows = Table(folder / "reconsolidation.csv")
-        labels = sorted(rows.values("specimen"), key=lambda label: float(label.split()[0]))
+        labels = sorted(rows.values("specimen"), key=lambda label: rows.where(specimen=label)["e"].mean())
         for label, colour in zip(labels, (RED, BLUE, ORANGE, GREEN, GREY)):
             part = rows.where(specimen=label)
             drained_strain.plot(part["largest gamma (%)"], part["eps_v (%)"], "o", color=colour, markersize=4,
