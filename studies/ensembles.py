@@ -16,6 +16,17 @@ def ensemble(values):
     return float(values.mean()), float(deviation), float(deviation / np.sqrt(n)), n
 
 
+def mean_and_error(values):
+    """Mean and its standard error; the error of one value is not known."""
+    mean, _, error, _ = ensemble(values)
+    return mean, error
+
+
+def text_of(mean, error, digits):
+    """"184 ± 3"."""
+    return f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else "")
+
+
 def mean_and_interval(values):
     """Mean, and half the width of its 95 % interval."""
     mean, _, error, n = ensemble(values)

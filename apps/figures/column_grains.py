@@ -80,7 +80,7 @@ def grains_map(column):
     if "IR" not in grains or len(grains["time"]) < 2:
         return None
     depth, time, ir = grains["depth"], grains["time"], grains["IR"].T
-    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    bottom = column.bottom(depth)
     figure, ((top, corner), (axes, side)) = plt.subplots(
         2, 2, figsize=(8.6, 4.9), sharex="col", height_ratios=(1, 2.6), width_ratios=(3.2, 1), layout="constrained")
     draw_input(column, top)

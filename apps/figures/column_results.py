@@ -176,6 +176,10 @@ class Column:
         values = self.profiles.get(name)
         return values if values is not None and np.isfinite(values).any() else None
 
+    def bottom(self, depth):
+        """Of the layers, m; of a scene that cannot be read the largest depth."""
+        return sum(layer["height"] for layer in self.layers) or float(depth.max())
+
     def boundaries(self):
         """Depths between layers, m."""
         return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])

@@ -18,7 +18,7 @@ MIN_SHARE = 0.1  # of the largest shear stress: a direction with less is not dra
 
 def depth_axis(column, axes, depth):
     """Depth downwards, with the layers' boundaries."""
-    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    bottom = column.bottom(depth)
     axes.set_ylim(bottom, 0)
     for boundary in column.boundaries():
         axes.axhline(boundary, color=GREY, linewidth=0.7, linestyle=(0, (1, 1.5)), zorder=1.4)
@@ -162,7 +162,7 @@ def map_over_time(column, axes, values, **style):
     @return  the coloured cells, their borders in time and depth, values in the order of the cells"""
     depth, time = column.profiles["depth"], column.profiles["time"]
     order = np.argsort(depth)
-    bottom = sum(layer["height"] for layer in column.layers) or float(depth.max())
+    bottom = column.bottom(depth)
     x, y = edges(time, time[0], time[-1]), edges(depth[order], 0, bottom)
     cells = values[:, order].T
     shade = axes.pcolormesh(x, y, cells, rasterized=True, **style)

@@ -15,7 +15,7 @@ from isostat.column import ColumnScene
 from isostat.results import read_table
 from studies.columns import SCENES, library
 from studies.drawing import save
-from studies.ensembles import ensemble
+from studies.ensembles import ensemble, text_of
 from studies.history import parsed
 from studies.tables import write_tables
 
@@ -182,8 +182,7 @@ def columns_table(samples):
         for name, _, _, factor, digits in QUANTITIES:
             values = [factor * r.numbers[name] for r in results]
             mean, _, error, n = ensemble(values)  # n: those that liquefied, say
-            cells.append(f"{mean:.{digits}f}" + (f" ± {error:.{digits}f}" if np.isfinite(error) else "") +
-                         (f" ({n} of {len(values)})" if n < len(values) else ""))
+            cells.append(text_of(mean, error, digits) + (f" ({n} of {len(values)})" if n < len(values) else ""))
         rows.append([label(results[0].run), len(results), *cells])
     return ["column", "n", *heads], rows
 

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from studies.drawing import plain_logarithm, save
-from studies.ensembles import ensemble
+from studies.ensembles import mean_and_error, text_of
 from studies.history import parsed
 from studies.speed_error.figures import front, spread_labels
 from studies.tables import write_tables
@@ -105,15 +105,10 @@ def quantities(folder):
             "ru": data["ru"][-1].mean()}
 
 
-def mean_and_error(values):
-    mean, _, error, _ = ensemble(values)
-    return mean, error
-
-
 def percent(value, error=np.nan):
     if not np.isfinite(value):
         return "–"
-    return f"{100 * value:.1f}" + (f" ± {100 * error:.1f}" if np.isfinite(error) else "")
+    return text_of(100 * value, 100 * error, 1)
 
 
 class Runs:

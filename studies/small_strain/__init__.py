@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from studies.drawing import save
-from studies.ensembles import ensemble
+from studies.ensembles import mean_and_error, text_of
 from studies.small_strain import measure, published
 from studies.tables import markdown
 
@@ -104,18 +104,9 @@ def read(store, planned, kind):
     return [{**result["call"]["arguments"]["run"], **result} for result in results]
 
 
-def mean(values):
-    """Mean and its standard error; the error of one value is not known."""
-    middle, _, error, _ = ensemble(values)
-    return middle, error
-
-
 def text(values, digits, factor=1.0):
     """"184 ± 3"."""
-    if len(values) == 0:
-        return "not run"
-    middle, error = mean(np.asarray(values) * factor)
-    return f"{middle:.{digits}f}" + ("" if np.isnan(error) else f" ± {error:.{digits}f}")
+    return text_of(*mean_and_error(np.asarray(values) * factor), digits) if len(values) else "not run"
 
 
 # ---- stiffness against pressure
@@ -188,8 +179,8 @@ def draw_velocity(results, path):
     figure, axis = plt.subplots(figsize=(4.4, 4.4), layout="constrained")
     for law in LAWS:
         depth, speeds, target = (np.array(x) for x in zip(*velocity_rows(results, law), strict=True))
-        axis.errorbar(speeds.mean(axis=1), depth, xerr=[mean(values)[1] for values in speeds], fmt="o-", ms=3.5,
-                      color=COLOURS[law], label=f"{law}, {GROUND[law]['young']}")
+        axis.errorbar(speeds.mean(axis=1), depth, xerr=[mean_and_error(values)[1] for values in speeds],
+                      fmt="o-", ms=3.5, color=COLOURS[law], label=f"{law}, {GROUND[law]['young']}")
     axis.plot(target.mean(axis=1), depth, "--", color="black", lw=1, label="resonant column")
     axis.fill_betweenx(depth, 0.85 * target.mean(axis=1), 1.15 * target.mean(axis=1), color="0.85", label="within 15 %")
     axis.set(xlabel="velocity of shear waves (m/s)", ylabel="depth (m)", xlim=(0, None), ylim=(21, 0))
@@ -242,8 +233,9 @@ def curve(results, law, pressure, drained):
     for amplitude in AMPLITUDES:
         if runs := chosen(results, law, pressure, drained, amplitude):
             reduction = [r["secant"] / r["shear_modulus"] for r in runs]
-            damping = mean([100 * r["damping_ratio"] for r in runs]) if min(reduction) > LOST else (np.nan, np.nan)
-            points.append((amplitude, *mean(reduction), *damping))
+            damping = mean_and_error([100 * r["damping_ratio"] for r in runs])
+            points.append((amplitude, *mean_and_error(reduction),
+                           *(damping if min(reduction) > LOST else (np.nan, np.nan))))
     return np.array(points).T
 
 

@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from studies.ensembles import ensemble, mean_and_interval
+from studies.ensembles import mean_and_error, mean_and_interval
 from studies.history import History
 from studies.speed_error import plan
 
@@ -96,7 +96,7 @@ class Results:
             tests = self.cyclic[key].values()
             if found and key[2] != plan.FINEST:
                 rows.append([key[0], key[1], key[2].label, len(found), np.median(found),
-                             *self.mean_and_error(found), np.max(found), np.nanmean([t.path_steps for t in tests]),
+                             *mean_and_error(found), np.max(found), np.nanmean([t.path_steps for t in tests]),
                              np.nanmean([t.path_steps * t.milliseconds / 1e3 for t in tests])])
         return ["specimens", "grains", "setting", "seeds", "median distance to the finest path (% of p0')", "mean",
                 "standard error", "largest", "steps to reversal 10", "CPU time to there (s)"], rows
@@ -108,20 +108,15 @@ class Results:
             if not tests:
                 continue
             difference = [a.cycles - b.cycles for a, b in self.pairs(key, plan.STATIC).values()]
-            rows.append([key[0], key[1], key[2].label, len(tests), *self.mean_and_error([t.cycles for t in tests]),
+            rows.append([key[0], key[1], key[2].label, len(tests), *mean_and_error([t.cycles for t in tests]),
                          *mean_and_interval(difference), np.mean([t.steps for t in tests]),
                          np.max([t.steps for t in tests]), np.mean([t.steps * t.milliseconds / 1e3 for t in tests]),
-                         *self.mean_and_error([t.before[0] for t in tests]),
-                         *self.mean_and_error([t.before[1] for t in tests]), np.mean([t.after[1] for t in tests])])
+                         *mean_and_error([t.before[0] for t in tests]),
+                         *mean_and_error([t.before[1] for t in tests]), np.mean([t.after[1] for t in tests])])
         return ["specimens", "grains", "setting", "seeds", "cycles to liquefaction", "standard error",
                 "less those of the static default", "half 95 % interval", "steps to the onset", "most steps",
                 "CPU time to there (s)", "p'/p0' before the onset", "standard error", "I_R before the onset",
                 "standard error", "I_R at the onset"], rows
-
-    @staticmethod
-    def mean_and_error(values):
-        mean, _, error, _ = ensemble(values)
-        return mean, error
 
     def monotonic_table(self):
         rows = []
@@ -131,8 +126,8 @@ class Results:
                 found = [100 * one_way_distance(history, finest[seed][0], strain)
                          for seed, (history, _) in tests.items() if seed in finest]
                 rows.append([setting.label, f"{100 * strain:g}", len(found), np.median(found),
-                             *self.mean_and_error(found),
-                             *self.mean_and_error([np.interp(strain, h.eps_y, h.p) / h.p0 for h, _ in tests.values()]),
+                             *mean_and_error(found),
+                             *mean_and_error([np.interp(strain, h.eps_y, h.p) / h.p0 for h, _ in tests.values()]),
                              np.mean([h.step[-1] - h.step[0] for h, _ in tests.values()]),
                              np.mean([cpu for _, cpu in tests.values()])])
         return ["setting", "axial strain (%)", "seeds", "median distance to the tight static path (% of p0')", "mean",

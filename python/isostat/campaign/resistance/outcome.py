@@ -68,12 +68,10 @@ def first_cycle(reversals, met) -> float | None:
 def swings(reversals, gamma):
     """Range of gamma within the half cycle of each row, so far; the row of a reversal belongs to both half cycles."""
     found = np.zeros(len(gamma))
-    start = 0
-    for k in range(len(gamma)):
-        part = gamma[start:k + 1]
-        found[k] = part.max() - part.min()
-        if k > 0 and reversals[k] != reversals[k - 1]:
-            start = k
+    turns = [0, *np.flatnonzero(np.diff(reversals)) + 1, len(gamma)]
+    for start, end in zip(turns, turns[1:]):
+        part = gamma[start:end + 1]
+        found[start + 1:end + 1] = (np.maximum.accumulate(part) - np.minimum.accumulate(part))[1:]
     return found
 
 
