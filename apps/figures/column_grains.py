@@ -3,10 +3,9 @@
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
 
-from .column_soil import (MIN_RU, LIQUEFIED_RU, SHARES, TIMES, depth_axis, draw_input, edges, outline,
-                               pore_pressure_ratio, time_bar, time_norm, times_of_motion)
+from .column_soil import (LIQUEFIED_RU, MIN_RU, depth_axis, draw_input, edges, outline, pore_pressure_ratio,
+                          profiles_in_time)
 from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, letters, plt
 from .drawing import draws
 
@@ -31,28 +30,13 @@ def grains_profiles(column):
     grains = column.grains.profiles
     if "IR" not in grains:
         return None
-    depth, time = grains["depth"], grains["time"]
     specs = [(grains["IR"], label_of(grains), ISOSTATIC), (grains["Z"], "Coordination number $Z$", None),
              (np.where(grains["Z"] >= MIN_Z, grains["F_yx"], np.nan),
               rf"Fabric $F_{{[v-h]}}$, where $Z \geq {MIN_Z}$", 0.0)]
-    figure, panels = plt.subplots(1, 3, figsize=(9.0, 4.3), sharey=True, layout="constrained")
-    norm = time_norm(column)
-    targets = [time[0], *times_of_motion(column, SHARES), time[-1]]
-    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
-    time_bar(figure, panels, norm, time[-1])
-    letters(panels)
-    for axes, (values, label, level) in zip(panels, specs):
-        for row in chosen:
-            axes.plot(values[row], depth, ".-", color=TIMES(norm(time[row])), linewidth=0.9, markersize=3.5)
-        if level is not None:
-            axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-        axes.set_xlabel(label)
-        axes.xaxis.set_major_locator(MaxNLocator(5))
-        depth_axis(column, axes, depth)
+    panels = profiles_in_time(column, specs, grains, grains["time"][:1], 9.0, marker=".", linewidth=0.9, markersize=3.5)
     for axes in panels[:2]:
         axes.set_xlim(left=0)
-    panels[0].set_ylabel("Depth (m)")
-    return figure
+    return panels[0].figure
 
 
 # --- map -------------------------------------------------------------------------------------------------------------

@@ -80,6 +80,28 @@ def pore_pressure_ratio(column):
     return ru if ru is not None and np.nanmax(np.abs(ru)) > MIN_RU else None
 
 
+def profiles_in_time(column, specs, table, more, width, **line):
+    """A panel for each (values [time x depth], label, level of a line or None), with a curve at each of several times:
+    those of the motion, the last, and `more`.   @param table  with time and depth"""
+    depth, time = table["depth"], table["time"]
+    figure, panels = plt.subplots(1, len(specs), figsize=(width, 4.3), sharey=True, squeeze=False, layout="constrained")
+    norm = time_norm(column)
+    targets = [*more, *times_of_motion(column, SHARES), time[-1]]
+    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
+    time_bar(figure, panels[0], norm, time[-1])
+    letters(panels)
+    for axes, (values, label, level) in zip(panels[0], specs):
+        for row in chosen:
+            axes.plot(values[row], depth, color=TIMES(norm(time[row])), **line)
+        if level is not None:
+            axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+        axes.set_xlabel(label)
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+        depth_axis(column, axes, depth)
+    panels[0, 0].set_ylabel("Depth (m)")
+    return panels[0]
+
+
 @draws("fig_profiles")
 def profiles(column):
     """Largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the depth at several
@@ -99,25 +121,10 @@ def profiles(column):
             specs.append((ratio, r"Largest $|\tau|/\sigma_{v0}^\prime$ so far", None))
     if not specs:
         return None
-    depth, time = column.profiles["depth"], column.profiles["time"]
-    figure, panels = plt.subplots(1, len(specs), figsize=(2.6 * len(specs) + 1.2, 4.3), sharey=True, squeeze=False,
-                                  layout="constrained")
-    panels = panels[0]
-    norm = time_norm(column)
-    targets = [*times_of_motion(column, SHARES), time[-1]]
-    chosen = np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
-    time_bar(figure, panels, norm, time[-1])
-    letters(panels)
-    for axes, (values, label, level) in zip(panels, specs):
-        for row in chosen:
-            axes.plot(values[row], depth, color=TIMES(norm(time[row])), linewidth=1.2)
-        if level is not None:
-            axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
-        axes.set(xlim=(min(0.0, float(np.nanmin(values))), None), xlabel=label)
-        axes.xaxis.set_major_locator(MaxNLocator(5))
-        depth_axis(column, axes, depth)
-    panels[0].set_ylabel("Depth (m)")
-    return figure
+    panels = profiles_in_time(column, specs, column.profiles, [], 2.6 * len(specs) + 1.2, linewidth=1.2)
+    for axes, (values, *_) in zip(panels, specs):
+        axes.set_xlim(left=min(0.0, float(np.nanmin(values))))
+    return panels[0].figure
 
 
 @draws("fig_velocity")

@@ -94,12 +94,21 @@ def redundancy(run):
     return figure
 
 
+def explained(run, top, bottom):
+    """The figure of two panels with what pales after the onset, and their legends."""
+    mark_onset(run, (top, bottom))
+    explain_median(run, bottom)
+    legend_above(top)
+    legend_above(bottom)
+    return top.figure
+
+
 @draws("fig_contact_fractions")
 def contact_fractions(run):
     """(a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield."""
     if not any(run.has(name) for name in ("f_S", "f_R", "f_SR", "f_NSR")):
         return None
-    figure, (top, bottom) = two_rows(run, (1.6, 1))
+    _, (top, bottom) = two_rows(run, (1.6, 1))
     curves(run, top, [("f_S", "sliding (S)", {"color": BLUE}), ("f_SR", "both (SR)", {"color": GREEN}),
                       ("f_R", "rolling (R)", {"color": ORANGE})], steady=True)
     curves(run, bottom, [("f_NSR", "neither (NSR)", {"color": BLACK})], steady=True)
@@ -107,11 +116,7 @@ def contact_fractions(run):
     bottom.set_ylim(0, 1.02)
     for axes in (top, bottom):
         axes.set_ylabel("Fraction of contacts")
-    mark_onset(run, (top, bottom))
-    explain_median(run, bottom)
-    legend_above(top)
-    legend_above(bottom)
-    return figure
+    return explained(run, top, bottom)
 
 
 @draws("fig_fabric")
@@ -119,7 +124,7 @@ def fabric(run):
     """(a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]."""
     if not any(run.has(name) for name in ("Fxx", "Fyy", "Fzz", "F_yx", "F_yz")):
         return None
-    figure, (top, bottom) = two_rows(run)
+    _, (top, bottom) = two_rows(run)
     along_y = "vertical" if run.shear else "axial"
     curves(run, top, [("Fyy", rf"$F_{{yy}}$ ({along_y})", {"color": BLUE, "zorder": 3}),
                       ("Fxx", r"$F_{xx}$", {"color": ORANGE}),
@@ -130,11 +135,7 @@ def fabric(run):
     mark_level(bottom, 0.0, "$0$")
     top.set_ylabel("Contact-normal fabric")
     bottom.set_ylabel("Fabric anisotropy")
-    mark_onset(run, (top, bottom))
-    explain_median(run, bottom)
-    legend_above(top)
-    legend_above(bottom)
-    return figure
+    return explained(run, top, bottom)
 
 
 def undrawn(name, run):
