@@ -95,7 +95,8 @@ class EarlyEnd(AppTest):
             rows = [(float(row["done (-)"]), float(row["stage (-)"])) for row in csv.DictReader(file)]
         self.assertEqual(sorted(set(rows)), [(0, 0), (1, 1), (2, 0), (3, 1), (4, 0), (5, 1)])
         report = (self.folder / "cycles/report.html").read_text(encoding="utf-8")
-        self.assertIn("Stage 0 (path), cycle 2 of 3 of stages 0 to 1:", report)
+        self.assertIn("Stage 0 (path), cycle 1 of 3 of stages 0 to 1:", report)
+        self.assertIn("3 times in all", report)
         self.assertIn("ended by max_steps = 5 before any of its conditions was met", report)
 
     def test_a_condition_that_is_met_when_it_begins_is_told(self):
