@@ -16,9 +16,11 @@ from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
 from .column_peaks import peaks
+from .column_picture import picture
 from .column_slope import spreading
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
 from .drawing import Drawing
+
 
 def kinds(column):
     """Whose parts of captions fit the column."""
@@ -28,4 +30,4 @@ def kinds(column):
 
 DRAWING = Drawing(Column, [motions, spectra, transfer, profiles, peaks, velocity, ru_map, histories, spreading,
                            box_maps, box_surface, plate, loops, expansion, isochrones, settlement, grains_profiles,
-                           grains_map, grains_history], kinds=kinds)
+                           grains_map, grains_history, picture], kinds=kinds)
