@@ -74,8 +74,8 @@ def draw_map(column, figure, axes, depths, times):
 
 @draws("fig_picture")
 def picture(column):
-    """Acceleration of base and surface; I_R over depth and time; where it has circles, packings from the side with their
-    contact forces (grains.snapshot_depths)."""
+    """Acceleration of base and surface; I_R over depth and time; where it has circles, packings from the side with
+    their contact forces (grains.snapshot_depths)."""
     asked = [quantity(depth) for depth in column.scene.get("grains", {}).get("snapshot_depths", [])]
     rows = [(depth, taken) for k, depth in enumerate(asked) if len(taken := snapshots(column.folder, k)) > 1][:ROWS]
     if not rows or "IR" not in column.grains.profiles or not column.moving:
