@@ -362,14 +362,14 @@ def draw_path(run, axes, x, y):
 
 
 def legend_below(figure, axes, height, ncols=None, **more):
-    """Of one panel or several that share it, in the lowest `height` of the figure; in one row unless told otherwise."""
+    """Of one panel or several that share it, in the lowest `height` of the figure; in one row by default."""
     handles, labels = axes.get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
     figure.legend(handles, labels, loc="lower center", ncols=ncols or len(labels), **more)
 
 
 def legend_of_path(run, figure, axes):
-    """Without liquefaction there is nothing to tell apart."""
+    """Without liquefaction it would have a single entry."""
     if run.onset is not None:
         legend_below(figure, axes, 0.07)
 

@@ -24,7 +24,7 @@ def title_of(name):
 
 
 def summary_parts(results, said):
-    """The rows of the summary, but for sentences that verdicts have `said` in the same words. Where its file has none,
+    """The rows of the summary without sentences that verdicts have `said` in the same words. Where its file has none,
     as those of campaigns and of older runs, its text as it is; without a text the numbers."""
     numbers = results.numbers or {}
     if "rows" in numbers:

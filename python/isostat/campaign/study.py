@@ -85,7 +85,7 @@ class Store:
         return False
 
     def cpu_seconds(self, planned: Any) -> float:
-        """That have been spent on a run, as far as the next call goes on with what it left."""
+        """That have been spent on a run, as far as the next call continues what it left."""
         with contextlib.suppress(_core.InputError):
             run = self.run(planned)
             return run.cpu_seconds if run.is_finished or run.is_of_this_scene else 0

@@ -142,7 +142,7 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
         if not trials.is_known(values) and len(trials.all) >= plan.budget.trials:
             raise BudgetUsed(f"budget.trials = {plan.budget.trials} are used up")
         if not trials.is_known(values) and trials.seconds > limit:
-            raise BudgetUsed("budget.time is used up; the same command goes on")
+            raise BudgetUsed("budget.time is used up; the same command continues")
         return trials.evaluate([values])[0].misfit ** 2  # near the best a parabola, which the misfit itself is not
 
     start = trials.best().values
@@ -187,7 +187,7 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
         trials.execute([start] if best is start else [start, best], True)
     except KeyboardInterrupt:
         if trials.best() is not None:
-            Report(trials, "it was interrupted; the same command goes on").leave(folder, False)
+            Report(trials, "it was interrupted; the same command continues").leave(folder, False)
         raise
     Report(trials, ending).leave(folder, not options.no_figures)
 
