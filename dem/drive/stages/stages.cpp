@@ -56,7 +56,7 @@ constexpr Key keys[] = {
      .reason = "because this is a ratio of stresses that friction has to carry",
      .text = "tau_av over the vertical effective stress at the start of the stage (alpha, the static bias). tau must lie "
              "between the two turning stresses when the stage begins."}),
-  of<&LiquefactionLimit::liquefaction_ratio>(
+  of<&LiquefiableShear::liquefaction_ratio>(
     {.path = "liquefaction_ratio", .value = "0.01", .range = ranges::fraction,
      .text = "p'/p0' below which the specimen counts as liquefied."}),
   {.path = "until", .kind = Kind::table, .presence = Presence::optional,
