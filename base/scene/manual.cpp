@@ -19,10 +19,10 @@ std::string bare_name(Dimension dimension)
 
 std::string kind_text(const Key &key)
 {
-  switch (key.kind)
+  switch (key.kind())
     {
     case Kind::quantity:
-      return bare_name(key.dimension);
+      return bare_name(key.unit.dimension);
     case Kind::number:
       return "number";
     case Kind::integer:
@@ -36,7 +36,7 @@ std::string kind_text(const Key &key)
     case Kind::table:
       return "table";
     case Kind::quantity_list:
-      return fmt::format("[{}, ...]", bare_name(key.dimension));
+      return fmt::format("[{}, ...]", bare_name(key.unit.dimension));
     case Kind::percent_pair:
       return "[percent, percent]";
     case Kind::size_curve:

@@ -19,7 +19,7 @@ std::vector<double> as_numbers(IwanParameters p)
   std::vector<double> numbers;
   for (const Key &key : all_iwan_keys().keys)
     {
-      const Field field = key.field(&p, nullptr);
+      const Field field = key.field(p);
       const auto *const *real = std::get_if<double *>(&field);
       numbers.push_back(real ? **real : *std::get<unsigned *>(field));
     }

@@ -27,7 +27,7 @@ std::vector<double> as_numbers(MohrCoulombParameters p)
   std::vector<double> numbers;
   for (const Key &key : all_mohr_coulomb_keys().keys)
     {
-      const Field field = key.field(&p, nullptr);
+      const Field field = key.field(p);
       const auto *const *real = std::get_if<double *>(&field);
       numbers.push_back(real ? **real : **std::get<std::optional<double> *>(field));
     }
@@ -37,7 +37,7 @@ std::vector<double> as_numbers(MohrCoulombParameters p)
 std::string said(const Key &key, double scale)
 {
   return std::string("mohr_coulomb: ").append(key.path) + " = " +
-         (key.kind == Kind::quantity ? format_bound(scale, key.dimension, key.unit) : number_text(scale)) + "; ";
+         (key.kind() == Kind::quantity ? format_bound(scale, key.unit.dimension, key.unit.name) : number_text(scale)) + "; ";
 }
 
 void check(const MohrCoulombParameters &p)
@@ -45,8 +45,7 @@ void check(const MohrCoulombParameters &p)
   const std::vector<double> values = as_numbers(completed(p));
   const MohrCoulombProblem problem = mohr_coulomb_problem(p);
   const auto scale = [](const Key &key, double value) { // the one of its range
-    return key.kind == Kind::quantity && key.dimension == Dimension::angle ? std::atan(value) * 180 / std::numbers::pi
-                                                                           : value;
+    return key.unit.dimension == Dimension::angle ? std::atan(value) * 180 / std::numbers::pi : value;
   };
   for (std::size_t i = 0; const Key &key : all_mohr_coulomb_keys().keys)
     if (const double value = scale(key, values[i++]); !key.range.contains(value))

@@ -172,4 +172,7 @@ private:
     bool operator==(const Read &) const { return true; }
   } read_;
 };
+
+/// The keys that a path alone has.   tested: tests/dem/scene/scene_test.cpp
+SceneFragment<Path> path_keys();
 } // namespace isostat
