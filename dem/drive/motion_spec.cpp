@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/motion_spec.hpp"
 
-#include "base/error.hpp"
+#include "base/scene/numbers.hpp"
 #include "base/scene/ranges.hpp"
 
 #include <fmt/format.h>
@@ -109,21 +109,7 @@ SceneFragment<MotionSpec> motion_keys()
 
 SceneFragment<StaticDrive> static_drive_keys() { return {statics}; }
 
-void check(const MotionSpec &motion)
-{
-  MotionSpec values = motion;
-  for (const Key &key : motion_keys().keys)
-    {
-      const Field field = key.field(values);
-      std::optional<double> value;
-      if (auto *const *number = std::get_if<double *>(&field))
-        value = **number;
-      else if (auto *const *given = std::get_if<std::optional<double> *>(&field))
-        value = **given;
-      if (value && !key.range.contains(*value))
-        throw InputError(fmt::format("{} = {:g}: must be {} {}.", key.path, *value, range_text(key), key.reason));
-    }
-}
+void check(const MotionSpec &motion) { check_numbers(motion_keys().keys, motion, ""); }
 
 void set_damping(const MotionSpec &motion, StepSettings &settings)
 {
