@@ -89,9 +89,7 @@ std::string SceneMutator::bound(const Key &key)
     return number();
   if (const std::size_t side = below(3); side > 0)
     x = std::nextafter(x, side == 1 ? -HUGE_VAL : HUGE_VAL);
-  return *key.unit.name
-             ? unquoted(format_bound(x, key.unit.dimension, key.unit.name))
-             : number_text(x);
+  return *key.unit.name ? unquoted(format_bound(x, key.unit.dimension, key.unit.name)) : number_text(x);
 }
 
 std::string SceneMutator::quantity(const Key &key)
