@@ -71,8 +71,8 @@ def parse_arguments():
     add("--twisting", choices=("sds", "marshall"), default="sds", help="twisting model of LAMMPS (default: sds)")
     add("--no-twisting", action="store_true", help="no twisting moments in any code; not with liggghts")
     add("--skin", type=float, default=0.05, help="skin of LAMMPS and LIGGGHTS, in mean radii (default: 0.05)")
-    add("--report", default=str(ROOT / "docs" / "results" / "side_by_side.md"),
-        help="page of results, written when all rounds are done (default: docs/results/side_by_side.md)")
+    add("--report", default=str(ROOT / "results" / "side_by_side.md"),
+        help="page of results, written when all rounds are done (default: results/side_by_side.md)")
     add("--no-report", action="store_true", help="print only")
     return parser.parse_args()
 

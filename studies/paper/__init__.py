@@ -20,7 +20,8 @@ from studies.paper import claims, figures, plan, tables, variants
 from studies.tables import read_csv, write_csv
 
 DEFAULTS, QUICK = {"seeds": 3}, {"seeds": 1}
-MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
+MARKDOWN = {"ways": variants.markdown, "paces": variants.markdown}
+SIZES = {"2,000 grains": "paper", "10,000 grains": "paper_10000"}  # folders of their tables, side by side
 
 
 def add_options(line):
@@ -63,4 +64,8 @@ def draw(folder):
     needed = {name: read_csv(folder / f"{name}.csv") for name in claims.TABLES}
     if needed["undrained_states"] and needed["cyclic_tests"]:
         write(folder, {"claims": claims.table(needed)})
+        tested = {size: read_csv(folder.with_name(name) / "claims.csv") for size, name in SIZES.items()}
+        if any(tested.values()):
+            first = next(SIZES[size] for size, rows in tested.items() if rows)
+            (folder.with_name(first) / "claims.md").write_text(claims.markdown(tested), encoding="utf-8")
     figures.draw(folder)
