@@ -160,7 +160,7 @@ def digests_of(folder):
 
 
 def run(command, log, stop_after=None):
-    """Exit code of a run; one that is to be stopped gets SIGINT once three files are in the folder `stop_after`."""
+    """Exit code of a run; one to stop gets SIGINT once three files are in the folder `stop_after`."""
     process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
                                stdout=log, stderr=subprocess.STDOUT)
     if stop_after:

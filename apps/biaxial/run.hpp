@@ -10,7 +10,7 @@ namespace isostat
 {
 using BiaxialRequest = RunRequest<BiaxialScene>;
 
-/// What came out.
+/// Results of a run.
 struct BiaxialSummary
 {
   std::size_t steps = 0, points = 0;

@@ -87,7 +87,7 @@ constexpr Key test_keys[] = {
   {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
   {.path = "weak.factor", .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning to grains.",
+   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); ignored for grains.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
@@ -97,7 +97,7 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
 
   {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
+   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the start, and what is on the sides throughout, in addition to the pore pressure at the start.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
   {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
    .text = "At the end: way of the top over the height, compression positive.",
@@ -142,13 +142,13 @@ constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dime
 constexpr const char *manual_head =
 R"(# Scene reference of the biaxial block
 
-A scene is one TOML file that says all about a run of `biaxial`. This page is generated from the table in
+A scene is one TOML file that describes a run of `biaxial`. This page is generated from the table in
 `apps/biaxial/scene.cpp` (`biaxial_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/biaxial`.
 
 - Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, is an
   error. What has no dimension is a plain number.
 - Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Compression is positive; x points across, z up.
+- An unknown key is an error, and so is a repeated key. Compression is positive; x points across, z up.
 - `--set key=value` on the command line overrides the file: `--set test.steps=100`.
 
 )";
@@ -157,10 +157,9 @@ A scene is one TOML file that says all about a run of `biaxial`. This page is ge
 void check_undrained(const SceneDocument &document, const BiaxialMesh &mesh)
 {
   if (mesh.degree != 2)
-    document.refuse("mesh.degree",
-                    fmt::format("must be 2 in an undrained block, beside a pore pressure of degree 1, and "
-                                "is {}. Give degree = 2 and points = 3.",
-                                mesh.degree));
+    document.refuse("mesh.degree", fmt::format("must be 2 in an undrained block, with a pore pressure of degree 1, and "
+                                               "is {}. Give degree = 2 and points = 3.",
+                                               mesh.degree));
   if (mesh.points < 3)
     document.refuse("mesh.points", fmt::format("must be 3 or 4 in an undrained block, and is {}: with fewer, elements "
                                                "have modes that soil of constant volume does not resist. Give points = "

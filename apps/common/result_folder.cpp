@@ -81,7 +81,7 @@ bool is_unused(const fs::path &folder)
 
 void expect_results(const fs::path &folder)
 {
-  for (const char *name : {scene_name, provenance_name}) // a folder of one's own may hold a scene
+  for (const char *name : {scene_name, provenance_name}) // a user's folder may hold a scene
     if (!fs::exists(folder / name))
       throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
                                    "Choose another --output.",
@@ -95,7 +95,7 @@ void empty_folder(const fs::path &folder)
     if (const fs::path name = entry.path().filename();
         name != lock_name && name != scene_name && name != provenance_name)
       paths.push_back(entry.path());
-  // last what tells that these are results, in the reverse of the order in which it was written: it may be killed here
+  // last what marks these as results, in the reverse of the order in which it was written: it may be killed here
   for (const char *name : {scene_name, provenance_name})
     paths.push_back(folder / name);
   for (const fs::path &path : paths)
@@ -114,10 +114,10 @@ FileLock lock_folder(const fs::path &folder)
   try
     {
       if (!within_patience([&] { return static_cast<bool>(lock = FileLock::attempt(folder / lock_name)); }))
-        throw InputError(fmt::format("{}: another program is at work in it. Wait for it, or give another --output.",
-                                     folder.string()));
+        throw InputError(
+            fmt::format("{}: another program is using it. Wait for it, or give another --output.", folder.string()));
     }
-  catch (const NoLocks &) // then nobody is told
+  catch (const NoLocks &) // then no message
     {}
   return lock;
 }
@@ -166,7 +166,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
                                      fs::exists(folder / scene_name, failure)
                                          ? "the run in it ended before its first checkpoint"
                                          : "there is no folder checkpoint in it",
-                                     is_unused(folder) ? "without" : "it anew with --overwrite in place of"));
+                                     is_unused(folder) ? "without" : "it again with --overwrite in place of"));
       return expect_free(folder);
     }
   const bool used = !is_unused(folder);

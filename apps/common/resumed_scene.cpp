@@ -92,7 +92,7 @@ void check_resumed_scene(const std::filesystem::path &folder, const Checkpoint &
       const auto refuse = [&](const char *why) {
         throw InputError(
             fmt::format("{}: stage.{}.{} = {}, but the checkpoint has {}: {}. Give a larger value of a stage "
-                        "that is not over, or start anew in another folder.",
+                        "that is not over, or start again in another folder.",
                         folder.string(), change.stage, change.key, change.now, change.before, why));
       };
       if (!(amount(change, change.now) > amount(change, change.before)))

@@ -145,7 +145,7 @@ void restore(const Checkpoint &checkpoint, Assembly &assembly)
     const auto found = checkpoint.assembly.find(name);
     if (found == checkpoint.assembly.end())
       throw InputError(
-          fmt::format("the checkpoint holds no assembly/@{}; it is damaged. Start anew with --overwrite.", name));
+          fmt::format("the checkpoint holds no assembly/@{}; it is damaged. Start again with --overwrite.", name));
     value = found->second;
   });
   assembly.set_energy_memory(memory);

@@ -125,7 +125,7 @@ void tell_finished(const std::filesystem::path &folder, const char *program, boo
       fmt::print("  {}\n", draw_figures(folder, program));
     }
   else
-    fmt::print("{} Start it anew with --overwrite.\n", hint);
+    fmt::print("{} Start it again with --overwrite.\n", hint);
 }
 
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene, bool end_may_change)

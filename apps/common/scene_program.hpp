@@ -57,7 +57,7 @@ private:
   int parse_and_run(int argc, char **argv) const;
 };
 
-/// First line in which two texts differ, as it stands in the second.
+/// First line in which two texts differ, as it is in the second.
 /// tested: tests/apps/command_line_test.py, tests/apps/resistance_test.py
 std::string first_difference(const std::string &one, const std::string &other);
 

@@ -87,7 +87,7 @@ void check_stages(const DriveState &state, std::size_t n_stages, const fs::path 
   if (state.place.stage > n_stages || !std::ranges::all_of(state.ends, has) ||
       !std::ranges::all_of(state.control.losses, has))
     throw InputError(fmt::format("{}: the checkpoint speaks of stages beyond the {} of the scene; it is damaged. Start "
-                                 "anew with --overwrite.",
+                                 "again with --overwrite.",
                                  folder.string(), n_stages));
 }
 } // namespace
@@ -100,7 +100,7 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   if (run.resumed->written.snapshots > run.resumed->written.rows)
     throw InputError(
         fmt::format("{}: the checkpoint speaks of {} snapshots and {} rows, but there is a row of each; it is "
-                    "damaged. Start anew with --overwrite.",
+                    "damaged. Start again with --overwrite.",
                     folder.string(), run.resumed->written.snapshots, run.resumed->written.rows));
   check_stages(run.resumed->drive, scene.stages.size(), folder);
   note_instruction_set(run.resumed->instruction_set);

@@ -23,7 +23,7 @@ constexpr Key in_mesh[] = {
            "degree 2 (reduced integration) takes fewer packings. Else at least the degree.",
    .field = [](ColumnMesh &m) -> Field { return &m.points; }},
   {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension 2), a box "
+   .text = "tied: opposite points of the sides move as one, the soil goes on forever; walls: of a strip (dimension 2), a box "
            "whose smooth walls move with its rigid base. The soil settles into equilibrium before "
            "anything else, from K0 stresses: docs/theory_column.md, section 9.",
    .field = [](ColumnMesh &m) -> Field { return &m.sides; }},
@@ -106,9 +106,8 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
   if (scene.analysis.kind == AnalysisKind::consolidation)
     document.refuse("analysis.kind", "must not be \"consolidation\" in a box; shake it, or move a plate.");
   if (scene.slope.tangent > 0)
-    document.refuse("slope.angle",
-                    "turns the axes of an infinite slope; a box stands upright. Give the inclined surface "
-                    "by mesh.ground_x and mesh.ground_z.");
+    document.refuse("slope.angle", "turns the axes of an infinite slope; a box is upright. Give the inclined surface "
+                                   "by mesh.ground_x and mesh.ground_z.");
   if (scene.water.table > 0)
     document.refuse("water.table",
                     "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
@@ -136,7 +135,7 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
                                         "of that.",
                                         number_text(width / scene.mesh.cells_across)));
   if (scene.analysis.kind == AnalysisKind::plate)
-    document.refuse(key, "has no meaning beside a plate; a surcharge bears on all of the surface then. Remove it.");
+    document.refuse(key, "has no meaning with a plate; a surcharge then bears on all of the surface. Remove it.");
 }
 } // namespace
 

@@ -42,8 +42,8 @@ constexpr Section sections[] = {
            "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic, "
-           "iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+           "not belong to the material of its layer is an error. Give exactly one of `cells` and `cell_size`, and, of "
+           "elastic, iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -186,11 +186,11 @@ constexpr Key loading_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.base.density; }},
   {.path = "base.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::required, .value = "800 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of shear waves in the rock.",
+   .text = "Shear-wave velocity in the rock.",
    .field = [](ColumnScene &s) -> Field { return &s.base.shear_velocity; }},
   {.path = "base.p_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
    .presence = Presence::optional, .value = "1600 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of P waves in the rock; left out: twice the shear velocity. "
+   .text = "P-wave velocity in the rock; left out: twice the shear velocity. "
            "More than 1.155 times the shear velocity.",
    .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
 
@@ -252,9 +252,9 @@ constexpr Key result_keys[] = {
    .field = [](ColumnScene &s) -> Field { return &s.analysis.mass_damping; }},
   {.path = "analysis.highest_frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
    .value = "25 Hz", .range = positive, .kinds = dynamic,
-   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster; elements that are too long for its wave, "
-           "or for that of the motion if it has no such frequencies, are warned of; the summary tells how much of the "
-           "surface's acceleration lies above it.",
+   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster. A warning names elements that are too "
+           "long for its wave, or for that of the motion if it has no such frequencies. The summary gives the share of "
+           "the surface's acceleration above it.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.highest_frequency; }},
   {.path = "analysis.viscosity", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "ms",
    .value = "0.1 ms", .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
@@ -320,13 +320,13 @@ constexpr const char *defaults_head =
 constexpr const char *manual_head =
 R"(# Scene reference of the soil column
 
-A scene is one TOML file that says all about a run of `soil_column`. This page is generated from the table in
+A scene is one TOML file that describes a run of `soil_column`. This page is generated from the table in
 `apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/column`.
 
 - Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
   unit of something else, is an error. What has no dimension is a plain number.
 - Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Compression is positive; z points up, depths count downwards.
+- An unknown key is an error, and so is a repeated key. Compression is positive; z points up, depths count downwards.
 - `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
   `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
   other, the one set this way replaces the one in the file.

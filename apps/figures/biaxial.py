@@ -18,7 +18,7 @@ CAPTIONS = {
                          "the scatter of the shear strain",
     "fig_shear_maps": "shear strain since the start over the block at several axial strains",
     "fig_rate_maps": "shear strain between two of them: where the block deforms at the time",
-    "fig_band": "axial stress beside that of other runs (named by their folders), shear strain at the end, where it "
+    "fig_band": "axial stress next to that of other runs (named by their folders), shear strain at the end, where it "
                 "came last, void ratio",
     "fig_grain_maps": "void ratio and redundancy index at the end, of packings",
 }

@@ -20,7 +20,7 @@ CAPTIONS = {
 }
 
 COLUMNS = 4  # curves side by side
-SHOWN = 3.0  # misfits beyond so many times the best have one colour
+SHOWN = 3.0  # misfits beyond this many times the best have one colour
 
 
 class Curve:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a consolidation: isochrones of the pore pressure and settlement, beside Terzaghi's series."""
+"""Figures of a consolidation: isochrones of the pore pressure and settlement, next to Terzaghi's series."""
 import numpy as np
 from matplotlib.colors import LogNorm
 

@@ -72,7 +72,7 @@ def draw_onset(axes, depth, time, reached, **style):
 
 
 def grains_map(column):
-    """I_R over depth and time, below the motion, with the borders of I_R < 1 and r_u > 0.95; their onset beside it."""
+    """I_R over depth and time, below the motion, with the borders of I_R < 1 and r_u > 0.95; their onset next to it."""
     grains = column.grains.profiles
     if "IR" not in grains or len(grains["time"]) < 2:
         return None

@@ -9,7 +9,7 @@ def has_plate(column):
 
 
 def plate(column):
-    """Force against the plate and pressure beside it over its way; displacement and shear strain at the end."""
+    """Force against the plate and pressure next to it over its way; displacement and shear strain at the end."""
     if not has_plate(column) or not column.maps:
         return None
     figure, panels = plt.subplot_mosaic([["force", "pressure"], ["map", "map"]], figsize=(7.2, 5.6),
@@ -20,7 +20,7 @@ def plate(column):
     panels["force"].legend()
     panels["force"].set_ylabel("Force against the plate (kN/m)")
     panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
-    panels["pressure"].set_ylabel("Normal stress beside it (kPa)")
+    panels["pressure"].set_ylabel("Normal stress next to it (kPa)")
     for name in ("force", "pressure"):
         panels[name].set_xlabel("Way of the plate into the soil (mm)")
         panels[name].set_ylim(bottom=min(0, panels[name].get_ylim()[0]))

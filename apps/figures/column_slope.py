@@ -14,7 +14,7 @@ def is_slope(column):
 
 
 def spreading(column):
-    """Displacement of the surface in time; at the end displacement and shear strain over the depth, beside the static
+    """Displacement of the surface in time; at the end displacement and shear strain over the depth, next to the static
     shear stress at the start."""
     if not is_slope(column):
         return None

@@ -33,7 +33,7 @@ class Drawing:
         return f"{parts if parts[1] == '_' else parts[0].upper() + parts[1:]}."
 
     def results(self, folder, beside=()):
-        """What is read from a results folder, with that of others beside it.   Raises BadInput"""
+        """What is read from a results folder, with that of others next to it.   Raises BadInput"""
         try:
             results = self.read(folder)
             results.beside = [self.read(other) for other in beside]
@@ -62,7 +62,7 @@ class Drawing:
             lines = textwrap.wrap(results.title, int(14 * figure.get_figwidth()))  # letters in an inch, at this size
             figure.suptitle(plain("\n".join(lines)), fontsize=9.5, x=0.01, ha="left")
         figure.set_dpi(plt.rcParams["savefig.dpi"])
-        figure.draw_without_rendering()  # laid out anew by savefig, with as many ticks as this has found room for
+        figure.draw_without_rendering()  # laid out again by savefig, with as many ticks as this has found room for
         path = out / f"{name}.png"
         with replacing(path) as aside:
             figure.savefig(aside, format="png")

@@ -24,7 +24,7 @@ CAPTIONS = {
                         "simple shear": "tau against (a) sigma'_v, (b) p', (c) gamma"},
     "fig_dilatancy": "of the last drained stage (a) q/p' and (b) the rate of dilatancy D = -d eps_v/d eps against "
                      "axial strain, (c) q/p' against D",
-    "fig_redundancy": "(a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts, "
+    "fig_redundancy": "(a) redundancy index I_R of the contact law, in which 1 is isostatic, next to other counts, "
                       "(b) p'/p0', of a test without a shear stage p'",
     "fig_contact_fractions": "(a) yielding contacts: sliding, rolling, both; (b) contacts that do not yield",
     "fig_fabric": "(a) Fxx, Fyy, Fzz, (b) F[y-x], F[y-z]",

@@ -36,7 +36,7 @@ def shift(axes, points):
 
 
 def draw_runs(axes, runs):
-    """Dots, arrows for what did not liquefy; those that agree stand one above the other."""
+    """Dots, arrows for what did not liquefy; those that agree are one above the other."""
     labels = {"liquefied": "realisation", "censored": "not liquefied", "strain": "strain limit before liquefaction"}
     drawn = [(ratio, n or max(applied, MIN_CYCLES), status) for ratio, n, applied, status in runs if status in labels]
     for ratio, n, status in sorted(set(drawn)):

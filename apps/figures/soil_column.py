@@ -25,29 +25,29 @@ CAPTIONS = {
     "fig_spectra": "response spectra of input and surface of every step (spectra.csv), and their ratio; grey: "
                    "periods that belong to frequencies above analysis.highest_frequency",
     "fig_transfer": {"": "Fourier amplitudes, surface over input",
-                     "one elastic layer": "beside its exact curve, from which the largest difference is printed",
+                     "one elastic layer": "next to its exact curve, from which the largest difference is printed",
                      "other soil": "smoothed, too (Konno and Ohmachi 1998, b = 80)"},
     "fig_profiles": "largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against "
                     "the depth at several times",
     "fig_peaks": "largest horizontal acceleration, velocity and displacement and largest shear strain of all steps "
                  "over the depth; a dot marks the largest of each, whose value and depth are above it",
-    "fig_velocity": "velocity of shear waves of small strain over the depth at the start, where it varies",
+    "fig_velocity": "shear-wave velocity of small strain over the depth at the start, where it varies",
     "fig_ru_map": "r_u over depth and time, below the input",
     "fig_histories": {"wet": "r_u at the output depths and its largest value anywhere",
                       "sinking": "settlement"},
     "fig_spreading": "displacement of the surface in time; at the end displacement and shear strain over the depth, "
-                     "beside static shear stress and normal effective stress of the start",
+                     "next to static shear stress and normal effective stress of the start",
     "fig_box": "r_u where its mean is largest and at the end, shear strain at the end, of packings I_R where its mean "
                "is smallest, over the mesh as it has moved",
     "fig_surface": "displacement of the surface in time and over the box",
-    "fig_plate": "force against it and normal stress beside it over its way, shear strain at the end",
+    "fig_plate": "force against it and normal stress next to it over its way, shear strain at the end",
     "fig_loops": "shear loops and stress paths at the output depths, coloured by time",
     "fig_expansion": "below less permeable layers: net expansion and settlement, above the volumetric strain over "
                      "depth and time, on one scale for both signs",
-    "fig_isochrones": "excess pore pressure over the depth, beside Terzaghi's series if it applies",
-    "fig_settlement": "settlement against time, beside Terzaghi's if it applies",
+    "fig_isochrones": "excess pore pressure over the depth, next to Terzaghi's series if it applies",
+    "fig_settlement": "settlement against time, next to Terzaghi's if it applies",
     "fig_grains_profiles": "packings of grains: redundancy index I_R, coordination number, fabric over the depth",
-    "fig_grains_map": "I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95",
+    "fig_grains_map": "I_R over depth and time; next to it when each depth falls below I_R = 1 and exceeds r_u = 0.95",
     "fig_grains_history": "I_R, r_u and yielding contacts at the output depths",
 }
 

@@ -120,7 +120,7 @@ def page(pair):
             html.section("Scene", difference_table(key_rows(one.scene, other.scene), "key",
                                                    "Every key of the scenes is the same.", "keys that differ"),
                          name="scene"),
-            html.section("Provenance", difference_table(provenance, "", "Version and start stand above; the rest is "
+            html.section("Provenance", difference_table(provenance, "", "Version and start are above; the rest is "
                                                         "the same.", "what differs in provenance"), name="provenance"),
         ])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
+"""What the files of an element test show: by what each stage ended, liquefaction, rate, density, reversals."""
 import numpy as np
 
 from figures.common import LIQUEFIED
@@ -47,7 +47,7 @@ def cyclic_end(stage, run, rows):
 
 
 def path_end(stage, run, rows):
-    """By which of its conditions a path ended, as far as columns tell; it has no other end but its limit of steps."""
+    """By which of its conditions a path ended, as far as columns show; it has no other end but its limit of steps."""
     if stage["drive"] == "none":
         return "its path and balance"
     until = stage.get("until", {})
@@ -69,7 +69,7 @@ def limit_reached(stage, run, rows):
 
 
 def early_endings(results):
-    """A line for each stage that its limit of steps ended, or that had nothing to do, as the summary tells them."""
+    """A line for each stage that its limit of steps ended, or that had nothing to do, as in the summary."""
     for end in results.numbers.get("ended_early", []):
         name, _, text = end["text"].partition(": ")
         yield f"{name[0].upper()}{name[1:]}:", f"{text}.", "attention"

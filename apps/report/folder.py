@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a results folder holds beside its tables: program, scene, summary, provenance."""
+"""What a results folder holds besides its tables: program, scene, summary, provenance."""
 import re
 import tomllib
 

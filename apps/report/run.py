@@ -46,7 +46,7 @@ def calls(results):
 
 
 def resume_parts(results):
-    """How to go on and how to repeat the run, as far as its files tell."""
+    """How to continue and how to repeat the run, as far as its files show."""
     program, command = results.program, results.command.replace(" --overwrite", "")
     parts = []
     if not command:

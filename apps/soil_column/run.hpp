@@ -23,7 +23,7 @@ struct RunResult
 /// @throws Interrupted  after a signal, with a checkpoint
 /// tested: tests/apps/soil_column_test.py
 RunResult run_column(const ColumnRequest &request);
-/// The parts of it: one kind of analysis in so many dimensions, with neither times.json nor summary.json.
+/// The parts of it: one kind of analysis in this many dimensions, with neither times.json nor summary.json.
 template <int dim>
 RunResult run_dynamic(const ColumnRequest &request);
 template <int dim>

@@ -18,7 +18,7 @@ namespace
 {
 bool shaken(const ColumnScene &scene) { return scene.analysis.kind == AnalysisKind::dynamic; }
 
-/// r_u compares with the stress in situ, which the load of a consolidation has no part in.
+/// r_u compares with the stress in situ, without the load of a consolidation.
 bool has_ru(const ColumnScene &scene) { return shaken(scene) && scene.water.drainage != Drainage::dry; }
 
 /// What a peak of horizontal acceleration is, if two axes move.

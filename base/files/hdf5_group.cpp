@@ -94,7 +94,7 @@ bool write_values(std::span<const T> values, const Transfer &transfer)
 
 bool left_file = false; ///< an external link was met in this turn
 
-/// Properties of access to items by which no link to another file is followed: a file of a stranger could name any.
+/// Properties of access to items by which no link to another file is followed: an untrusted file could name any.
 hid_t within_file()
 {
   static const hid_t access = [] {
@@ -111,7 +111,7 @@ hid_t within_file()
   return access;
 }
 
-/// @param missing  what is said if there is none
+/// @param missing  the message if there is none
 Handle open_item(const FileState &file, const std::string &item, const char *missing = "there is no such item")
 {
   assert(file.id >= 0);

@@ -55,7 +55,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
         }
     }
   throw InputError(fmt::format("{}: no checkpoint to resume from{}", folder.string(),
-                               problems.empty() ? ": none was written. Start anew with --overwrite."
-                                                : problems + "\n  Or start anew with --overwrite."));
+                               problems.empty() ? ": none was written. Start again with --overwrite."
+                                                : problems + "\n  Or start again with --overwrite."));
 }
 } // namespace isostat

@@ -39,7 +39,7 @@ void SeriesFile::load(std::size_t rows)
     std::vector<double> values = root.read<double>(name);
     if (values.size() < rows * width)
       throw InputError(fmt::format("{}: {} rows, the checkpoint expects {}; restore the file, resume from an earlier "
-                                   "checkpoint, or start anew with --overwrite",
+                                   "checkpoint, or start again with --overwrite",
                                    path_.string(), values.size() / width, rows));
     values.resize(rows * width);
     return values;

@@ -25,8 +25,8 @@ std::string joined(const std::string &prefix, std::string_view word)
   const SceneSchema &schema = document.schema();
   const std::string known = schema.schema_path(path);
   const std::string near = schema.nearest_path(known);
-  document.refuse(path, near.empty() ? "is no key of this kind of file. --print-defaults lists all keys."
-                                     : fmt::format("is no key of a scene. Did you mean {}?", near));
+  document.refuse(path, near.empty() ? "is an unknown key. --print-defaults lists all keys."
+                                     : fmt::format("is an unknown key. Did you mean {}?", near));
 }
 
 /// Every key of the document is in the schema; tables are tables.
@@ -65,7 +65,7 @@ std::string keys_of_kind(const SceneSchema &schema, const Section &section, std:
   std::vector<std::string_view> names;
   for (const Key &key : schema.keys)
     if (key.section() == section.name && (key.kinds == 0 || key.belongs_to(kind)) &&
-        key.name().find('.') == std::string_view::npos) // not what stands in a table within it
+        key.name().find('.') == std::string_view::npos) // not what is in a table within it
       names.push_back(key.name());
   return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -18,7 +18,7 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
 std::string results_folder(const std::string &scene_path);
 
 /// Fills a scene from a document: every key of the document is known and belongs there, every value has the form, unit
-/// and range of the schema, what is left out takes its default. Rules between keys are left to check_groups and to the
+/// and range of the schema, an omitted key takes its default. Rules between keys are left to check_groups and to the
 /// owner of the schema.
 /// @param scene  of the type that the schema's keys and arrays of tables were made for; with its defaults
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double smallest = 1e-30, largest = 1e30; ///< besides 0, in size
 
-/// A value on its way from the file to its field, whose type says how it is read.
+/// A value between the file and its field, whose type says how it is read.
 struct Reading
 {
   const SceneDocument &document;

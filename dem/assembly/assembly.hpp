@@ -142,7 +142,7 @@ public:
 
 private:
   ContactForces::Input force_input() const { return {law_, packing_, domain_, settings}; }
-  /// Contact forces of this step, evaluated now if nobody has looked before.
+  /// Contact forces of this step, evaluated now if they were not before.
   const ContactForces &forces() const;
   void update_list(double max_step);
   void add_gravity();

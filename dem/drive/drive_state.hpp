@@ -4,7 +4,7 @@
 //
 // Every struct lists its fields once (base/fields.hpp): checkpoints (dem/io/checkpoint.cpp) and packed elements
 // (dem/rve/rve_bytes.cpp) go by that list.
-// tested: tests/dem/io/checkpoint_test.cpp (every field comes back to the bit)
+// tested: tests/dem/io/checkpoint_test.cpp (every field comes back bit for bit)
 #pragma once
 #include "base/fields.hpp"
 #include "dem/domain/rigid_box.hpp"

@@ -11,7 +11,7 @@ namespace isostat
 namespace
 {
 // clang-format off
-// two keys that stand in both tables, with the defaults and words of each
+// two keys of both tables, with the defaults and words of each
 constexpr Key damping(const char *value, const char *text)
 {
   return {.path = "damping", .value = value, .range = {0, 1, false, true},
@@ -72,7 +72,7 @@ constexpr const char *drives[] = {"dynamic", "static"};
 constexpr Key statics[] = {
   {.path = "drive", .kind = Kind::choice, .value = "dynamic", .choices = drives,
    .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
-           "taken to balance; rates and dampings have no part in it. Preparation is dynamic; static needs a stage that shears.",
+           "taken to balance; rates and dampings are ignored. Preparation is dynamic; static needs a stage that shears.",
    .field = [](StaticDrive &d) -> Field { return &d.on; }},
   {.path = "increment", .value = "5e-5", .range = {0, 1e-3, true, false},
    .reason = "because there is no other end to an increment, and contacts slide by more than their overlap in one of 1e-3",

@@ -11,7 +11,7 @@ struct RecordSpec
 {
   double record_stress = 1e3;          ///< a history row whenever p' or the driven load has moved by this much, Pa
   double record_strain = 1e-4;         ///< ... or the driven strain by this much
-  std::uint64_t record_steps = 5000;   ///< ... or after so many steps
+  std::uint64_t record_steps = 5000;   ///< ... or after this many steps
   std::string snapshots = "reversals"; ///< "none", "reversals" (and stage ends), "strain"
   double snapshot_strain = 0.01;       ///< spacing for "strain"
 
@@ -48,7 +48,7 @@ enum class RunOutcome
   interrupted
 };
 
-/// Runs the stages from where `state` stands (a fresh state: from the first), one time step after the other:
+/// Runs the stages from where `state` is (a fresh state: from the first), one time step after the other:
 ///
 ///     time step -> contact forces -> stress -> stage (verdict, strain, servo, reversal) -> record -> motion, walls
 ///

@@ -41,6 +41,6 @@ Specimen read_specimen(const hdf5::Group &group);
 void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
                       const std::string &remedy);
 
-/// Only what stands in attributes: `state` is left empty and not looked at.
+/// Only the attributes: `state` is left empty and not read.
 Specimen read_specimen_description(const hdf5::Group &group);
 } // namespace isostat

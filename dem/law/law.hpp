@@ -132,7 +132,7 @@ public:
     return dynamic_cast<const Concrete &>(*law_);
   }
 
-  bool operator==(const Law &other) const; ///< the same law with the same parameters, to the bit
+  bool operator==(const Law &other) const; ///< the same law with the same parameters, bit for bit
 
 private:
   std::unique_ptr<ContactLaw> law_;

@@ -38,7 +38,7 @@ enum class Sliding
 /// Without friction there are no rotations among the unknowns.
 ///
 /// @pre  periodic: contacts with images of grains are among `contacts`, by their normal and overlap; positions are not
-///       looked at. history.normal is the normal, whatever the law
+///       used. history.normal is the normal, whatever the law
 /// @return symmetric, no negative eigenvalue beyond rounding, C <= affine_stiffness; zero without contacts
 /// @throws RunFailure  the snapshot has walls' contacts; the factorisation fails or something is not a number
 /// cost up to 1,500 grains a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6
@@ -67,7 +67,7 @@ Vec3 affine_moduli(const LiveContacts &contacts, double volume);
 /// tested: tests/dem/assembly/assembly_test.cpp (against affine_stiffness)
 double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &gradient);
 
-/// What is left of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
+/// What remains of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
 /// the lateral directions b < c. Rows and columns: aa, ab, ac with engineering shear; for axis 2: zz, xz, yz.
 /// It is the acoustic tensor C_iaja in that order. @param axis  0, 1, 2 = x, y, z     @return Pa
 /// tested: tests/dem/measure/stiffness_test.cpp

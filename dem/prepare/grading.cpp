@@ -97,7 +97,7 @@ Cut effective_cut(const GradingSpec &spec, const GradingCurve &given)
                                  "by mass, above finest_percent. 100 keeps the coarsest grains.",
                                  coarse, fine));
   const Cut cut = {std::max(fine, given.percent_finer.front()), std::min(coarse, given.percent_finer.back())};
-  if (!(cut.coarse - cut.fine > 1e-9)) // less cannot be told from round-off
+  if (!(cut.coarse - cut.fine > 1e-9)) // less cannot be distinguished from round-off
     throw InputError(fmt::format("grading: nothing is left between finest_percent = {:g} and coarsest_percent = {:g}; "
                                  "the points of the curve cover {:g} ... {:g} %. Widen the cut.",
                                  fine, coarse, given.percent_finer.front(), given.percent_finer.back()));

@@ -11,7 +11,7 @@
 /// Sign      strain and stress: tension positive. Stress is the Cauchy effective stress, Pa.
 /// Vectors   of 6: xx, yy, zz, yz, xz, xy. Strains in this form have engineering shear, gamma = 2 eps.
 /// Matrices  of 9 or 36 numbers: row by row. A Fortran program hands over transpose(gradient).
-/// Returns   an isostat_status; what goes wrong is told by isostat_rve_error(). No function ends the program or lets an
+/// Returns   an isostat_status; isostat_rve_error() says what went wrong. No function ends the program or lets an
 ///           exception out. A null pointer is bad input unless the function allows it.
 /// Threads   elements are independent; one element, or one state, is for one thread at a time.
 ///
@@ -88,7 +88,7 @@ isostat_status isostat_rve_undrained(isostat_rve *rve, const double *gradient, i
 
 /// Prescribed strain in some components, target stress in the others: drained, K0, constant p' and other tests.
 /// @param gradient  as above; its symmetric part is 0 in components whose stress is controlled
-/// @param stress  targets, Pa (6); looked at where controlled
+/// @param stress  targets, Pa (6); used where controlled
 /// @param controlled  0: strain is prescribed, else stress (6)
 /// @param tolerance  |stress - target| / max(p', 0.05 p0') at the end, > 0; 1e-3 is usual
 /// @return as isostat_rve_advance(); rejected, too, where the frame is not the identity, the target needs tension, or a
@@ -119,7 +119,7 @@ isostat_status isostat_rve_steps(const isostat_rve *rve, uint64_t *steps);
 /// @param state  in: null, or a state that is written over; out: the handle
 isostat_status isostat_rve_save(const isostat_rve *rve, isostat_rve_state **state);
 
-/// Brings the element back to a state of its own, or of an element with the same grains and law, to the bit.
+/// Brings the element back to a state of its own, or of an element with the same grains and law, bit for bit.
 /// @return bad input: a state of other grains
 isostat_status isostat_rve_restore(isostat_rve *rve, const isostat_rve_state *state);
 

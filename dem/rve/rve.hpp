@@ -170,6 +170,6 @@ private:
   RveState safe_;
   std::vector<Mat3> since_safe_;
   Balance balance_;           ///< of the last increment
-  bool rolling_back_ = false; ///< nobody is asked whether to go on
+  bool rolling_back_ = false; ///< no callback is asked whether to continue
 };
 } // namespace isostat

@@ -30,7 +30,7 @@ struct GradingSpec
   bool operator==(const GradingSpec &) const = default;
 };
 
-/// The edge of a cloud that a scene leaves out, m: so many grains are as large as 10,000 of them in 10 mm.
+/// The edge of a cloud that a scene leaves out, m: this many grains are as large as 10,000 of them in 10 mm.
 double usual_cloud_edge(std::uint64_t grains);
 
 /// Densities of grains, kg/m3, that scenes and files of packings may have: 2.65 is meant in g/cm3, 2.65e6 in g/m3.
@@ -46,7 +46,7 @@ struct SpecimenSpec : ServoSpec
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
   std::string file;                           ///< a specimen or snapshot (.h5), or "library.h5#entry"
   /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
-  /// of one's own, and a packing from a file, have none unless they are given.
+  /// of the user, and a packing from a file, have none unless they are given.
   std::optional<double> e_min = 0.568, e_max = 0.841;
   double density_tolerance = 0.01; ///< on D_r
   double damping = 0.3;            ///< local damping during preparation
@@ -125,7 +125,7 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
 /// specimen.file is not looked for, and an output folder left out stays empty.
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {});
 
-/// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s to the bit
+/// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s bit for bit
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
 /// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign

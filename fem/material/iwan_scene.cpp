@@ -44,7 +44,7 @@ constexpr Key iwan_in_scenes[] = {
    .field = [](IwanParameters &p) -> Field { return &p.critical_pressure; }},
   {.path = "elements", .kind = Kind::integer, .value = "12", .range = {4, 128},
    .reason = "because fewer do not follow the curve, and more add nothing to see",
-   .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer.",
+   .text = "Slip elements of a Gauss point: more make the curve smoother and the step more expensive.",
    .field = [](IwanParameters &p) -> Field { return &p.elements; }},
 };
 

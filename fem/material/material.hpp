@@ -36,7 +36,7 @@ struct WaveModuli
 /// grains, layers or elements.
 ///
 /// A batch is asked for the stress after an increment from the *committed* state, as often as the solver needs (each
-/// trial starts from the committed state again), and then told to keep or to forget the last trial:
+/// trial starts from the committed state again), and then asked to keep or to forget the last trial:
 ///
 ///     material.trial(increments, stresses);   // all points at once: a material may share them out as it likes
 ///     material.commit();                      // or rollback()
@@ -69,7 +69,7 @@ public:
   /// large.
   virtual void wave_moduli(std::span<WaveModuli> moduli) const = 0;
 
-  /// The committed state; unpack() brings it back to the bit.
+  /// The committed state; unpack() brings it back bit for bit.
   /// @throws InputError from unpack() if the state is not one of this material with as many points
   virtual MaterialState pack() const = 0;
   virtual void unpack(const MaterialState &state) = 0;

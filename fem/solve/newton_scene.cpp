@@ -19,7 +19,7 @@ constexpr Key keys[] = {
    .text = "Of Newton's method in a sub-step; 0: relaxation alone, for packings and past a peak.",
    .field = [](NewtonSettings &n) -> Field { return &n.max_iterations; }},
   {.path = "iterations_per_tangent", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "1: Newton; more: the tangent is kept for so many iterations of a sub-step.",
+   .text = "1: Newton; more: the tangent is kept for this many iterations of a sub-step.",
    .field = [](NewtonSettings &n) -> Field { return &n.iterations_per_tangent; }},
   {.path = "relaxation_iterations", .kind = Kind::integer, .value = "0",
    .text = "Of relaxation, which takes over a sub-step that Newton's method has not solved; 0: none. Then the "

@@ -65,7 +65,7 @@ public:
   void operator()(const char *name, Vector &values) const;
   void operator()(const char *name, std::vector<Stress> &stresses) const;
   void operator()(const char *name, std::vector<double> &of_points) const;
-  /// A number found anew may differ in its last digits, by sums over another number of ranks: the stored one counts.
+  /// A number found again may differ in its last digits, by sums over another number of ranks: the stored one counts.
   void constant(const char *name, double &value) const;
   void sum(const char *name, double &part) const; ///< all of it on the first rank
   /// Unpacks what belongs to the points of this rank.   Collective.

@@ -46,7 +46,7 @@ public:
   /// On by `duration` seconds; 0 (a jump of the load) is possible without pore water only.
   /// @throws StepGivenUp  settings.gives_up said so
   /// @throws RunFailure  the smallest sub-step has no solution: step, time, residual, reason. The state is that of the
-  ///         last good sub-step, time() tells
+  ///         last good sub-step, given by time()
   /// @throws InputError  negative duration
   void step(double duration);
   /// As step(), but no water moves, not even to drained faces: G du + S dp = 0. With duration 0 it puts on the loads of
@@ -67,7 +67,7 @@ public:
   const StaticsEffort &effort() const { return report_.effort; }
   double residual() const { return report_.residual; } ///< of the last trial, in units of the force scale
 
-  /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
+  /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
   /// after a failed one. Collective.
   /// @throws InputError  restore() of another mesh or material; save() of a mesh that is shared out with a material
   ///                     that keeps its points as a whole

@@ -30,7 +30,7 @@ constexpr Key of_water[] = {
    .field = [](Water &w) -> Field { return &w.henry; }},
   {.path = "atmospheric_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "101.325 kPa", .range = {5000, infinity}, .reason = "because water boils at 2.3 kPa",
-   .text = "Absolute pressure at the water table, which air in the pores feels beside that of the water below it. On a "
+   .text = "Absolute pressure at the water table, which acts on air in the pores in addition to that of the water below it. On a "
            "submerged slope add the weight of the water above the surface.",
    .field = [](Water &w) -> Field { return &w.atmospheric_pressure; }},
 };

@@ -30,7 +30,7 @@ void check_new(const fs_path &path, bool overwrite)
         fmt::format("{}: the file exists; give overwrite=True to replace it, or another name", path.string()));
 }
 
-/// A writer that replaces a file only if it is told to.
+/// A writer that replaces a file only on request.
 template <Name name, typename What>
 auto to_new_file(void (*write)(const fs_path &, const What &))
 {
@@ -50,7 +50,7 @@ std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen
   std::error_code ignored;
   const bool extend = append && std::filesystem::exists(path, ignored);
   if (path.extension() != ".h5")
-    throw InputError(fmt::format("{}: must end in .h5, because scenes tell a library by it.", path.string()));
+    throw InputError(fmt::format("{}: must end in .h5, because scenes recognise a library by it.", path.string()));
   if (!extend)
     check_new(path, overwrite);
   double next_seed = 1;
@@ -155,7 +155,7 @@ void bind_files(py::module_ &module)
       py::arg("path"), py::arg("specimens"), py::kw_only(), py::arg("overwrite") = false, py::arg("append") = false,
       "Writes periodic specimens into one file, as `isostat library` does: a column takes its packings\n"
       "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
-      "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
+      "there.\nA column distinguishes realisations by numbers[\"seed\"]: that of the grading; specimens without "
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors as exceptions, with the same text but for the names of what the user gave.   tested: tests/python/run_test.py
+// Errors as exceptions, with the same text except for the names of what the user gave.   tested: tests/python/run_test.py
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
 

@@ -158,7 +158,7 @@ struct Request
 
 constexpr const char *kept_specimen = "specimen.h5"; ///< in the results folder, of a run that was given one
 
-/// The scene names the specimen that is kept beside it instead of what it says of preparation.
+/// The scene names the specimen that is kept next to it instead of what it says of preparation.
 void name_kept_specimen(Scene &scene)
 {
   scene.specimen = without_preparation(scene.specimen);

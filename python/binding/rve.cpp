@@ -209,7 +209,7 @@ void bind_rve(py::module_ &module)
            "gradient: displacement gradient (3, 3), extension positive; its symmetric part is 0 where stress is "
            "controlled.\n"
            "stress: target (3, 3), Pa, tension positive: compression is negative, not as in a history. Symmetric where "
-           "it is\ncontrolled, not looked at elsewhere.\n"
+           "it is\ncontrolled, not used elsewhere.\n"
            "controlled: (3, 3), symmetric. tolerance: of the stress, over p' [-].\n"
            "Rejected at once: a target that needs tension, a component with strain and stress, a frame other than "
            "identity.\nRejected on the way: stress control strains it by more than 0.1, or takes max_steps.")

@@ -39,7 +39,7 @@ void bind_scene(py::module_ &module)
       .def_readonly("law", &Scene::contact, "The contact law.")
       .def_property_readonly(
           "folder", [](const Scene &scene) { return scene.output.folder; },
-          "Where run() leaves results unless it is told: results/<name of the scene file>.")
+          "Where run() leaves results unless a folder is given: results/<name of the scene file>.")
       .def_property_readonly("recipe", &specimen_recipe,
                              "All that its prepared specimen depends on: what the cache and a library know it by.")
       .def_property_readonly("text", &to_toml, "The whole scene as TOML: every key with its value and unit.")

@@ -52,7 +52,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
                 stress count; where the scene says otherwise is a warning, and not in the scene of the results. Its domain
                 and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
                 stiffness). It is kept in `output` as specimen.h5, which the scene there names
-    cache       folder of prepared specimens; None: beside the output folder, as the program does
+    cache       folder of prepared specimens; None: next to the output folder, as the program does
     overwrite   replaces results that are there; excludes resume
     resume      goes on from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
                 that is not over ends later, also of a run that has finished: strain, max_steps, times, and below until

@@ -15,7 +15,7 @@ class Scene(_core.Scene):
     Scene("test.toml")                                     a file; a relative specimen.file counts from its folder, and
                                                            from the working folder if nothing is there
     Scene(text)                                            TOML text (it has line breaks)
-    Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; what is left out has its default
+    Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; omitted keys have their defaults
     Scene(title="mine", specimen={"pressure": "100 kPa"})  sections as keywords
     Scene(..., set={"motion.damping": 0.05})               single keys over all of that
 

@@ -2,7 +2,7 @@
 """Paths of tests at equal stress or strain, and their distances."""
 import numpy as np
 
-Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, stand in the reversal itself
+Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, are in the reversal itself
 STRAIN_SPACING = 1e-5
 
 

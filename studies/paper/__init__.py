@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
-drained tests beside the laboratory. And what they leave open: resistance curves, critical states, specimens made in
+drained tests next to the laboratory. And what they leave open: resistance curves, critical states, specimens made in
 other ways, slower tests and usual ones.
 
     isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
@@ -8,9 +8,9 @@ other ways, slower tests and usual ones.
     isostat study paper --parts resistance critical ways paces --tables docs/results/paper
                                                                     what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
-    isostat study paper --figures docs/results/paper                figures and claims anew from tables
+    isostat study paper --figures docs/results/paper                figures and claims again from tables
 
-Rows that a folder of tables has of other tests stay in it: delete the folder to begin anew.
+Rows that a folder of tables has of other tests stay in it: delete the folder to begin again.
 """
 import pathlib
 import sys

@@ -139,7 +139,7 @@ def row(grains, limit, twisting, compression=(), cyclic=()):
 
 
 def draw(values, path):
-    """Each law as a point: its slope and its cycles, beside the paper's."""
+    """Each law as a point: its slope and its cycles, next to the paper's."""
     plt.rcParams.update(STYLE)
     figure, axes = plt.subplots(figsize=(5.4, 4.2), layout="constrained")
     for grains, marker in ((FEW, "o"), (MANY, "s")):

@@ -10,7 +10,7 @@ from studies.speed_error import plan
 
 STYLE = {"savefig.dpi": 200, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
          "grid.color": "#e4e4e4", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False}
-DYNAMIC, STATIC = ("#d55e00", "s"), ("#0072b2", "o")  # Okabe and Ito: colours that colour-blind readers can tell apart
+DYNAMIC, STATIC = ("#d55e00", "s"), ("#0072b2", "o")  # Okabe and Ito: colours that colour-blind readers can distinguish
 KINDS = [("rigid-box", "(a) boxes"), ("periodic-cell", "(b) cells")]
 
 
@@ -19,7 +19,7 @@ def look(setting):
 
 
 def spread_labels(axes, points):
-    """Writes each label beside its point where it covers neither points nor labels; a thin line leads to far ones."""
+    """Writes each label next to its point where it covers neither points nor labels; a thin line leads to far ones."""
     figure = axes.figure
     figure.canvas.draw()
     renderer = figure.canvas.get_renderer()

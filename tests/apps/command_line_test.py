@@ -90,7 +90,7 @@ class SpecimenMistakes(AppTest):
         cached.write_bytes(whole[: len(whole) // 2])
         result = self.run_test(scene, "-o", "again", *own)
         self.assert_done(result)
-        self.assertIn("prepared anew, because the one in the cache is damaged", result.stderr)
+        self.assertIn("prepared again, because the one in the cache is damaged", result.stderr)
         self.assertEqual(cached.stat().st_size, len(whole))
         self.assertEqual(*((self.folder / name / "history.csv").read_bytes() for name in ("made", "again")))
 
@@ -278,7 +278,7 @@ class OutputFolder(AppTest):
         self.assert_refused(self.run_test(self.scene, "-o", "thesis", "--overwrite"), "thesis", "not overwritten",
                             "scene.toml")
         self.assertEqual(contents(other), {"chapter.tex": b"precious"})
-        self.write("thesis/scene.toml", tiny_scene())  # of one's own, not of a run
+        self.write("thesis/scene.toml", tiny_scene())  # a user's file, not of a run
         before = contents(self.folder)
         for place, scene in (("thesis", self.scene), (".", "thesis/scene.toml"), ("thesis/.", "thesis/scene.toml")):
             self.assert_refused(self.run_test(scene, "-o", place, "--overwrite"), "not overwritten", "holds no ")

@@ -48,7 +48,7 @@ class Compare(ReportTest):
         self.assertEqual(re.findall(r"<tr><td>([^<]*)", scene), ["contact.friction", "output.folder"])
 
     def test_units(self):
-        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name stand in brackets."""
+        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name are in brackets."""
         self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
         text = (self.folder / "compare.html").read_text(encoding="utf-8")
         p0 = json.loads((self.runs / "one/summary.json").read_text(encoding="utf-8"))["p0"]

@@ -15,7 +15,7 @@ from failing_runs import COLUMN, EVERY, SAVED
 from support import CYCLIC, AppTest, contents, main, results, tiny_scene
 
 QUIET = ("-q", "--no-figures")
-FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses stand beside velocities
+FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses are next to velocities
 
 
 def numbers_of(path):

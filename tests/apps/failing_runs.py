@@ -50,7 +50,7 @@ class FailingRuns(AppTest):
         shutil.rmtree(self.folder / "out", ignore_errors=True)
 
     def resumed(self, program, arguments, output):
-        """As the messages say: from the checkpoint, or anew."""
+        """As the messages say: from the checkpoint, or again."""
         checkpoints = self.folder / "out/checkpoint"
         resumable = checkpoints.is_dir() and any(checkpoints.glob("*.h5"))
         result = self.run_app(program, *arguments, *output, "--resume" if resumable else "--overwrite")

@@ -40,7 +40,7 @@ class Interrupted(ColumnTest):
         self.assertTrue((self.folder / "out/report.html").exists())
         self.assertEqual(self.numbers(), before)
         again = self.run_app(*command, "-o", "out", "--resume")
-        self.assertIn("Start it anew with --overwrite", again.stdout)
+        self.assertIn("Start it again with --overwrite", again.stdout)
 
     def test_column(self):
         column = ("soil_column", self.scene, *settings(analysis__duration="0.05 s"))

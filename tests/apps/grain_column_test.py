@@ -285,7 +285,7 @@ class Alone(GrainColumnTest):
 
     def test_stress_is_that_of_the_column_to_the_bit(self):
         text, summary = self.replay("-o", "alone", "--every", 5)
-        self.assertIn("to the bit after all", text)
+        self.assertIn("bit for bit after all", text)
         self.assertGreater(summary["increments"], 50)
         self.assertEqual(summary["equal"], summary["increments"])
         self.assertEqual(summary["largest_error"], 0)
@@ -377,7 +377,7 @@ class Drained(GrainColumnTest):
                               f"drained: 10 % of the largest pore pressure may be left ({name})")
         settled = rows["settlement"]
         self.assertGreater(settled[-1], 1e-3)
-        self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, but for 2 %")
+        self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, except for 2 %")
         self.assert_below(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max(), "round-off of the work")
 
 

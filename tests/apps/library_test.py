@@ -169,7 +169,7 @@ class Library(AppTest):
         with self.started(self.make_many()) as process:
             wait_until((self.folder / "library_preparation/scene.toml").exists, "the folder", process)
             process.send_signal(signal.SIGSTOP)
-            self.assert_refused(self.make("-o", "library.h5"), "library_preparation", "another program is at work")
+            self.assert_refused(self.make("-o", "library.h5"), "library_preparation", "another program is using it")
             process.send_signal(signal.SIGCONT)
             process.send_signal(signal.SIGINT)
             process.communicate()

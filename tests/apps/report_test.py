@@ -189,7 +189,7 @@ class Reports(ReportTest):
         self.assertNotIn("one page", result.stdout)
 
     def test_a_title_is_words(self):
-        """Neither markup nor formula, whatever stands in it."""
+        """Neither markup nor formula, whatever is in it."""
         title = "<script>alert(1)</script> $x_{ % $ \\frac{"
         scene = (self.runs / "cyclic.toml").read_text(encoding="utf-8").replace('"tiny"', f"'{title}'")
         self.assertIn(title, scene)
@@ -201,7 +201,7 @@ class Reports(ReportTest):
         self.assertIn(html.escape(title), text)
 
     def test_python_of_the_working_folder_is_left_alone(self):
-        """Whoever wrote it: a folder of results from a stranger may hold anything."""
+        """An untrusted folder of results may hold anything."""
         shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
         shutil.rmtree(self.folder / "cyclic/figures")
         shutil.copy(self.runs / "cyclic.toml", self.folder)

@@ -19,7 +19,7 @@ def sleep(results, seconds):
     (results.parent / "begun").touch()
     time.sleep(seconds)
     if (results.parents[1] / "fail").exists():
-        raise ValueError("told to fail")
+        raise ValueError("on purpose")
     return {"slept": seconds}
 
 
@@ -122,7 +122,7 @@ class Studies(AppTest):
         self.write("out/fail", "")
         result = self.study("tiny", "-o", "out")
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("failed: 1 of 4 runs failed, the first of them call2: ValueError: told to fail", result.stderr)
+        self.assertIn("failed: 1 of 4 runs failed, the first of them call2: ValueError: on purpose", result.stderr)
         self.assertEqual(self.report(), "test1 test2 call1 3", "the others are kept and reported")
         (self.folder / "out/fail").unlink()
         self.assert_done(self.study("tiny", "-o", "out"))

@@ -83,7 +83,7 @@ class SystemLimits(FailingRuns):
         closed = subprocess.run(["sh", "-c", '"$0" "$@" <&- >&- 2>&-', *command[:-1]], cwd=self.folder, check=False)
         self.assertEqual(closed.returncode, 0)
         self.assertEqual(results(self.folder / "out"), whole)
-        self.assertEqual((self.folder / "out/.lock").read_bytes(), b"", "it is not what is told that it takes")
+        self.assertEqual((self.folder / "out/.lock").read_bytes(), b"", "it does not take the messages")
 
     def test_a_closed_terminal_and_the_limit_of_a_queue(self):
         for number in (signal.SIGHUP, signal.SIGXCPU):

@@ -182,7 +182,7 @@ TEST(RveHardCases, WhatIsNotANumberIsRefused)
   EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
 }
 
-/// A tension, and a deviator that no sand bears: the servo would pull or squeeze for ever.
+/// A tension, and a deviator that no sand bears: the servo would pull or squeeze forever.
 TEST(RveHardCases, AStressOutOfReachIsRefused)
 {
   Rve rve(test::periodic_specimen(grains, 10), {}), twin(test::periodic_specimen(grains, 10), {});

@@ -185,7 +185,7 @@ class States(ToleranceTest):
         at_200, at_400 = resistance.curves(rows)
         self.assert_near(at_400["K_sigma"], 0.75, 1e-12, "round-off of a fit")
         self.assert_near(at_400["K_sigma s.e."], 0, 1e-12, "equal seeds")
-        self.assertTrue(np.isnan(at_200["K_sigma"]), "of the reference nothing is said")
+        self.assertTrue(np.isnan(at_200["K_sigma"]), "the reference has no value")
 
     def test_a_line_of_states(self):
         rows = [{"e": 0.9 - 0.02 * np.log(p), "p' (kPa)": p, "p0' (kPa)": p / 2} for p in (10.0, 100.0, 1000.0)]

@@ -66,8 +66,8 @@ TEST(PathUndrained, SharesOutWhatKeepsTheVolume)
     }
 }
 
-/// The same strains as of the kind "undrained-monotonic", but for round-off, which grows by orders of magnitude within
-/// a thousand steps.
+/// The same strains as of the kind "undrained-monotonic", except for round-off, which grows by orders of magnitude in a
+/// thousand steps.
 TEST(PathUndrained, EqualsTheKindOfItsOwn)
 {
   const Result own = run({test::sheared_to<UndrainedMonotonic>(5e-6)}, cell());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a path prescribes on its way, from its keys or its table, and which settings make no path.
+// What a path prescribes along its course, from its keys or its table, and which settings make no path.
 #include "base/error.hpp"
 #include "dem/drive/stages/path.hpp"
 

@@ -126,7 +126,7 @@ Verdict Path::reached(const StageContext &c, const Observation &seen) const
   if (c.state.progress.table != table_hash())
     throw InputError(
         fmt::format("stage {} (path): the table {} is not the one that the stage began with. Put that one back, "
-                    "or start anew with --overwrite.",
+                    "or start again with --overwrite.",
                     c.state.place.stage, file));
   if (shears() && keeps_volume())
     note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);

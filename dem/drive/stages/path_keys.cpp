@@ -146,7 +146,7 @@ constexpr Key others[] = {
    .reason = "because q/p' lies there without tension", .kinds = of_path,
    .text = "When q/p' passes this, from either side.", .field = InPart<&Path::end, &PathEnd::stress_ratio>{}},
   {.path = "until.cycles", .kind = Kind::integer, .presence = Presence::optional, .value = "10", .range = {1, 1e9},
-   .kinds = of_path, .text = "After so many cycles of this stage.", .field = InPart<&Path::end, &PathEnd::cycles>{}},
+   .kinds = of_path, .text = "After this many cycles of this stage.", .field = InPart<&Path::end, &PathEnd::cycles>{}},
 };
 // clang-format on
 

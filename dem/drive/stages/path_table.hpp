@@ -30,7 +30,7 @@ constexpr bool is_strain(PathQuantity quantity) { return quantity >= PathQuantit
 constexpr bool is_compression(PathQuantity quantity) { return !is_strain(quantity) && quantity != PathQuantity::tau; }
 const char *name_of(PathQuantity quantity); ///< "stress_x", "mean_stress", "gamma": a column without its unit
 
-/// A path through stress and strain: straight lines between knots. Knot 0 is where the specimen stands when the stage
+/// A path through stress and strain: straight lines between knots. Knot 0 is where the specimen is when the stage
 /// begins, at 0; the knots here follow it.
 struct PathTable
 {

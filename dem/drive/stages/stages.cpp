@@ -65,10 +65,10 @@ constexpr Key keys[] = {
    .field = [](StageBehaviour &) -> Field { return {}; }},
   of<&Cyclic::max_cycles>(
     {.path = "until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9},
-     .text = "After so many cycles."}),
+     .text = "After this many cycles."}),
   of<&Cyclic::reversals_after_liquefaction>(
     {.path = "until.reversals_after_liquefaction", .kind = Kind::integer, .value = "10",
-     .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`."}),
+     .text = "After this many reversals of loading since p'/p0' first fell below `liquefaction_ratio`."}),
   of<&Cyclic::max_strain, UndrainedCyclic>(
     {.path = "until.strain", .value = "0.15", .range = ranges::to_one,
      .reason = "because this is a strain, not percent",
@@ -84,11 +84,11 @@ constexpr Key keys[] = {
              "says."}),
   of<&SteppedStage::max_steps>(
     {.path = "max_steps", .kind = Kind::integer, .value = "0",
-     .text = "Ends the stage after so many time steps; 0: no limit. A stage that has not met its own conditions by then is warned "
-             "of, with what was reached."}),
+     .text = "Ends the stage after this many time steps; 0: no limit. A warning names a stage that has not met its own conditions "
+             "by then, and what was reached."}),
   of<&Repeat::stages>(
     {.path = "stages", .kind = Kind::integer, .value = "1", .range = {1, 1e3},
-     .text = "So many stages before this one are done again, in their order; a repeat among them counts as one. "
+     .text = "This many stages before this one are done again, in their order; a repeat among them counts as one. "
              "At most as many as there are."}),
   of<&Repeat::times>(
     {.path = "times", .kind = Kind::integer, .presence = Presence::required, .value = "10", .range = {1, 1e6},

@@ -143,7 +143,7 @@ PYBIND11_MODULE(_column, module)
       .def_readonly("title", &ColumnScene::title, "What heads tables and figures.")
       .def_property_readonly(
           "folder", [](const ColumnScene &scene) { return scene.output.folder; },
-          "Where run() leaves results unless it is told: results/<name of the scene file>.")
+          "Where run() leaves results unless a folder is given: results/<name of the scene file>.")
       .def_property_readonly(
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")

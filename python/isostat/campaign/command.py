@@ -45,12 +45,12 @@ def add_campaign(line: argparse.ArgumentParser, folder: str) -> None:
     """Options of a campaign. folder: default of --output, as the help says it."""
     add_engine(line)
     line.add_argument("-o", "--output", type=pathlib.Path, help=f"results folder (default: {folder})")
-    line.add_argument("--overwrite", action="store_true", help="start anew: remove finished runs of this folder")
+    line.add_argument("--overwrite", action="store_true", help="start again: remove finished runs of this folder")
     line.add_argument("--no-figures", action="store_true", help="leave no figure and no report")
 
 
 def add_engine(line: argparse.ArgumentParser, jobs: int = 1) -> None:
-    """Where runs are done, and what is said meanwhile."""
+    """Where runs are done, and the messages meanwhile."""
     line.add_argument("-j", "--jobs", type=count(0, 1024), default=jobs,
                       help=f"runs side by side on this machine, each on one thread (default {jobs}; 0: one for each core). "
                            "Results do not depend on it")
@@ -124,7 +124,7 @@ def duration_text(seconds: float) -> str:
 
 
 def leave(folder: pathlib.Path, text: str, program: str, figures: bool) -> None:
-    """Prints the summary, keeps it as summary.txt, and leaves figures and report.html beside it."""
+    """Prints the summary, keeps it as summary.txt, and leaves figures and report.html next to it."""
     write_replacing(folder / "summary.txt", text)
     print(text, end="")
     if figures:

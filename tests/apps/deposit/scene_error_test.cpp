@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a column's scene file or an override can have wrong, and what the user is told.
+// What a column's scene file or an override can have wrong, and the message for the user.
 #include "apps/deposit/scene.hpp"
 #include "base/error.hpp"
 #include "base/scene/schema.hpp"
@@ -122,7 +122,7 @@ TEST(ColumnSceneError, MeshAndWater)
   expect_refused(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
   EXPECT_EQ(complaint(layer + undrained + dynamic, {"water.lagged_compressibility=true"}), "accepted");
   expect_refused(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});
-  expect_refused(smallest + "[water2]\n", {"column.toml:10: water2; is no key of a scene. Did you mean water?"});
+  expect_refused(smallest + "[water2]\n", {"column.toml:10: water2; is an unknown key. Did you mean water?"});
 }
 
 TEST(ColumnSceneError, Base)

@@ -71,13 +71,13 @@ TEST_F(CheckpointTest, SaysWhatIsWrongWithEach)
   catch (const InputError &error)
     {
       EXPECT_NE(std::string(error.what()).find("last.h5"), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find("Or start anew with --overwrite"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("Or start again with --overwrite"), std::string::npos) << error.what();
     }
   std::filesystem::remove(folder / "last.h5");
   EXPECT_THROW(read_checkpoint(folder), InputError);
 }
 
-/// Numbers every field anew; what is optional is there.
+/// Numbers every field again; what is optional is there.
 struct Fill
 {
   int n = 0;

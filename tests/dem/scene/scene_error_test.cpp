@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene file or an override can have wrong, and what the user is told: place, value, allowed range, remedy.
+// What a scene file or an override can have wrong, and the message for the user: place, value, allowed range, remedy.
 #include "base/error.hpp"
 #include "dem/scene/scene.hpp"
 #include "tests/support/refusal.hpp"
@@ -40,9 +40,9 @@ TEST(SceneError, UnknownKeyNamesTheNearest)
   expect_complaint(smallest + "[motion]\ndampin = 0.2",
                    {"scene.toml:4: motion.dampin = 0.2;", "Did you mean motion.damping?"});
   expect_complaint(smallest + "[motion]\nzzz = 1",
-                   {"scene.toml:4: motion.zzz = 1; is no key of this kind", "--print-defaults"});
+                   {"scene.toml:4: motion.zzz = 1; is an unknown key", "--print-defaults"});
   expect_complaint("damping = 0.2\n" + smallest, {"scene.toml:1: damping", "Did you mean", "damping?"});
-  expect_complaint(smallest + "[motoin]\ndamping = 0.2", {"scene.toml:3: motoin; is no key", "Did you mean motion?"});
+  expect_complaint(smallest + "[motoin]\ndamping = 0.2", {"motoin; is an unknown key", "Did you mean motion?"});
   expect_complaint(cyclic_with("amplitude = \"60 kPa\""),
                    {"scene.toml:5: stage.0.amplitude", "Did you mean stage.deviator_amplitude?"});
   expect_complaint(cyclic_with("until = { cycle = 3 }"),

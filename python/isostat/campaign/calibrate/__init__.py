@@ -9,8 +9,8 @@
 
 Its folder:
 
-     plan.toml  scene.toml  laboratory/NAME.csv   what makes its results: tells this calibration from another one
-     runs/TRIAL/CURVE_seedN/                      results of a run; beside it .toml (scene), .log, .failed (why)
+     plan.toml  scene.toml  laboratory/NAME.csv   what makes its results: distinguishes this calibration from others
+     runs/TRIAL/CURVE_seedN/                      results of a run; next to it .toml (scene), .log, .failed (why)
      specimens/                                   prepared for them
      trials.csv  curves.csv  calibrate.json  summary.txt  best_scene.toml  best/CURVE.toml  figures/
 

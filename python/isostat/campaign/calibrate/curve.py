@@ -70,7 +70,7 @@ def compare(laboratory: Curve, models: list[Curve], plan: Any, settings: Any) ->
         misfit^2 = 1/(2n) sum_i [ ((q_i - q_i^lab)/max|q^lab|)^2 + ((v_i - v_i^lab)/max|v^lab|)^2 ]
 
     Maxima over the compared strains; between rows curves are straight. The scatter has the standard error of the mean
-    in place of the differences: a misfit of this size cannot be told from none.
+    in place of the differences: a misfit of this size cannot be distinguished from none.
 
     Raises InputError: a laboratory curve that is zero throughout; a model curve that ends too early
     """

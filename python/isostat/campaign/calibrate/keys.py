@@ -89,7 +89,7 @@ KEYS = (
     Key("parameter.curve", "dense", "Name of the only curve, or group of curves, that it belongs to (a density, say); "
         "left out: all.", need="optional"),
 
-    Key("curve.file", "TMD3.csv", "Table with a header, columns between commas, beside the plan.", need="required"),
+    Key("curve.file", "TMD3.csv", "Table with a header, columns between commas, next to the plan.", need="required"),
     Key("curve.test", "drained", need="required", choices=TESTS),
     Key("curve.name", "loose", "Names it in tables and folders; left out: the file without its ending.",
         need="optional"),

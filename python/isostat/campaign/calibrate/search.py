@@ -32,7 +32,7 @@ def search(settings: Any, start: list[float], objective: Callable[[list[float]],
     or CRS2 with local mutation (Kaelo and Ali 2006). It always asks for the same points in the same order, so that it
     can be repeated from known values. The best point is not returned: the objective knows what it has been asked.
 
-    Returns why it ended.   Raises what the objective raises, but for BudgetUsed
+    Returns why it ended.   Raises what the objective raises, except for BudgetUsed
     """
     optimiser = nlopt()
     optimiser.srand(SEED)
