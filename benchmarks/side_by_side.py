@@ -116,7 +116,7 @@ def check(options):
     options.state_of = dict(zip(folders, map(os.path.abspath, options.yade_state)))
     program = pathlib.Path(options.build) / "bin" / "whole_step"
     if not program.exists():
-        raise BadInput(f"{program} is not there; build it: cmake --preset release && "
+        raise BadInput(f"{program} does not exist; build it: cmake --preset release && "
                        "cmake --build --preset release --target whole_step")
     isostat = Isostat(program, options.cores[0])
     if max(options.threads) > 1 and not isostat.has("--threads"):

@@ -180,7 +180,7 @@ private:
   [[noreturn]] void stop()
   {
     save();
-    throw Interrupted(fmt::format("interrupted after step {}; go on with --resume", summary_.steps));
+    throw Interrupted(fmt::format("interrupted after step {}; continue with --resume", summary_.steps));
   }
 
   void record()

@@ -43,7 +43,7 @@ struct BiaxialSummary
   }
 };
 
-/// Runs a scene and leaves all files but the summary, or goes on from its newest checkpoint to the same bits. A step
+/// Runs a scene and leaves all files but the summary, or continues from its newest checkpoint to the same bits. A step
 /// without equilibrium ends the run early: what it found so far stays.
 /// @throws InputError  before anything that is there is changed
 /// @throws Interrupted  after a signal, with a checkpoint

@@ -85,7 +85,7 @@ int guarded(const std::function<void()> &program)
   catch (const std::bad_alloc &)
     {
       std::fputs("failed: there is not enough memory, or a limit of it (ulimit -v) is reached. Give fewer grains or "
-                 "points, or run fewer side by side; what a checkpoint holds goes on with --resume\n",
+                 "points, or run fewer side by side; what a checkpoint holds continues with --resume\n",
                  stderr);
       return 1;
     }

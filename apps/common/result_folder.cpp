@@ -135,7 +135,7 @@ void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
   if (fs::is_symlink(folder, failure) && !fs::exists(folder, failure))
-    throw InputError(fmt::format("{}: is a link to {}, which is not there. Remove it, or choose another --output.",
+    throw InputError(fmt::format("{}: is a link to {}, which does not exist. Remove it, or choose another --output.",
                                  folder.string(), fs::read_symlink(folder, failure).string()));
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder))
@@ -173,7 +173,7 @@ void check_result_folder(const fs::path &folder, FolderUse use)
   if (used && use == FolderUse::fresh)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
-        fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
+        fs::exists(folder / "checkpoint", failure) ? ", --resume to continue from its checkpoint," : ""));
   if (used)
     expect_results(folder);
   try_writable_folder(folder);

@@ -16,7 +16,7 @@ enum class FolderUse
 {
   fresh,     ///< must not exist yet
   overwrite, ///< results that are there are removed first
-  resume     ///< goes on from the newest checkpoint
+  resume     ///< continues from the newest checkpoint
 };
 
 inline FolderUse folder_use(bool overwrite) { return overwrite ? FolderUse::overwrite : FolderUse::fresh; }
@@ -56,8 +56,8 @@ bool folder_exists(const std::filesystem::path &folder);
 void make_writable_folder(const std::filesystem::path &folder);
 
 /// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, time, and what `more`
-/// reports: name and value). What earlier calls left in provenance.txt, of a run that goes on or a campaign that grows,
-/// stays above an empty line.   tested: tests/apps/column_ensemble_test.py, tests/apps/biaxial_resume_test.py
+/// reports: name and value). What earlier calls left in provenance.txt, of a run that continues or a campaign that
+/// grows, stays above an empty line.   tested: tests/apps/column_ensemble_test.py, tests/apps/biaxial_resume_test.py
 void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
                       const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
 /// The same of a scene of grains, with instruction set and seed.

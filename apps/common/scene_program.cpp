@@ -27,7 +27,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
     {
       line.add_flag("--print-manual", o.print_manual,
                     fmt::format("print {}: every key of a scene", program.manual_page));
-      line.add_flag("--resume", o.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
+      line.add_flag("--resume", o.resume, "continue from the newest checkpoint, to the same bits")->excludes(overwrite);
     }
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
   line.add_flag("--no-figures", o.no_figures, "leave no figures and no report at the end");

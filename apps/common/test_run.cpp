@@ -140,7 +140,7 @@ Summary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *wa
     }
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
-    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
+    throw Interrupted(fmt::format("interrupted at step {}; continue with --resume", run.assembly->step()));
 
   const std::uint64_t steps = run.assembly->step();
   const Summary summary =

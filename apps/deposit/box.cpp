@@ -23,7 +23,7 @@ constexpr Key in_mesh[] = {
            "degree 2 (reduced integration) takes fewer packings. Else at least the degree.",
    .field = [](ColumnMesh &m) -> Field { return &m.points; }},
   {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, the soil goes on forever; walls: of a strip (dimension 2), a box "
+   .text = "tied: opposite points of the sides move as one, the soil continues forever; walls: of a strip (dimension 2), a box "
            "whose smooth walls move with its rigid base. The soil settles into equilibrium before "
            "anything else, from K0 stresses: docs/theory_column.md, section 9.",
    .field = [](ColumnMesh &m) -> Field { return &m.sides; }},

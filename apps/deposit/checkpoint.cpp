@@ -50,7 +50,7 @@ const auto &field(const ColumnCheckpoint &checkpoint, const Fields &fields, cons
 {
   const auto found = fields.find(name);
   if (found == fields.end())
-    throw InputError(fmt::format("{}: holds no {}; a run cannot go on from it. Start again with --overwrite.",
+    throw InputError(fmt::format("{}: holds no {}; a run cannot continue from it. Start again with --overwrite.",
                                  checkpoint.file, name));
   return found->second;
 }

@@ -8,7 +8,7 @@ import os
 import re
 
 REMEDY = ("Restore it from a copy, or delete it and finish the run again: its command is in provenance.txt, and "
-          "--resume goes on from a checkpoint.")
+          "--resume continues from a checkpoint.")
 
 
 NUMBERS = itertools.count()

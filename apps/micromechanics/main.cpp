@@ -54,7 +54,7 @@ std::vector<fs::path> snapshot_files(const fs::path &results)
 {
   std::error_code failure;
   if (!fs::exists(results, failure))
-    throw InputError(fmt::format("{}: is not there. {}.", results.string(), remedy));
+    throw InputError(fmt::format("{}: does not exist. {}.", results.string(), remedy));
   if (!fs::is_directory(results))
     return {results};
   const fs::path folder = results / "snapshots";

@@ -64,8 +64,8 @@ def check(pair):
     """Both finished, and of one kind.   Raises NoResults"""
     for results in pair:
         if results.numbers is None:
-            raise NoResults(f"{results.path}: is not finished, because {NUMBERS[results.program]} is not there yet. "
-                            "Wait for the run, or go on with it by its command and --resume.")
+            raise NoResults(f"{results.path}: is not finished, because {NUMBERS[results.program]} does not exist yet. "
+                            "Wait for the run, or continue with it by its command and --resume.")
     one, other = pair
     if one.program != other.program:
         raise NoResults(f"{one.path} is of {one.program}, {other.path} of {other.program}: they have nothing to "

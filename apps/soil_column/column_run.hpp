@@ -226,7 +226,7 @@ private:
   [[noreturn]] void stop()
   {
     save();
-    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run_.n_steps()));
+    throw Interrupted(fmt::format("interrupted at step {}; continue with --resume", run_.n_steps()));
   }
 
   /// Brings all files up to date, then writes a checkpoint.

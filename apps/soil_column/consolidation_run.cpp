@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Consolidation of a column: the load goes on in an instant, then the water leaves.
+// Consolidation of a column: the load comes in an instant, then the water leaves.
 #include "apps/soil_column/statics_run.hpp"
 
 #include <limits>

@@ -10,7 +10,7 @@
 
 namespace isostat
 {
-/// What a run of a column leaves in its folder while it goes on: history, profiles, files for ParaView, checkpoints.
+/// What a run of a column leaves in its folder while it continues: history, profiles, files for ParaView, checkpoints.
 /// Never changes the run. Only a rank that calls open() touches the disk.
 /// tested: tests/apps/soil_column_test.py
 template <int dim>

@@ -143,7 +143,7 @@ Handle create_dataset(const FileState &file, const std::string &item, hid_t spac
                  file, item, "creating the dataset failed (does it exist already?)");
 }
 
-/// A dataset that stores what it claims: rows that are not there would ask for any amount of memory. Deflated zeros
+/// A dataset that stores what it claims: rows that do not exist would ask for any amount of memory. Deflated zeros
 /// take a 1032nd of their size; rows that a resumed run has filled up take nothing.
 Handle open_stored(const FileState &file, const std::string &item)
 {

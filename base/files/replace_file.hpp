@@ -17,7 +17,7 @@ namespace isostat
 void write_replacing(const std::filesystem::path &path, std::string_view text);
 
 /// The same for what is too long to be had at once.
-/// @param write  writes it, piece by piece; what it throws goes on, and the old content stays
+/// @param write  writes it, piece by piece; what it throws is passed on, and the old content stays
 void write_replacing(const std::filesystem::path &path, const std::function<void(std::ostream &)> &write);
 
 /// Removes from a folder what writers that were killed have left next to their files.

@@ -45,7 +45,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
         {
           read(path);
           if (!problems.empty())
-            warn(fmt::format("damaged checkpoint:{}\n  This run goes on from the checkpoint before, {}.", problems,
+            warn(fmt::format("damaged checkpoint:{}\n  This run continues from the checkpoint before, {}.", problems,
                              path.string()));
           return;
         }

@@ -108,7 +108,7 @@ void Recorder::check(const hdf5::Group &root, std::size_t n_rows) const
 template <class Use>
 void Recorder::for_each_block(std::size_t n_rows, const Use &use) const
 {
-  constexpr std::size_t n_block = 4096; // a history of days is larger than the run that goes on with it
+  constexpr std::size_t n_block = 4096; // a history of days is larger than the run that continues with it
   const hdf5::File file = hdf5::File::open(hdf5_);
   const hdf5::Group series = file.root().group("history");
   std::vector<std::vector<double>> block(columns_.size());
@@ -169,7 +169,7 @@ void Recorder::with_own_file(const Work &work) const
   catch (const InputError &error)
     {
       throw RunFailure(fmt::format("{}\n  It was whole when this run wrote it, and another program has removed or "
-                                   "changed it since. Put it back and go on with --resume, or start again with "
+                                   "changed it since. Put it back and continue with --resume, or start again with "
                                    "--overwrite.",
                                    error.what()));
     }
@@ -190,7 +190,7 @@ void Recorder::append(std::span<const double> row)
   assert(row.size() == columns_.size());
   for (std::size_t c = 0; c < row.size(); ++c)
     if (!std::isfinite(row[c]))
-      throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or went on from a damaged "
+      throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or continued from a damaged "
                                    "checkpoint. Take shorter steps, or start again with --overwrite.",
                                    csv_.string(), columns_[c].name, row[c], n_rows_ + 1));
   for (std::size_t c = 0; c < row.size(); ++c)

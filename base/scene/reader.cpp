@@ -180,7 +180,7 @@ std::string read_scene_text(const std::string &path)
 {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
+    throw InputError(fmt::format("{}: does not exist; must be a scene file (TOML). Check the path.", path));
   if (std::filesystem::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder; must be a scene file (TOML). Give one that is in it.", path));
   if (!std::filesystem::is_regular_file(path, ignored))
@@ -209,7 +209,7 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_directory(path, ignored))
       document.refuse(key, fmt::format("is a folder: {}. Give a file that is in it.", path.string()));
-  document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the "
+  document.refuse(key, fmt::format("does not exist: neither {} nor {}. A relative path counts from the folder of the "
                                    "scene file or else from the working directory; correct it.",
                                    beside_scene.string(), here.string()));
 }

@@ -5,11 +5,11 @@
 
 namespace isostat
 {
-/// The text of a scene file.  @throws InputError if it is not there or cannot be read
+/// The text of a scene file.  @throws InputError if it does not exist or cannot be read
 std::string read_scene_text(const std::string &path);
 
-/// The absolute path of a file that a scene names. It counts from the folder of the scene file or, if it is not there,
-/// from the working directory.
+/// The absolute path of a file that a scene names. It counts from the folder of the scene file or, if it does not
+/// exist, from the working directory.
 /// @throws InputError  tested: tests/apps/deposit/scene_error_test.cpp
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
                        const std::string &file);

@@ -31,7 +31,7 @@ public:
   explicit InSituCache(std::filesystem::path path);
 
   std::optional<Snapshot> find(const std::string &recipe) const;
-  /// Adds what is not there yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
+  /// Adds what does not exist yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
   /// stderr says so. So does one that cannot be written, which is as before: the run has its states.
   void add(const std::vector<InSituState> &states) const;
 

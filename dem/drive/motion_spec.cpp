@@ -71,7 +71,7 @@ constexpr Key chosen[] = {
 constexpr const char *drives[] = {"dynamic", "static"};
 constexpr Key statics[] = {
   {.path = "drive", .kind = Kind::choice, .value = "dynamic", .choices = drives,
-   .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
+   .text = "How stages that shear advance. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
            "taken to balance; rates and dampings are ignored. Preparation is dynamic; static needs a stage that shears.",
    .field = [](StaticDrive &d) -> Field { return &d.on; }},
   {.path = "increment", .value = "5e-5", .range = {0, 1e-3, true, false},

@@ -18,14 +18,14 @@ struct WrittenSoFar
   ISOSTAT_FIELDS(rows, snapshots, redundancy)
 };
 
-/// All that a killed run needs to go on to the same bits: grains with the history of their contacts (after a move), and
-/// what drivers, sums and recorders keep.
+/// All that a killed run needs to continue to the same bits: grains with the history of their contacts (after a move),
+/// and what drivers, sums and recorders keep.
 struct Checkpoint
 {
   Snapshot state;
   DriveState drive;
   WrittenSoFar written;
-  std::map<std::string, double> assembly; ///< sums of the energy balance, and what they go on from
+  std::map<std::string, double> assembly; ///< sums of the energy balance, and what they continue from
   std::map<std::string, double> specimen; ///< its figures (Specimen::numbers), for the summary of a resumed run
   std::string scene;                      ///< the resolved scene; a resumed run must have the same
   std::string instruction_set = {};       ///< of the machine that wrote it, for other_instruction_set(); set by reading

@@ -33,7 +33,7 @@ typedef enum isostat_status
   ISOSTAT_OK = 0,
   ISOSTAT_REJECTED = 1,  ///< an increment that cannot be taken: the element is as before. Divide it
   ISOSTAT_BAD_INPUT = 2, ///< a mistake in what was given; the element is as before
-  ISOSTAT_FAILURE = 3 ///< anything else: no memory, a factorisation that fails; restore the element before it goes on
+  ISOSTAT_FAILURE = 3 ///< anything else: no memory, a factorisation that fails; restore the element before it continues
 } isostat_status;
 
 typedef struct isostat_rve isostat_rve;             ///< an element
@@ -111,8 +111,8 @@ isostat_status isostat_rve_void_ratio(const isostat_rve *rve, double *void_ratio
 /// @param water  density of the water, kg/m3, >= 0
 isostat_status isostat_rve_densities(const isostat_rve *rve, double water, double *dry, double *saturated);
 
-/// Time steps since the element was made, rejected increments not counted; goes on through pack and unpack, and is not
-/// turned back by isostat_rve_restore().
+/// Time steps since the element was made, rejected increments not counted; continues through pack and unpack, and is
+/// not turned back by isostat_rve_restore().
 isostat_status isostat_rve_steps(const isostat_rve *rve, uint64_t *steps);
 
 /// Copies the element's state: about 15 numbers a grain and 13 a contact.

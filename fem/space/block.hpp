@@ -64,7 +64,7 @@ struct MeshSpec
 /// What holds the sides of a block.
 enum class Sides
 {
-  tied, ///< opposite ones move as one: the block goes on forever
+  tied, ///< opposite ones move as one: the block continues forever
   walls ///< smooth walls of a box that moves with its rigid base
 };
 

@@ -55,7 +55,7 @@ class Way:
 
     specimen: str = ""  # a line of [specimen]
     sizes: str = ""  # a line of [grading]
-    pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
+    pressure: float = 0  # kPa, at which friction is raised; the compression continues from there
     cell: bool = False  # no walls
     own_limits: bool = True  # of the cell; else those of boxes define its density
     at_once: bool = False  # friction is raised as the test begins, without a new balance

@@ -31,7 +31,7 @@ class Resume(ColumnTest):
             shutil.rmtree(self.folder / "parts", ignore_errors=True)
             said = self.stop_when_saved(SOFTENING, how, "-q", *options, program="biaxial")
             if how == signal.SIGTERM:
-                self.assertIn("go on with --resume", said)
+                self.assertIn("continue with --resume", said)
             self.assertFalse((self.folder / "parts/summary.json").exists())
             self.goes_on(SOFTENING, *options)
         again = self.run_app("biaxial", SOFTENING, "-o", "parts", "--no-figures", "--resume", *options)

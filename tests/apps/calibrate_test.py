@@ -236,7 +236,8 @@ class Refusals(Calibrate):
         self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "unknown key",
                                  "contact.friction")
         self.assert_plan_refused(plan_text(key="nothing.alike", bounds="[1, 2]"), "element_test --print-defaults")
-        self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv", "is not there")
+        self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv",
+                                 "does not exist")
         self.assert_plan_refused(plan_text().replace("scene.toml", "other.toml"), "wrong.toml:2", "other.toml")
         for text, parts in ((LABORATORY.replace("v[kPa]", "v[bar]"), ("lab.csv:1", '"sigma_v[bar]": the unit is bar')),
                             (LABORATORY.replace("2,0.3", "0.9,0.3"), ("lab.csv:5", "eps_a[%] = 0.9", "goes back")),
@@ -245,7 +246,7 @@ class Refusals(Calibrate):
             self.assert_plan_refused(plan_text(), *parts)
         self.assert_refused(self.run_app("isostat", "calibrate"), "no plan given", "quick_karlsruhe.toml")
         for path in ("nowhere.toml", "/dev/zero", "."):
-            self.assert_refused(self.run_it(plan=path), path, "is not there, or is no file")
+            self.assert_refused(self.run_it(plan=path), path, "does not exist, or is no file")
 
     def test_density_that_no_trial_reaches(self):
         plan = self.write("dense.toml", plan_text(curve="relative_density = 1.0"))

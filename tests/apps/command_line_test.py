@@ -26,7 +26,7 @@ class SceneMistakes(AppTest):
         self.refuse(text, f"scene.toml:{self.line_of(text, 'dampnig')}:", "dampnig", "damping")
 
     def test_missing_scene(self):
-        self.assert_refused(self.run_test("nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_test("nowhere.toml"), "nowhere.toml", "does not exist")
 
     def test_no_scene(self):
         self.assert_refused(self.run_app("element_test"), "no scene given", "--help")
@@ -79,7 +79,7 @@ class SpecimenMistakes(AppTest):
         return specimen
 
     def test_missing(self):
-        self.refuse("scene.toml:", "specimen.file", "is not there")
+        self.refuse("scene.toml:", "specimen.file", "does not exist")
 
     def test_damaged_cache(self):
         scene = self.write("make.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
@@ -216,7 +216,7 @@ class Copied(AppTest):
         for program in ("isostat", "element_test"):
             (self.folder / "there").mkdir(exist_ok=True)
             shutil.copy(BIN / program, self.folder / "there" / program)
-        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat is not there",
+        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat does not exist",
                             "copied", "built or installed")
         (self.folder / "link").symlink_to(BIN / "isostat")
         self.assert_done(self.run_app(self.folder / "link", "--version"))
@@ -224,7 +224,7 @@ class Copied(AppTest):
         result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
         self.assert_done(result)
         self.assertIn("figures were not drawn: ", result.stdout)
-        self.assertIn("share/isostat/report is not there", result.stdout)
+        self.assertIn("share/isostat/report does not exist", result.stdout)
 
 
 class Readme(AppTest):
@@ -293,7 +293,7 @@ class OutputFolder(AppTest):
                                 ("pipe: is a pipe or a device; must be a scene file", ("pipe",)),
                                 ("zero: is a pipe or a device; must be a scene file", ("/dev/zero",)),
                                 ("is compressed; must be a scene file (TOML). Unpack it", ("scene.toml.gz",)),
-                                ("link: is a link to nowhere, which is not there", (self.scene, "-o", "link")),
+                                ("link: is a link to nowhere, which does not exist", (self.scene, "-o", "link")),
                                 ("a point in its number, no comma", (self.scene, "--set", "specimen.pressure=0,5 kPa")),
                                 ("error: The following argument was not expected: --bogus", (self.scene, "--bogus"))):
             with self.subTest(said):

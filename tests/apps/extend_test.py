@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A test that has finished or was stopped goes on to a later end, to the bits of one long run; what else differs in its
-scene is refused, and what is there stays."""
+"""A test that has finished or was stopped continues to a later end, to the bits of one long run; what else differs in
+its scene is refused, and what is there stays."""
 import json
 import signal
 

@@ -61,7 +61,7 @@ class FailingRuns(AppTest):
         self.assertTrue((self.folder / "out/summary.txt").is_file())
 
     def repeated(self, program, arguments, output):
-        """By the same command, as a campaign or a library goes on."""
+        """By the same command, as a campaign or a library continues."""
         append = ["--append"] if (self.folder / "out/library.h5").exists() else []
         self.assert_done(self.run_app(program, *arguments, *output, *append))
 

@@ -71,7 +71,7 @@ class Interrupted(ColumnTest):
             'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "3 Hz"\nduration = "60 s"\nramp = "1 s"',
             'kind = "record"\nfile = "a.txt"'))
         ensemble = ("isostat", "ensemble", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
-        self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command goes on",))
+        self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command continues",))
         self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))
         self.assertTrue((self.folder / "out/report.html").exists())
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One machine as another that has fewer instructions: each set its own bits, all the same test, and a run that goes on
-with another set than its checkpoint was written with says so."""
+"""One machine as another that has fewer instructions: each set its own bits, all the same test, and a run that
+continues with another set than its checkpoint was written with says so."""
 import os
 import re
 import signal

@@ -140,7 +140,7 @@ class Reports(ReportTest):
         self.assertIn('<li class="attention"><strong>Rate:', self.report("fast"))
 
     def test_started_from_python(self):
-        """What goes on and what repeats are calls, not commands of a shell."""
+        """What continues and what repeats are calls, not commands of a shell."""
         shutil.copytree(self.runs / "cyclic", self.folder / "out")
         provenance = self.folder / "out/provenance.txt"
         for function in ("isostat.column.run", "isostat.run"):

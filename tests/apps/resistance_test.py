@@ -123,7 +123,7 @@ class LiquefactionResistance(AppTest):
         self.assertEqual(self.outcome(), self.outcome("at_once"))
 
     def test_a_run_killed_between_two_names_of_its_checkpoint(self):
-        """It goes on from there, and is not begun again."""
+        """It continues from there, and is not begun again."""
         arguments = (self.scene, "--ratios", "0.1", "-n", "1", "--cycles", "15", "--no-figures", "-o", "out",
                      "--set", "output.checkpoint=1e-9 min")
         checkpoint = self.folder / "out/runs/csr0.1_seed1/checkpoint"
@@ -147,7 +147,7 @@ class LiquefactionResistance(AppTest):
             self.assert_refused(self.run_it("--ratios", ratios, "-o", "out"), "--ratios", *parts)
         monotonic = self.write("monotonic.toml", tiny_scene(stages=MONOTONIC.format(steps=10)))
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", scene=monotonic), "no cyclic stage", "undrained-cyclic")
-        self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "does not exist")
         packing = self.write("packing.h5", "")
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", "--set", f"specimen.file={packing}",
                                         scene=self.write("triaxial.toml", TRIAXIAL)), "specimen.file",

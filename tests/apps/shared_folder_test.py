@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two runs in one folder: the second is refused whether it would start again or go on, the first does not notice, and
-its folder is free as soon as it has ended, however it has."""
+"""Two runs in one folder: the second is refused whether it would start again or continue, the first does not notice,
+and its folder is free as soon as it has ended, however it has."""
 import contextlib
 import os
 import shutil

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""isostat study: every study says what it would run; a tiny one runs, is stopped, goes on, fails, reports."""
+"""isostat study: every study says what it would run; a tiny one runs, is stopped, continues, fails, reports."""
 import pathlib
 import signal
 
@@ -109,7 +109,7 @@ class Studies(AppTest):
                 process.send_signal(signal.SIGTERM)
                 _, err = process.communicate(timeout=TIME_LIMIT)
             self.assertEqual(process.returncode, 130, err)
-            self.assertIn("the same command goes on", err)
+            self.assertIn("the same command continues", err)
         log = (self.folder / "out/logs/test1.log").read_text(encoding="utf-8")
         self.assertIn(" steps, the last ", log, "it was resumed")
         self.assertEqual(self.report(), "test1 0")

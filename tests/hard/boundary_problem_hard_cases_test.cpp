@@ -85,7 +85,7 @@ MotionSpec frozen()
 } // namespace
 
 /// A strip load that grows beyond what the soil bears: the last equilibrium below the limit load stays, can be saved,
-/// and a smaller load goes on from there.
+/// and a smaller load continues from there.
 TEST(BoundaryProblemHardCases, ALoadBeyondTheLimitLoad)
 {
   constexpr double cohesion = 10e3, bears = (2 + std::numbers::pi) * cohesion; // Prandtl 1921

@@ -120,7 +120,7 @@ def write_laboratory(folder):
 
 class Recovery(unittest.TestCase):
     def setUp(self):
-        kept = os.environ.get("ISOSTAT_KEEP")  # a folder: results stay, and the next call goes on from them
+        kept = os.environ.get("ISOSTAT_KEEP")  # a folder: results stay, and the next call continues from them
         self.folder = pathlib.Path(kept or tempfile.mkdtemp())
         self.folder.mkdir(exist_ok=True)
         if not kept:

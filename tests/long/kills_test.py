@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs that are killed (SIGKILL) at random moments, again and again, and go on with another number of threads, jobs or
-ranks: the final bytes are those of an undisturbed run. Not part of the usual tests: ctest --preset
+"""Runs that are killed (SIGKILL) at random moments, again and again, and continue with another number of threads, jobs
+or ranks: the final bytes are those of an undisturbed run. Not part of the usual tests: ctest --preset
 long.
 
 ISOSTAT_KILLS   of each program (20)          ISOSTAT_SEED    draws the same moments again

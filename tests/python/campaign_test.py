@@ -106,7 +106,7 @@ class CampaignTest(FolderTest):
             self.assertFalse(try_lock(file))
 
     def test_engines(self):
-        for name, parts in (("nothere.json", "is not there"), ("pigeons", "is not an engine")):
+        for name, parts in (("nothere.json", "does not exist"), ("pigeons", "is not an engine")):
             with self.assertRaisesRegex(isostat.InputError, parts), campaign.engine(name):
                 pass
 

@@ -82,7 +82,7 @@ class SceneTest(ToleranceTest):
             isostat.Scene(TEXT).with_(**{"contact.law": "hertz-mindlin"})
         other = isostat.Scene({**isostat.Scene(TEXT).to_dict(), "contact": {"law": "hertz-mindlin"}})
         self.assertEqual(other.law.name, "hertz-mindlin")
-        with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: is not there"):
+        with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: does not exist"):
             isostat.Scene("nowhere.toml")
         self.assertTrue(issubclass(isostat.InputError, ValueError))
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The general stage on packings: what each condition keeps is kept, courses are followed, stages end where they should,
-// a stopped run goes on to the same bits.
+// a stopped run continues to the same bits.
 #include "base/error.hpp"
 #include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/drive/programme.hpp"

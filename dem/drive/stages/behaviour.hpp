@@ -23,7 +23,7 @@ struct Observation
 /// What came of an observation.
 struct Verdict
 {
-  std::optional<EndCondition> end = {}; ///< what ends the stage with this step; none: it goes on
+  std::optional<EndCondition> end = {}; ///< what ends the stage with this step; none: it continues
   bool notable = false;                 ///< record a row and, if requested, a snapshot
   std::string event = {};               ///< one line for the log; empty: nothing happened
 };

@@ -42,7 +42,7 @@ struct PathTable
   bool prescribes(PathQuantity q) const { return !columns[static_cast<std::size_t>(q)].empty(); }
   /// Value at a place, between knot 0 with the value `start` and the last one; beyond it that of the last.
   double value(PathQuantity q, double place, double start) const;
-  /// Of all knots and values: a resumed run must go on along the same path.
+  /// Of all knots and values: a resumed run must continue along the same path.
   std::uint64_t hash() const;
 
   bool operator==(const PathTable &) const = default;

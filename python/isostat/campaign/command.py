@@ -80,7 +80,7 @@ def run(program: Callable[[], None]) -> int:
         print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("interrupted; what has been run is kept, the same command goes on", file=sys.stderr)
+        print("interrupted; what has been run is kept, the same command continues", file=sys.stderr)
         return 130
     except (_core.RunFailure, OSError, MemoryError) as error:
         print(f"failed: {error}", file=sys.stderr)

@@ -162,7 +162,7 @@ def refuse(run: Run, why: str) -> int:
 
 
 def start_program(run: Run, resumed: bool) -> int:
-    """Its exit code; what the folder holds is removed unless the program goes on with it."""
+    """Its exit code; what the folder holds is removed unless the program continues with it."""
     if not resumed:
         shutil.rmtree(run.results, ignore_errors=True)
         run.log.with_suffix(".cpu").unlink(missing_ok=True)
@@ -249,7 +249,7 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
                 stopped.append(futures[future])
             elif code and any(text in futures[future].reason for text in NO_ROOM):  # says nothing of the scene
                 raise _core.RunFailure(f"{futures[future].name}: {futures[future].reason}. Make room; the same command "
-                                       "goes on.")
+                                       "continues.")
             ended(futures[future], code, seconds)
         return bool(done)
 
@@ -273,13 +273,13 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
         except BaseException:
             pending = {future for future in pending if not future.cancel()}
             stop()
-            end = time.monotonic() + PATIENCE  # runs of other machines go on, and are found finished by the next call
+            end = time.monotonic() + PATIENCE  # runs of other machines continue, and are found finished by the next call
             while pending and time.monotonic() < end:
                 tell_of_ended()
             raise
     if stopped:
         raise _core.RunFailure(f"{len(stopped)} runs were stopped by another process, the first of them {stopped[0].name}; "
-                               "the same command goes on")
+                               "the same command continues")
 
 
 def result_of(future: concurrent.futures.Future[tuple[int, float]], run: Run) -> tuple[int, float]:
@@ -289,4 +289,4 @@ def result_of(future: concurrent.futures.Future[tuple[int, float]], run: Run) ->
         raise
     except BaseException as error:  # of the engine: every library has its own
         raise _core.RunFailure(f"{run.name}: the engine has lost it ({type(error).__name__}). What has ended is kept, the "
-                               "same command goes on.") from error
+                               "same command continues.") from error

@@ -217,7 +217,7 @@ TEST(ColumnSceneError, MotionFiles)
   catch (const InputError &error)
     {
       const std::string message = error.what();
-      EXPECT_NE(message.find(scene + ":12: motion.0.file = motions/a.txt; is not there: neither "), std::string::npos)
+      EXPECT_NE(message.find(scene + ":12: motion.0.file = motions/a.txt; does not exist: neither "), std::string::npos)
           << message;
       EXPECT_NE(message.find((folder / "motions/a.txt").string()), std::string::npos) << message;
     }

@@ -138,7 +138,7 @@ TEST(ControlOfARun, IsToldAndMayEndIt)
   try
     {
       run_programme(programme, again, fresh, nobody);
-      FAIL() << "went on without control";
+      FAIL() << "continued without control";
     }
   catch (const RunFailure &failure)
     {

@@ -55,7 +55,7 @@ TEST_F(CheckpointTest, KeepsTwoAndFallsBackWhenTheNewestIsDamaged)
   testing::internal::CaptureStderr();
   EXPECT_EQ(read_checkpoint(folder).specimen["mark"], 1e-3);
   const std::string warning = testing::internal::GetCapturedStderr();
-  for (const char *part : {"warning:", "last.h5: truncated", "goes on from the checkpoint before", "previous.h5"})
+  for (const char *part : {"warning:", "last.h5: truncated", "continues from the checkpoint before", "previous.h5"})
     EXPECT_NE(warning.find(part), std::string::npos) << warning;
 }
 

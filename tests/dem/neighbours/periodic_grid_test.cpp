@@ -233,7 +233,7 @@ public:
     contacts_.set_cell(cell_.edges);
   }
 
-  /// Everything that touches is listed with the right image, and pairs that went on touching have their history.
+  /// Everything that touches is listed with the right image, and pairs that kept touching have their history.
   void check()
   {
     std::map<Pair, std::size_t> place;

@@ -72,7 +72,7 @@ TEST(StaticsFailure, AStepThatIsGivenUpLeavesNoTrace)
   EXPECT_EQ(found[0], found[1]);
 }
 
-/// More than the strength: the state is the last one in equilibrium, just below it; a smaller load goes on from there.
+/// More than the strength: the state is the last one in equilibrium, just below it; a smaller load still works.
 TEST(StaticsFailure, MoreThanTheStrength)
 {
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());

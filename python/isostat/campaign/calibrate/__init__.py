@@ -84,7 +84,7 @@ def find_best(plan: Any, scenes: SceneMaker, trials: Trials) -> str:
             if len(trials.all) >= plan.budget.trials:
                 raise BudgetUsed(f"budget.trials = {plan.budget.trials} are used up")
             if trials.seconds > limit:
-                raise BudgetUsed("budget.time is used up; the same command goes on")
+                raise BudgetUsed("budget.time is used up; the same command continues")
         trials.evaluate([values])
         return trials.all[trials.find(values)].misfit ** 2  # near the best a parabola, which the misfit itself is not
 
@@ -129,7 +129,7 @@ def calibrate(options: argparse.Namespace, executor: concurrent.futures.Executor
         trials.execute(sorted({0, trials.best()}), True)
     except KeyboardInterrupt:
         if trials.best() is not None:
-            Report(trials, "it was interrupted; the same command goes on").leave(folder, False)
+            Report(trials, "it was interrupted; the same command continues").leave(folder, False)
         raise
     Report(trials, ending).leave(folder, not options.no_figures)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 SECTIONS = {
     "specimens": "The packings. All trials have the same seeds, so that they differ by their parameters alone.",
-    "budget": "When the search ends. May be changed, and the same command then goes on.",
+    "budget": "When the search ends. May be changed, and the same command then continues.",
     "optimiser": "Where to look next. First the start, then a design, then the method from the best of these.",
     "misfit": "How far a model curve is from that of the laboratory (docs/campaigns/calibrate.md).",
     "parameter": "A number of the scene to be found. Which curves it can be found from is up to you.",

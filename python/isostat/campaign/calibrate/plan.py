@@ -216,7 +216,7 @@ def checked_plan(document: Document) -> SimpleNamespace:
 def read_text(path: str, what: str) -> str:
     """Of a file in UTF-8, which may be packed by gzip.   Raises InputError"""
     if not os.path.isfile(path):  # a pipe or a device may have no end
-        raise _core.InputError(f"{path}: is not there, or is no file. Give {what}.")
+        raise _core.InputError(f"{path}: does not exist, or is no file. Give {what}.")
     try:
         data = pathlib.Path(path).read_bytes()
         return (gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data).decode("utf-8-sig")
@@ -235,7 +235,7 @@ def read_plan(path: str) -> SimpleNamespace:
         for place in filter(os.path.isfile, places):
             return os.path.normpath(place)
         tried = " nor ".join(map(os.path.abspath, places))
-        raise document.refuse(key, f"is not there: neither {tried}. A relative path counts from the folder of the plan "
+        raise document.refuse(key, f"does not exist: neither {tried}. A relative path counts from the folder of the plan "
                               "or else from the working directory; correct it.", name)
 
     plan.scene_path = found("scene", plan.scene, str(command.SCENES / "scenes" / plan.scene))

@@ -71,7 +71,7 @@ def main(words: list[str]) -> int:
                                    "many records, side by side: bands of all")
     command.add_scene(line, "scene file (TOML) of soil_column; see docs/column_scene_reference.md")
     line.add_argument("-n", "--members", type=command.count(1, 10000),
-                      help="this many members, each with other packings of the library; the same command goes on with those "
+                      help="this many members, each with other packings of the library; the same command continues with those "
                            "that are missing")
     line.add_argument("--records", type=lambda text: text.split(","), action="extend", default=[], metavar="FILES",
                       help="files between commas whose motions take the place of the scene's record: this many members, or "

@@ -3,7 +3,7 @@
 
      CSR |  o o                CSR = tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in triaxial tests
          |    o o o            every o is a run of element_test; specimens (seeds 1..n) are shared between ratios
-         |        o  oo        finished runs are kept, the same command goes on
+         |        o  oo        finished runs are kept, the same command continues
          |            o  o->   fit CSR = a N^-b; runs that do not liquefy are arrows and not in the fit
          +--------------- log N
 
