@@ -28,7 +28,7 @@ struct RveMaterialCost
 /// An element that rejects an increment in all its parts stops all ranks with one and the same RunFailure; all elements
 /// are back at the committed state then. A trial that is committed costs no copy of an element, see RveElement.
 /// cost of trial() and commit(): besides the elements 0.3 us each, one MPI_Allgatherv, and every 500 time steps a copy
-/// of an element: together some 1 % (docs/results/rve_material.md)
+/// of an element: together some 1 % (docs/results/rve.md)
 /// tested: tests/coupling/batch/rve_material_test.cpp, tests/mpi/rve_material_mpi.cpp
 class RveMaterial : public Material
 {
