@@ -20,17 +20,17 @@ constexpr const char *side_choices[] = {"tied", "walls"};
 constexpr Key in_mesh[] = {
   {.path = "points", .kind = Kind::integer, .value = "0", .range = {0, 4}, .reason = "because elements are quadratic at most",
    .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
-           "degree 2 (reduced integration) takes fewer packings. Else at least the degree.",
+           "degree 2 (reduced integration) needs fewer packings. Else at least the degree.",
    .field = [](ColumnMesh &m) -> Field { return &m.points; }},
   {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, the soil continues forever; walls: of a strip (dimension 2), a box "
-           "whose smooth walls move with its rigid base. The soil settles into equilibrium before "
-           "anything else, from K0 stresses: docs/theory_column.md, section 9.",
+   .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
+           "whose smooth walls move with its rigid base. Its soil first settles into equilibrium from K0 stresses: "
+           "docs/theory_column.md, section 9.",
    .field = [](ColumnMesh &m) -> Field { return &m.sides; }},
   {.path = "ground_x", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
-   .text = "x of points of a surface that is not level, rising, on boundaries between elements; straight between them. Only "
-           "between walls; water, if there is any, covers all of it.",
+   .text = "x of the points of an uneven surface, rising, on boundaries between elements; straight lines connect "
+           "them. Only between walls; water, if any, covers all of it.",
    .field = [](ColumnMesh &m) -> Field { return &m.ground_x; }},
   {.path = "ground_z", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
@@ -42,7 +42,8 @@ constexpr Key in_mesh[] = {
 constexpr Key in_load[] = {
   {.path = "surcharge_from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
-   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia.",
+   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. "
+           "In a box a surcharge on a part is applied after the K0 stress; no surcharge has inertia.",
    .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
   {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
    .presence = Presence::optional, .value = "12 m", .range = positive,

@@ -38,7 +38,7 @@ constexpr Key of_plate[] = {
    .text = "Whether the soil sticks to it; false: it slides freely.",
    .field = [](Plate &p) -> Field { return &p.rough; }},
   {.path = "load_steps", .kind = Kind::integer, .value = "100", .range = counts,
-   .reason = one_or_more, .text = "Equal steps of its way.",
+   .reason = one_or_more, .text = "Number of equal steps of the displacement.",
    .field = [](Plate &p) -> Field { return &p.steps; }},
 };
 // clang-format on

@@ -17,9 +17,9 @@ constexpr Key of_water[] = {
            "fluid N times as viscous as water (docs/theory_column.md).",
    .field = [](Water &w) -> Field { return &w.relative_viscosity; }},
   {.path = "air", .kind = Kind::choice, .value = "constant", .choices = air_names,
-   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at the "
-           "pressure of the moment, stiffer and at last dissolved when the pressure rises, softer when it falls "
-           "(cavitation). A consolidation takes constant alone. boyle needs air, by `layer.saturation` or `henry`.",
+   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at "
+           "the current pressure, stiffer and finally dissolved as the pressure rises, softer as it falls "
+           "(cavitation). A consolidation takes only constant. boyle needs air, by `layer.saturation` or `henry`.",
    .field = [](Water &w) -> Field { return &w.air; }},
   {.path = "henry", .value = "0", .range = {0, 0.1},
    .reason = "because water dissolves no less than nothing, and of air 0.02 at 20 C",

@@ -33,19 +33,19 @@ constexpr Key keys[] = {
   of<&ShearStage::strain_end, UndrainedMonotonic, ServoedShear>(
     {.path = "strain", .presence = Presence::required, .value = "0.05", .range = ranges::to_one,
      .reason = "because this is a strain, not percent; the sign comes from direction",
-     .text = "Axial strain (logarithmic, its amount) at which the stage ends."}),
+     .text = "Amount of the axial strain (logarithmic) at which the stage ends."}),
   of<&ShearStage::strain_end, UndrainedSimpleShear>(
     {.path = "strain", .presence = Presence::required, .value = "0.2", .range = ranges::to_ten,
      .reason = "because this is a shear strain, not percent: 1 is 100 percent",
-     .text = "Shear strain gamma_xy (its amount) at which the stage ends."}),
+     .text = "Amount of the shear strain gamma_xy at which the stage ends."}),
   of<&UndrainedCyclic::deviator_amplitude>(
     {.path = "deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
      .value = "60 kPa", .range = ranges::positive, .text = "q_amp: loading turns at deviator_average + q_amp and at deviator_average - q_amp."}),
   of<&UndrainedCyclic::deviator_average>(
     {.path = "deviator_average", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
      .value = "0 kPa",
-     .text = "q_av, the static bias: the middle of the two deviators between which the stage turns. q must lie between "
-             "them when it begins, which takes anisotropic consolidation where 0 does not."}),
+     .text = "q_av, the static bias: the middle of the two deviators between which the stage turns. q must lie "
+             "between them when the stage begins; where 0 does not, consolidate anisotropically first."}),
   of<&UndrainedCyclicSimpleShear::stress_ratio>(
     {.path = "stress_ratio", .value = "0.15", .range = ranges::to_one,
      .reason = "because this is a ratio of stresses that friction has to carry",
@@ -61,7 +61,7 @@ constexpr Key keys[] = {
      .text = "p'/p0' below which the specimen counts as liquefied."}),
   {.path = "until", .kind = Kind::table, .presence = Presence::optional,
    .value = "{ reversals_after_liquefaction = 10 }", .kinds = kinds_in<Cyclic>,
-   .text = "When the stage ends: at whichever of its conditions comes first.",
+   .text = "The stage ends at whichever of its conditions comes first.",
    .field = [](StageBehaviour &) -> Field { return {}; }},
   of<&Cyclic::max_cycles>(
     {.path = "until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9},
