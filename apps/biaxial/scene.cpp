@@ -192,12 +192,12 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
                     "it.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements "
                                 "across. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_across));
   if (scene.weak.row + scene.weak.cells > scene.mesh.cells_up)
     document.refuse("weak.row",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements "
                                 "up. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_up));
 }

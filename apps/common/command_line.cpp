@@ -68,7 +68,7 @@ int guarded(const std::function<void()> &program)
           const int code = errno ? errno : EIO;
           std::clearerr(stdout); // it is reported once
           throw RunFailure(
-              fmt::format("what is printed cannot be written: {}; files of results are whole", std::strerror(code)));
+              fmt::format("output cannot be printed: {}; files of results are whole", std::strerror(code)));
         }
       return 0;
     }
@@ -85,7 +85,7 @@ int guarded(const std::function<void()> &program)
   catch (const std::bad_alloc &)
     {
       std::fputs("failed: there is not enough memory, or a limit of it (ulimit -v) is reached. Give fewer grains or "
-                 "points, or run fewer side by side; what a checkpoint holds continues with --resume\n",
+                 "points, or run fewer side by side; --resume continues from a checkpoint\n",
                  stderr);
       return 1;
     }

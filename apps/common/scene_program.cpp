@@ -30,7 +30,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
       line.add_flag("--resume", o.resume, "continue from the newest checkpoint, to the same bits")->excludes(overwrite);
     }
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", o.no_figures, "leave no figures and no report at the end");
+  line.add_flag("--no-figures", o.no_figures, "make no figures and no report at the end");
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));
 }
 
@@ -117,10 +117,10 @@ void note_instruction_set(const std::string &made_with)
 
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint)
 {
-  fmt::print("{}: this run has finished, there is nothing to resume; its results are in summary.txt.", folder.string());
+  fmt::print("{}: this run has finished; there is nothing to resume; its results are in summary.txt.", folder.string());
   if (figures && !std::filesystem::exists(folder / "report.html"))
     {
-      fmt::print(" Its figures are missing, they are drawn now.\n");
+      fmt::print(" Its missing figures are drawn now.\n");
       std::fflush(stdout);
       fmt::print("  {}\n", draw_figures(folder, program));
     }

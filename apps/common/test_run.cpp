@@ -86,7 +86,7 @@ void check_stages(const DriveState &state, std::size_t n_stages, const fs::path 
   const auto has = [&](const auto &told) { return told.stage < n_stages; };
   if (state.place.stage > n_stages || !std::ranges::all_of(state.ends, has) ||
       !std::ranges::all_of(state.control.losses, has))
-    throw InputError(fmt::format("{}: the checkpoint speaks of stages beyond the {} of the scene; it is damaged. Start "
+    throw InputError(fmt::format("{}: the checkpoint names stages beyond the {} of the scene; it is damaged. Start "
                                  "again with --overwrite.",
                                  folder.string(), n_stages));
 }
@@ -99,7 +99,7 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   check_resumed_scene(folder, *run.resumed, scene);
   if (run.resumed->written.snapshots > run.resumed->written.rows)
     throw InputError(
-        fmt::format("{}: the checkpoint speaks of {} snapshots and {} rows, but there is a row of each; it is "
+        fmt::format("{}: the checkpoint counts {} snapshots and {} rows, but each snapshot has a row; it is "
                     "damaged. Start again with --overwrite.",
                     folder.string(), run.resumed->written.snapshots, run.resumed->written.rows));
   check_stages(run.resumed->drive, scene.stages.size(), folder);

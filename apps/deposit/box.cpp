@@ -60,10 +60,10 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
   if (mesh.ground_x.empty() && mesh.ground_z.empty())
     return;
   if (mesh.ground_z.empty())
-    document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has one of both.");
+    document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has both coordinates.");
   if (mesh.ground_x.size() != mesh.ground_z.size())
     document.refuse("mesh.ground_z",
-                    fmt::format("has length {}, mesh.ground_x {}; each point of the surface has one of both.",
+                    fmt::format("has length {}, mesh.ground_x {}; each point of the surface has both coordinates.",
                                 mesh.ground_z.size(), mesh.ground_x.size()));
   const GroundLine ground = ground_line(mesh);
   try
@@ -124,7 +124,7 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
     return;
   const char *key = load.surcharge_to ? "load.surcharge_to" : "load.surcharge_from";
   if (!(from < to && to <= width))
-    document.refuse(key, fmt::format("must leave a part of the surface with the surcharge: from {} m to {} m of {} m.",
+    document.refuse(key, fmt::format("must leave part of the surface under the surcharge: from {} m to {} m of {} m.",
                                      number_text(from), number_text(to), number_text(width)));
   if (from == 0 && load.surcharge_from)
     document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the wall.");

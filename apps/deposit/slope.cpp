@@ -136,7 +136,7 @@ void check_table(const SceneDocument &document, const ColumnScene &scene)
   if (scene.water.drainage != Drainage::coupled)
     document.refuse("water.table",
                     fmt::format("has no meaning if water.drainage is \"{}\". Give drainage = \"coupled\" (with a "
-                                "permeability of 0 m/s if no water shall move), or remove it.",
+                                "permeability of 0 m/s if no water should move), or remove it.",
                                 drainage_names[static_cast<int>(scene.water.drainage)]));
   if (scene.slope.water == SlopeWater::submerged)
     document.refuse("water.table", "must be 0 m if slope.water is \"submerged\": the water is above the surface. "

@@ -28,13 +28,13 @@ def parse():
     leave = commands.add_parser("leave", help="figures and report of results of a program")
     leave.add_argument("program", choices=NUMBERS)
     leave.add_argument("results", type=pathlib.Path)
-    again = commands.add_parser("report", help="the figures and report.html of results, once more")
+    again = commands.add_parser("report", help="draw figures and report.html of results again")
     again.add_argument("results", type=pathlib.Path, help="results folder of a run, finished or under way")
     compare = commands.add_parser("compare", help="two runs side by side in one file")
     compare.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
     compare.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
     compare.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
-                         help="file that is written; a page that is there is replaced (default: compare.html)")
+                         help="output file; an existing page is replaced (default: compare.html)")
     return parser.parse_args()
 
 

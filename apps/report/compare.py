@@ -132,7 +132,7 @@ def leave(first, second, output):
     if output.is_dir() or not output.absolute().parent.is_dir():
         raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
     if output.exists() and not (output.is_file() and html.GENERATOR.encode() in output.read_bytes()[:1000]):
-        raise NoResults(f"{output}: is there, and no page of Isostat. Give another --output, or move it away.")
+        raise NoResults(f"{output}: exists and is not a page of Isostat. Give another --output, or move it away.")
     text = page(pair)
     try:
         html.write_replacing(output, text)

@@ -228,7 +228,7 @@ void run(const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App line("The packing of one depth of a column, sent the same way again, alone");
+  CLI::App line("The packing at one depth of a column, strained alone in the same way");
   Options options;
   line.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
   line.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
@@ -242,7 +242,7 @@ int main(int argc, char **argv)
       ->capture_default_str();
   line.add_flag("--overwrite", options.overwrite, "replace results that are there");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", options.no_figures, "leave no figures and no report at the end");
+  line.add_flag("--no-figures", options.no_figures, "make no figures and no report at the end");
   options.command_line = command_text(argc, argv);
   return run_command(line, argc, argv, [&] {
     catch_signals();

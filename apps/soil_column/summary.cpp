@@ -208,7 +208,7 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;
   if (!s.point_depths.empty())
-    summary.row("depths of histories", "{} m, the points nearest to those asked for",
+    summary.row("depths of histories", "{} m, the points nearest to those requested",
                 fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));
   summary["warnings"] = s.warnings;
   for (const std::string &warning : s.warnings)

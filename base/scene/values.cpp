@@ -60,7 +60,7 @@ struct Reading
     *pair.low = number(*array->get(0));
     *pair.high = number(*array->get(1));
     if (*pair.low >= *pair.high)
-      refuse("must rise, or nothing of the curve is left");
+      refuse("must rise, or nothing remains of the curve");
   }
 
   void operator()(SizeCurve *curve) const

@@ -56,7 +56,7 @@ GradingCurve checked_table(const std::vector<std::pair<double, double>> &table)
       if (!(percent >= 0 && percent <= 100))
         throw InputError(
             fmt::format("grading.table[{}]: percent finer = {:g}; must be in [0, 100] because it is a part "
-                        "of the mass. Percent, not a fraction, is meant here.",
+                        "of the mass. Give percent, not a fraction.",
                         i, percent));
       if (percent < finer_percent)
         throw InputError(

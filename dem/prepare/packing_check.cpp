@@ -104,8 +104,8 @@ std::vector<std::string> check_packing(const Snapshot &s, const std::string &fil
   const double r_max = s.grains.max_radius();
   if (r_max > largest)
     throw InputError(fmt::format(
-        "{}: the largest radius is {:.4g} m; expected at most {} m, because it is soil that is "
-        "meant. Are its lengths in {}? If so, {}.{}",
+        "{}: the largest radius is {:.4g} m; expected at most {} m for soil. "
+        "Are its lengths in {}? If so, {}.{}",
         file, r_max, largest, likely_unit(r_max), remedy(likely_unit(r_max)),
         largest < largest_radius
             ? fmt::format(" If they are in m, {}: radii up to {} m are then allowed.", remedy("m"), largest_radius)

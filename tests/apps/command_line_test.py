@@ -330,7 +330,7 @@ class OutputFolder(AppTest):
         before = contents(self.folder / "out")
         result = self.run_test(self.scene, "-o", "out", "--resume")
         self.assert_done(result)
-        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
+        self.assertIn("this run has finished; there is nothing to resume", result.stdout)
         self.assertEqual(contents(self.folder / "out"), before)
 
     def test_resume_and_overwrite_exclude_each_other(self):

@@ -160,7 +160,7 @@ class Compare(ReportTest):
         os.mkfifo(self.folder / "pipe")
         for name in ("thesis.tex", "pipe"):
             result = self.compare(self.runs / "one", self.runs / "other", "-o", name)
-            self.assert_refused(result, f"{name}: is there, and no page of Isostat. Give another --output")
+            self.assert_refused(result, f"{name}: exists and is not a page of Isostat. Give another --output")
         self.assertEqual((self.folder / "thesis.tex").read_text(encoding="utf-8"), "precious")
 
 

@@ -35,7 +35,7 @@ class Interrupted(ColumnTest):
         result = self.run_app(*command, "-o", "out", "--resume")
         self.assert_done(result)
         self.assertIn("this run has finished", result.stdout)
-        self.assertIn("Its figures are missing, they are drawn now", result.stdout)
+        self.assertIn("Its missing figures are drawn now", result.stdout)
         self.assertNotIn("--overwrite", result.stdout)
         self.assertTrue((self.folder / "out/report.html").exists())
         self.assertEqual(self.numbers(), before)

@@ -73,7 +73,7 @@ class Resume(ColumnTest):
         before = contents(self.folder / "out")
         result = self.run_column(*arguments, "--resume")
         self.assert_done(result)
-        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
+        self.assertIn("this run has finished; there is nothing to resume", result.stdout)
         self.assert_refused(self.run_column(*arguments, *settings(motion__0__amplitude="0.03 g"), "--resume"),
                             "another scene")
         self.assertEqual(contents(self.folder / "out"), before)

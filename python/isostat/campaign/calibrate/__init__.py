@@ -139,7 +139,7 @@ def main(words: list[str]) -> int:
                                    "from laboratory curves with small element tests")
     line.add_argument("plan", metavar="PLAN", nargs="?", type=lambda name: command.shipped("scenes/calibrate", name),
                       help="plan file (TOML); see docs/campaigns/calibrate.md")
-    line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it takes, and stop")
+    line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it needs, and stop")
     line.add_argument("--print-defaults", action="store_true",
                       help="print a commented plan with all keys, units and ranges")
     command.add_campaign(line, "results/<plan name>")
