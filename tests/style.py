@@ -42,11 +42,13 @@ PHRASES = {
     r"lots?(?! =)": "draw, at random", r"no part in": "is ignored, leaves out", r"nobody|somebody|whoever": "(name it)",
     r"nor none": "or none", r"of no (effect|meaning|use)": "ignored, no effect", r"on its way": "(say to what)",
     r"one's own": "your own, a user's", r"says? all about": "describes", r"so many": "this many", r"so-called": "",
+    r"(that|which) (is|are) there": "existing",
     r"(stands?|stood)(?! for\b| in\b|-alone| alone| still)": "is, appears", r"strangers?": "untrusted, a user's",
     r"tells?|told": "says, reports, distinguishes", r"to the bit": "bit for bit",
     r"velocit(y|ies) of (P|S|shear) waves?": "V_s, shear-wave velocity", r"warned of": "a warning names",
     r"what (came|comes) out": "results", r"what is left": "what remains", r"works as": "is",
 }
+OVERUSED = re.compile(r"\bof (?:its|their) own\b", re.I)  # at most once in a file
 STUMBLE = re.compile(r"\b(?:" + "|".join(PHRASES).replace(" ", r"(?:[ \t]+|[ \t]*\n[ \t]*)") + r")\b", re.I)
 TEXTS = {".cpp", ".hpp", ".c", ".h", ".py", ".md", ".toml", ".sh"}  # files whose English is checked
 # What of C++ is text for a reader: comments and strings.
@@ -183,7 +185,8 @@ def check_phrases(root, path):
         text = text_of_script(text)
     for part in NO_TEXT:
         text = part.sub(lambda found: blank(found[0]), text)
-    problems = []
+    own = list(OVERUSED.finditer(text))
+    problems = [f"{name}: '{own[0][0]}' {len(own)} times; write: separate, or its own X"] if len(own) > 1 else []
     for match in STUMBLE.finditer(text):
         words = " ".join(match[0].split())
         instead = next((write for phrase, write in PHRASES.items() if re.fullmatch(phrase, words, re.I)), "other words")

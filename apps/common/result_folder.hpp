@@ -15,7 +15,7 @@ namespace isostat
 enum class FolderUse
 {
   fresh,     ///< must not exist yet
-  overwrite, ///< results that are there are removed first
+  overwrite, ///< existing results are removed first
   resume     ///< continues from the newest checkpoint
 };
 
@@ -36,7 +36,7 @@ void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// @pre check_result_folder()   tested: tests/apps/shared_folder_test.py
 [[nodiscard]] FileLock open_result_folder(const std::filesystem::path &folder, FolderUse use);
 
-/// A lock on a folder that is there (of its file .lock), or none where the file system has no locks. Waits up to five
+/// A lock on an existing folder (of its file .lock), or none where the file system has no locks. Waits up to five
 /// seconds for what a dying process still holds.   @throws InputError  a program is using it
 [[nodiscard]] FileLock lock_folder(const std::filesystem::path &folder);
 

@@ -22,7 +22,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
       ->allow_extra_args(false); // else it takes the scene, too
   line.add_flag("--validate", o.validate, "check the scene, print it with every key, and stop");
   line.add_flag("--print-defaults", o.print_defaults, "print a commented scene with all keys, units and ranges");
-  CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace results that are there");
+  CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace existing results");
   if (program.manual_page)
     {
       line.add_flag("--print-manual", o.print_manual,

@@ -178,7 +178,7 @@ struct ColumnOutput
 {
   std::string folder;             ///< default: results/<scene file name>
   double history_interval = 0.01; ///< between rows
-  std::vector<double> depths;     ///< below the surface; points with a history of their own, m
+  std::vector<double> depths;     ///< below the surface; points with their own history, m
   std::optional<double> x; ///< where these depths, and profiles, are; left out: the middle between walls, else 0, m
   std::optional<double> profile_interval, paraview_interval; ///< left out: none
   double checkpoint_minutes = 5;

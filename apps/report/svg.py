@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A figure of matplotlib as SVG for a page: small, with ids of its own, without links to anything outside."""
+"""A figure of matplotlib as SVG for a page: small, with its own ids, without links to anything outside."""
 import io
 import itertools
 import re

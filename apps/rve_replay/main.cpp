@@ -240,7 +240,7 @@ int main(int argc, char **argv)
   line.add_option("--every", options.every, "increments between two rows of micromechanics")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
-  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("--overwrite", options.overwrite, "replace existing results");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   line.add_flag("--no-figures", options.no_figures, "make no figures and no report at the end");
   options.command_line = command_text(argc, argv);

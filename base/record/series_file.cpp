@@ -26,7 +26,7 @@ SeriesFile::SeriesFile(std::filesystem::path path, SeriesLayout layout, std::siz
   forget_waiting();
 }
 
-/// Takes the first rows of a file that is there as rows still to be written.
+/// Takes the first rows of an existing file as rows still to be written.
 void SeriesFile::load(std::size_t rows)
 {
   const hdf5::File file = hdf5::File::open(path_);

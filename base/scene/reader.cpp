@@ -48,7 +48,7 @@ void check_known(const SceneDocument &document, const toml::table &table, const 
       if (section && section->items)
         continue; // each of its tables on its own
       if (!node.is_table())
-        document.refuse(path, section ? fmt::format("must be a table. Write [{}] on a line of its own.", path)
+        document.refuse(path, section ? fmt::format("must be a table. Write [{}] on its own line.", path)
                                       : fmt::format("must be a table. Write for example {} = {}.", path, key->value));
       check_known(document, *node.as_table(), path);
     }
@@ -141,7 +141,7 @@ void fill_array(const SceneDocument &document, const Section &section, void *sce
     {
       const std::string prefix = fmt::format("{}.{}", name, i);
       if (!array->get(i)->is_table())
-        document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on a line of its own.", name));
+        document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on its own line.", name));
       check_known(document, *array->get(i)->as_table(), prefix);
       fill_table(document, section, prefix, scene, section.items.add(scene));
     }

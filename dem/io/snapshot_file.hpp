@@ -32,7 +32,7 @@ void write_snapshot(hdf5::Group group, const Snapshot &snapshot);
 /// Values are not judged here: the snapshot of a failed run may well be inspected.
 Snapshot read_snapshot(const hdf5::Group &group);
 
-/// A file of its own: format "isostat-snapshot", group `snapshot`. Written aside and renamed.
+/// A separate file: format "isostat-snapshot", group `snapshot`. Written aside and renamed.
 void write_snapshot_file(const std::filesystem::path &path, const Snapshot &snapshot);
 /// The group `snapshot` of any file that has one: a snapshot or a specimen. Files of columns written before there was a
 /// `schema_version` hold it in their root.

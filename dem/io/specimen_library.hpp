@@ -40,7 +40,7 @@ bool is_specimen_library(const std::filesystem::path &path);
 std::vector<LibraryEntry> list_library(const std::filesystem::path &path);
 
 /// One specimen, checked as read_specimen() does.
-/// @throws InputError  as list_library(); an unknown or empty name: lists the entries that are there
+/// @throws InputError  as list_library(); an unknown or empty name: lists the existing entries
 Specimen read_library_entry(const std::filesystem::path &path, const std::string &name);
 
 /// The entries as lines of a table with head, indented, for messages and terminals: name, consolidation, seed, grains,
@@ -54,7 +54,7 @@ class LibraryWriter
 public:
   /// An empty library.   @throws RunFailure  the folder is missing or not writable
   static LibraryWriter create(const std::filesystem::path &path);
-  /// Starts from a copy of all that is there.   @throws InputError  it is not a library of this version
+  /// Starts from a copy of all existing entries.   @throws InputError  it is not a library of this version
   static LibraryWriter append(const std::filesystem::path &path);
 
   /// @param name  letters, digits, '-' and '_'

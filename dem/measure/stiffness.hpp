@@ -26,8 +26,8 @@ enum class Sliding
 ///
 /// eps: mean strain, symmetric, no mean rotation; u, w: what each grain's displacement and rotation differ from it; K:
 /// second derivatives of W. The shear force is that of the law; r in place of R makes a rigid rotation free of energy
-/// and K symmetric. Torques have the arm r, in the law R - u/2, the same for equal radii. Not done: forces that are
-/// there already turn with the normal (of the order of u/R against kn); the strength of a yielding contact follows its
+/// and K symmetric. Torques have the arm r, in the law R - u/2, the same for equal radii. Not done: existing
+/// forces turn with the normal (of the order of u/R against kn); the strength of a yielding contact follows its
 /// normal force, which makes a plastic stiffness unsymmetric.
 ///
 /// Grains with fewer than two contacts bear no load and are left out with their contact, again and again until none is

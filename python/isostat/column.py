@@ -107,7 +107,7 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
 
     scene       ColumnScene                                output      folder; None: the scene's, results/<its name>
     materials   {name of a layer: Material} for the layers whose material is "user"
-    overwrite   replaces results that are there            resume      continues from the checkpoint of `output`
+    overwrite   replaces existing results            resume      continues from the checkpoint of `output`
     threads     that share packings of grains; changes no bit of the result
     quiet       None: warns, as IsostatWarning; True: only keeps the warnings; False: progress and summary as well
 

@@ -53,7 +53,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
                 and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
                 stiffness). It is kept in `output` as specimen.h5, which the scene there names
     cache       folder of prepared specimens; None: next to the output folder, as the program does
-    overwrite   replaces results that are there; excludes resume
+    overwrite   replaces existing results; excludes resume
     resume      continues from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
                 that is not over ends later, also of a run that has finished: strain, max_steps, times, and below until
                 cycles, reversals_after_liquefaction, strain and volumetric_strain. The bits are those of one long run

@@ -198,7 +198,7 @@ TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", 
 
 
 def merged(path, rows):
-    """These rows behind those of the table that is there, except for the tests and curves that are in `rows`."""
+    """These rows behind those of the existing table, except for the tests and curves that are in `rows`."""
     before = read_csv(path)
     new = {test_of(row) for row in rows}
     return [row for row in before if test_of(row) not in new] + rows

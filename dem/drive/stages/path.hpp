@@ -57,7 +57,7 @@ enum class DrivenComponent
   xy
 };
 
-/// Where a path ends: at whichever comes first. Stresses are passed from either side; one that is there when the stage
+/// Where a path ends: at whichever comes first. Stresses are passed from either side; one that is met when the stage
 /// begins, within 0.1 % of p', ends it at once.
 struct PathEnd
 {

@@ -208,8 +208,8 @@ def main(words: list[str]) -> int:
     line.add_argument("-o", "--output", type=pathlib.Path, help="library (default: results/<scene name>.h5)")
     line.add_argument("--list", action="store_true", help="print what is in the library, and stop")
     use = line.add_mutually_exclusive_group()
-    use.add_argument("--append", action="store_true", help="add what a library that is there lacks")
-    use.add_argument("--overwrite", action="store_true", help="replace a library that is there")
+    use.add_argument("--append", action="store_true", help="add what an existing library lacks")
+    use.add_argument("--overwrite", action="store_true", help="replace an existing library")
     options = line.parse_args(words)
     if options.list:
         return command.run(lambda: list_library(options))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of the programs, each in a process of its own and kept in a folder of its own.
+"""Runs of the programs, each in its own process and kept in its own folder.
 
 tested: tests/python/campaign_test.py, tests/apps/campaign_engines_test.py
 """

@@ -121,7 +121,7 @@ def read_value(key: Key, value: Any) -> Any:
 def read_table(document: Document, section: str, path: str, table: Any) -> SimpleNamespace:
     """One table of a plan, with its defaults; that of columns as keys "columns.p"."""
     if not isinstance(table, dict):
-        raise document.refuse(path, f"must be a table. Write {heading(section)} on a line of its own.", table)
+        raise document.refuse(path, f"must be a table. Write {heading(section)} on its own line.", table)
     prefix = f"{path}." if path else ""
     if section == "curve" and not isinstance(columns := table.pop("columns", {}), dict):
         raise document.refuse(f"{path}.columns", 'must be a table, e.g. columns = { p = "p[kPa]" }.', columns)
