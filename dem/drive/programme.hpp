@@ -29,7 +29,7 @@ struct Programme
   std::vector<Stage> stages = {};
 };
 
-/// Who watches a run. Observers never change it: trajectories are the same with output on or off.
+/// The observer of a run. Observers never change it: trajectories are the same with output on or off.
 class RunObserver
 {
 public:
@@ -55,8 +55,8 @@ enum class RunOutcome
 /// The specimen is bounded by walls or by a periodic cell, whose strain takes the place of wall motion.
 /// A stage ends with walls at rest for one step. The time step follows the critical step of the closed contacts
 /// (docs/theory.md) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
-/// What a stage that shears is to keep is checked every 50 steps (dem/drive/control.hpp).
-/// @throws RunFailure  a stage that cannot reach its target; lost control if the scene wants it so; an unstable
+/// What a stage that shears must keep is checked every 50 steps (dem/drive/control.hpp).
+/// @throws RunFailure  a stage that cannot reach its target; lost control if the scene asks for it; an unstable
 ///         fixed time step; an exploding packing
 /// tested: tests/verification/programme_test.cpp, tests/hard/, tests/regression/
 RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveState &state, RunObserver &observer);

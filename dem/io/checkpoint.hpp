@@ -35,7 +35,7 @@ struct Checkpoint
 /// is whole at any moment. Throws RunFailure (disk full, not writable): the older ones survive.
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint);
 
-/// The newest readable checkpoint of a folder. A damaged last.h5 gives way to previous.h5.
+/// The newest readable checkpoint of a folder. Instead of a damaged last.h5 it is previous.h5.
 /// @throws InputError when there is none, naming what is wrong with each; a checkpoint of another schema is refused
 /// tested: tests/dem/io/checkpoint_test.cpp
 Checkpoint read_checkpoint(const std::filesystem::path &folder);

@@ -29,7 +29,7 @@ struct LibraryEntry
   std::string text(const std::string &key) const; ///< empty if it has none
 };
 
-/// Whether a file calls itself a library; its content is not read.
+/// Whether a file is marked as a library; its content is not read.
 /// @throws InputError  missing, not HDF5, damaged
 bool is_specimen_library(const std::filesystem::path &path);
 
@@ -44,7 +44,7 @@ std::vector<LibraryEntry> list_library(const std::filesystem::path &path);
 Specimen read_library_entry(const std::filesystem::path &path, const std::string &name);
 
 /// The entries as lines of a table with head, indented, for messages and terminals: name, consolidation, seed, grains,
-/// vertical stress, p', K0, e, D_r, Z, I_R; "-" where an entry does not say.
+/// vertical stress, p', K0, e, D_r, Z, I_R; "-" where an entry has none.
 /// @param most  rows; the rest is counted in a last line
 std::string library_table(const std::vector<LibraryEntry> &entries, std::size_t most = 1000000);
 

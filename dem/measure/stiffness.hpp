@@ -55,7 +55,7 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::el
 /// tested: tests/dem/measure/stiffness_test.cpp (cubic lattices, icosahedral directions)
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
 
-/// Its first three diagonal entries, of an assembly at work: (1/V) sum l^2 n_k^2 (kn n_k^2 + ks (1 - n_k^2)), Pa, own
+/// Its first three diagonal entries, of a running assembly: (1/V) sum l^2 n_k^2 (kn n_k^2 + ks (1 - n_k^2)), Pa, own
 /// frame of a cell. What the servo of a cell divides by.   @param volume  m3     cost one pass over the contacts
 /// tested: tests/verification/cell_programme_test.cpp (the servo that uses it)
 Vec3 affine_moduli(const LiveContacts &contacts, double volume);

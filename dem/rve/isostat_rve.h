@@ -32,7 +32,7 @@ typedef enum isostat_status
 {
   ISOSTAT_OK = 0,
   ISOSTAT_REJECTED = 1,  ///< an increment that cannot be taken: the element is as before. Divide it
-  ISOSTAT_BAD_INPUT = 2, ///< a mistake in what was given; the element is as before
+  ISOSTAT_BAD_INPUT = 2, ///< bad input; the element is as before
   ISOSTAT_FAILURE = 3 ///< anything else: no memory, a factorisation that fails; restore the element before it continues
 } isostat_status;
 
@@ -47,7 +47,7 @@ typedef struct isostat_rve_settings
   double damping;         ///< local damping in [0, 1), default 0.2
   double frame[9];        ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
   double max_increment;   ///< size of the displacement gradient that one call takes, in (0, 0.1], default 0.01
-  uint64_t min_steps;     ///< time steps that an increment is spread over at least, default 1
+  uint64_t min_steps;     ///< least number of time steps of an increment, default 1
   uint64_t max_steps;     ///< of one call, default 10,000,000
 } isostat_rve_settings;
 
@@ -74,7 +74,7 @@ void isostat_rve_default_settings(isostat_rve_settings *settings);
 /// @return bad input: no such file, a packing in a box, settings out of range. Failure: a cell too narrow
 isostat_status isostat_rve_create(const char *specimen, const isostat_rve_settings *settings, isostat_rve **rve);
 
-/// Gives the memory back. Null is allowed. The handle is not to be used again.
+/// Gives the memory back. Null is allowed. Do not use the handle again.
 void isostat_rve_destroy(isostat_rve *rve);
 
 /// Strains the element by a displacement gradient relative to its present shape, F <- (I + H) F.
@@ -129,7 +129,7 @@ void isostat_rve_state_destroy(isostat_rve_state *state);
 /// The whole element as bytes, for restart files and other processes on the same type of machine.
 /// @param bytes  null: only the size is asked for
 /// @param size  in: bytes there is room for (where bytes is not null); out: bytes of the element as it is now
-/// @return bad input: no room; `size` is what it takes
+/// @return bad input: no room; `size` is what it needs
 isostat_status isostat_rve_pack(const isostat_rve *rve, void *bytes, size_t *size);
 
 /// Makes the element that isostat_rve_pack() gave, with the same bits, if the settings are the same.

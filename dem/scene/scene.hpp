@@ -56,7 +56,7 @@ struct SpecimenSpec : ServoSpec
   bool operator==(const SpecimenSpec &) const = default;
 };
 
-/// What to do where a relative density is asked for without its limits; of messages.
+/// Remedy in messages for a relative density without its limits.
 inline constexpr const char *no_limits =
     "needs e_min and e_max of this grading; those of Karlsruhe fine sand hold for no other. Find them with "
     "void_ratio_limits and give specimen.e_min and specimen.e_max, or give void_ratio or preparation_friction instead.";
@@ -122,7 +122,7 @@ struct Scene
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
 /// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Does not touch the disk:
-/// specimen.file is not looked for, and an output folder left out stays empty.
+/// specimen.file is not searched for, and an output folder left out stays empty.
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {});
 
 /// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s bit for bit

@@ -49,7 +49,7 @@ struct DynamicsEnergy
 ///     u_next = u + dt v+
 ///
 /// sigma' has the viscous stress of SkeletonViscosity in it, if there is one.
-/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is that of the
+/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is for the
 /// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,

@@ -16,14 +16,14 @@ struct StaticsProblem; // fem/solve/statics/substep.hpp
 ///
 /// Time: BDF2 with variable steps (15), backward Euler where there is no step before: the first one, after a step
 /// without flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett &
-/// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps. After a load
-/// at once everything goes with the logarithm of time, so no sub-step is longer than `largest_part` of the time since
+/// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps. After a sudden
+/// load everything evolves with the logarithm of time, so no sub-step is longer than `largest_part` of the time since
 /// water began to flow: results are those of the mesh within 0.5 % whatever the steps.
 ///
 /// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where it
-/// fails, relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium leads over larger
-/// residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
-/// success; loads and given displacements go linearly from those of the state to those at the step's end, so a jump is
+/// fails, relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium passes through
+/// larger residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
+/// success; loads and given displacements change linearly from the state to the end of the step, so a jump is
 /// shared out too.
 ///
 /// Converged (17) when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as
