@@ -73,7 +73,7 @@ private:
     soil_.material->seconds = 0;
   }
 
-  /// Every this many whole steps.
+  /// Every n whole steps.
   bool due(const std::optional<double> &interval) const
   {
     return interval && run_.n_steps() % this->steps_in(*interval) == 0;

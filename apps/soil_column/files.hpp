@@ -21,7 +21,7 @@ public:
   ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
               const std::array<Motion, 3> &motions, std::size_t stride);
   /// Starts or cuts the files, on the rank that writes.
-  /// @param shear-wave velocities at every point at the start of the run, m/s   @param resumed  null: start again
+  /// @param velocities  V_s at every point at the start of the run, m/s   @param resumed  null: start again
   /// @throws InputError  files that have been cut off or changed since the checkpoint
   void open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed);
 

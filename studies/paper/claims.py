@@ -72,7 +72,7 @@ class Tests:
                         and row["p0' (kPa)"] == plan.P0 and np.isfinite(row["cycles"])])
 
     def halves(self, least=1):
-        """Half cycles after the onset of those tests, test by test, where there are this many."""
+        """Half cycles after the onset of those tests, test by test, where there are enough."""
         tests = {}
         for row in slowest(self.tables["half_cycles"]):
             if row["q_amp/(2 p0')"] == plan.PAPER_RATIO and row["specimen"].endswith(f", {plan.P0} kPa"):
