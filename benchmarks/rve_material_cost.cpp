@@ -181,7 +181,7 @@ void measure_batch(const Snapshot &start, const Options &options)
   MaterialState state;
   const double pack = seconds_of([&] { state = material.pack(); });
   const double unpack = seconds_of([&] { material.unpack(state); });
-  fmt::print("batch without strain {:.1f} us; stiffness {:.0f} ms, wave moduli {:.0f} ms computed, {:.2f} us known; pack "
+  fmt::print("batch without strain {:.1f} us; stiffness {:.0f} ms, wave moduli {:.0f} ms new, {:.2f} us known; pack "
              "{:.1f} ms, unpack {:.1f} ms, {:.2f} MB\n",
              1e6 * empty, 1e3 * stiffness, 1e3 * waves, 1e6 * known, 1e3 * pack, 1e3 * unpack,
              1e-6 * static_cast<double>(state.bytes().size()));
