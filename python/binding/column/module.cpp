@@ -148,7 +148,7 @@ PYBIND11_MODULE(_column, module)
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")
       .def("check_inputs", &check_inputs,
-           "Reads libraries and records. Raises InputError where they do not have what the scene takes from them.")
+           "Reads libraries and records. Raises InputError where they lack what the scene needs.")
       .def(
           "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
       .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })
