@@ -50,8 +50,8 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
                 prepared specimens
     specimen    a Specimen or Snapshot to start from. Its grains, their number, sizes and density, its void ratio and its
                 stress replace those of the scene; a difference is a warning and is not in the scene of the results. Its
-                domain and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
-                stiffness). It is kept in `output` as specimen.h5, which the scene there names
+                domain and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may
+                have another stiffness). It is kept in `output` as specimen.h5, which the scene there names
     cache       folder of prepared specimens; None: next to the output folder, as the program does
     overwrite   replaces existing results; excludes resume
     resume      continues from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
