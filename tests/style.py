@@ -47,7 +47,8 @@ PHRASES = {
     r"(stands?|stood)(?! for\b| in\b|-alone| alone| still)": "is, appears", r"strangers?": "untrusted, a user's",
     r"tells?|told": "says, reports, distinguishes", r"to the bit": "bit for bit",
     r"velocit(y|ies) of (P|S|shear) waves?": "V_s, shear-wave velocity", r"warned of": "a warning names",
-    r"what (came|comes) out": "results", r"who watches": "the observer", r"what is left": "what remains", r"works as": "is",
+    r"what (came|comes) out": "results", r"what is left": "what remains",
+    r"who watches": "the observer", r"works as": "is",
 }
 OVERUSED = re.compile(r"\bof (?:its|their) own\b", re.I)  # at most once in a file
 STUMBLE = re.compile(r"\b(?:" + "|".join(PHRASES).replace(" ", r"(?:[ \t]+|[ \t]*\n[ \t]*)") + r")\b", re.I)

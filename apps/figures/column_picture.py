@@ -38,7 +38,7 @@ def draw_packing(axes, file, mean_force):
     axes.add_collection(EllipseCollection(2 * radius, 2 * radius, np.zeros_like(radius), units="xy", offsets=place,
                                           transOffset=axes.transData, facecolor=GREY, edgecolor="none", alpha=0.13))
     normal, lines = contact["normal"][:, (0, 2)], []
-    for grain, sign in ((contact["first"], 1), (contact["second"], -1)):  # one through a face of the cell has two halves
+    for grain, sign in ((contact["first"], 1), (contact["second"], -1)):  # two halves through a face of the cell
         begin, reach = place[grain], (radius[grain] - contact["overlap"] / 2)[:, None]
         lines += list(np.stack([begin, begin + sign * reach * normal], axis=1))
     axes.add_collection(LineCollection(lines, colors=BLUE, capstyle="round",
@@ -57,7 +57,7 @@ def draw_motions(column, axes):
 
 
 def draw_map(column, figure, axes, depths, times):
-    """I_R, with the places and moments of the packings beside it."""
+    """I_R, with the places and moments of the packings next to it."""
     grains = column.grains.profiles
     bottom = sum(layer["height"] for layer in column.layers) or float(grains["depth"].max())
     x, y = edges(grains["time"], grains["time"][0], grains["time"][-1]), edges(grains["depth"], 0, bottom)
