@@ -57,7 +57,7 @@ TEXTS = {".cpp", ".hpp", ".c", ".h", ".py", ".md", ".toml", ".sh"}  # files whos
 CPP_TEXT = re.compile(r"//[^\n]*|/\*.*?\*/|R\"\(.*?\)\"|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
 # No text: strings of one word; then code marks, targets of links, and marks that begin or join lines of a comment.
 NO_TEXT = (re.compile(r"([\"'])[\w.@/-]*\1"),
-           re.compile(r"`[^`\n]*`|\]\([^)\n]*\)|^\s*(?:///?<?|#+|\*|!)|\"\s*\n\s*\"", re.M))
+           re.compile(r"`[^`\n]*`|\]\([^)\n]*\)|^\s*(?:///?<?|#+|\*|!)|\"\s*\n\s*f?\"", re.M))
 
 HELPERS = {"tests/support/near.hpp", "tests/apps/support.py", "tests/style.py"}
 

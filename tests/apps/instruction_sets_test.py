@@ -54,8 +54,8 @@ class InstructionSets(AppTest):
             self.assertEqual(code, 130, "it is still at work")
             result = self.run_on(goes_on, folder, "--resume")
             self.assert_done(result)
-            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine goes "
-                             f"on with {widest}: " in result.stderr, noted, result.stderr)
+            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine "
+                             f"continues with {widest}: " in result.stderr, noted, result.stderr)
             self.assertEqual(results(self.folder / folder) == whole, not noted)
 
     def test_other_programs(self):

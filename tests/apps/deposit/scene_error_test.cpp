@@ -144,8 +144,7 @@ TEST(ColumnSceneError, Motions)
 {
   const std::string ricker = "[[motion]]\nkind = \"ricker\"\namplitude = \"0.1 g\"\nfrequency = \"2 Hz\"\n";
   EXPECT_EQ(complaint(smallest + ricker), "accepted");
-  expect_refused(smallest + ricker + ricker,
-                 {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
+  expect_refused(smallest + ricker + ricker, {"column.toml:14: motion.1.axis; already has a motion (column.toml:10)"});
   EXPECT_EQ(complaint(smallest + ricker + ricker + "axis = \"y\"\n"), "accepted");
   expect_refused(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
   expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be in [0.001 Hz, 1000 Hz]"},
