@@ -96,7 +96,7 @@ void check_resumed_scene(const std::filesystem::path &folder, const Checkpoint &
                         folder.string(), change.stage, change.key, change.now, change.before, why));
       };
       if (!(amount(change, change.now) > amount(change, change.before)))
-        refuse("an end can only be moved to later, because the run has continued since (max_steps = 0: no limit)");
+        refuse("only a later end is possible, because the run has continued since (max_steps = 0: no limit)");
       if (!is_open(change, checkpoint.drive.place, before, after))
         refuse("this stage is over");
     }

@@ -204,7 +204,7 @@ class Bare(AppTest):
             result = self.run_app("isostat", *words)
             self.assert_done(result)
             self.assertRegex(result.stdout, "\n  library .*\n(?s:.*)\n  element_test ")
-        self.assert_refused(self.run_app("isostat", "librray"), "librray: is no command of isostat")
+        self.assert_refused(self.run_app("isostat", "librray"), "librray: is not a command of isostat")
 
     def test_a_scene_of_too_long_a_name(self):
         for words in (("element_test",), ("isostat", "library"), ("isostat", "resistance", "--ratios", "0.2")):

@@ -100,7 +100,7 @@ class DamagedCheckpoints(AppTest):
         def number(item, name, value):
             return lambda file: file[item].attrs.modify(name, np.uint64(value))
 
-        beyond = "speaks of stages beyond the 1 of the scene"
+        beyond = "names stages beyond the 1 of the scene"
         for change, said in ((lambda file: ends_at(file, 1), beyond), (number("drive/place", "stage", 2), beyond),
                              (lambda file: lost(file, 5), "@quantity = 5, expected at most 4"),
                              (number("drive/loading", "direction", 2), "@direction = 2, expected at most 1"),
@@ -191,7 +191,7 @@ class DamagedCheckpoints(AppTest):
             file["written"].attrs["snapshots"] = np.uint64(2**33)
         (parts / "summary.txt").unlink()
         self.assert_refused(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "parts", "--resume"),
-                            "speaks of 8589934592 snapshots and ")
+                            "counts 8589934592 snapshots and ")
 
     def test_files_that_a_loss_of_power_leaves(self):
         """Zeros at the end of the last checkpoint, and no more than a part of the table: the run continues."""

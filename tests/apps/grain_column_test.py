@@ -272,7 +272,7 @@ class Failures(GrainColumnTest):
 
 
 class Alone(GrainColumnTest):
-    """One packing of the column, sent the same way again by rve_replay."""
+    """One packing of the column, strained again in the same way by rve_replay."""
 
     def setUp(self):
         super().setUp()

@@ -95,7 +95,7 @@ TEST(SceneError, Ranges)
     expect_complaint(smallest + fmt::format("[contact]\nfriction = \"18 deg\"\nrolling = {{ limit = {} }}", value),
                      {"accepted"});
   expect_complaint(smallest + "pressure = \"1e-40 kPa\"", {"in size (in SI units), because"});
-  expect_complaint(smallest + "pressure = \"1e-10 kPa\"", {"must be in [0.001 kPa, 1e9 kPa] because less cannot be"});
+  expect_complaint(smallest + "pressure = \"1e-10 kPa\"", {"must be in [0.001 kPa, 1e9 kPa] because less is"});
   expect_complaint(smallest + "[contact]\nstiffness_ratio = 20", {"must be in (0, 10] because without tangential"});
   for (const char *angle : {"90 deg", "185 deg", "-1 deg", "1.6 rad"})
     expect_complaint(smallest + fmt::format("[contact]\nfriction = \"{}\"", angle), {"must be in [0 deg, 90 deg)"});
