@@ -27,9 +27,9 @@ constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr Section sections[] = {
   {.name = "mesh", .text = "The block: plane strain, x across, z up."},
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
-  {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
+  {.name = "nonlocal", .text = "A length that sets the thickness of a shear band, instead of the size of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
-  {.name = "water", .text = "What the water in the pores does. It bears any suction: no limit of cavitation is set."},
+  {.name = "water", .text = "Water in the pores. It bears any suction: cavitation is not modelled."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
@@ -62,7 +62,7 @@ constexpr Key block_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
   {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
    .presence = Presence::required, .value = "50 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
-   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure.",
+   .text = "Shear modulus at small strain; for iwan and mohr_coulomb at the reference pressure.",
    .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
   {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
    .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
@@ -76,7 +76,7 @@ constexpr Key test_keys[] = {
            "Above 0 m it needs newton.max_iterations = 0 and relaxation.",
    .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
   {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
-   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",
+   .text = "Stiffness against differences between strain and mean strain, over the wave moduli at the start.",
    .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.stiffness; }},
 
   {.path = "weak.cells", .kind = Kind::integer, .value = "0",
@@ -87,7 +87,8 @@ constexpr Key test_keys[] = {
   {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
   {.path = "weak.factor", .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning to grains.",
+   .text = "Factor on the stiffness, and on the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); "
+           "ignored for grains.",
    .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
   {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
@@ -97,15 +98,17 @@ constexpr Key test_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
 
   {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
+   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the "
+                                                                              "start. With the initial pore pressure "
+                                                                              "it acts on the sides throughout.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
   {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
-   .text = "At the end: way of the top over the height, compression positive.",
+   .text = "Final displacement of the top over the height, compression positive.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.axial_strain; }},
   {.path = "test.steps", .kind = Kind::integer, .value = "50", .range = counts, .text = "Equal load steps.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.steps; }},
   {.path = "test.duration", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "s", .value = "100 s",
-   .range = positive, .text = "Of the test; counts only where water moves.",
+   .range = positive, .text = "Duration of the test; matters only where water moves.",
    .field = [](BiaxialScene &s) -> Field { return &s.test.duration; }},
 };
 
@@ -117,10 +120,10 @@ constexpr Key water_keys[] = {
    .field = [](BiaxialScene &s) -> Field { return &s.water.drainage; }},
   {.path = "water.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s", .value = "0 m/s",
    .range = not_negative,
-   .text = "Hydraulic conductivity k, by which water moves inside of an undrained block; 0 m/s: it does not.",
+   .text = "Hydraulic conductivity k inside an undrained block; 0 m/s: water does not move.",
    .field = [](BiaxialScene &s) -> Field { return &s.water.permeability; }},
   {.path = "water.porosity", .value = "0.4", .range = {0, 1, true, true},
-   .text = "Share of the pores, whose water is compressible (2.2 GPa); undrained.",
+   .text = "Pore volume over total volume; its water is compressible (2.2 GPa). For undrained blocks.",
    .field = [](BiaxialScene &s) -> Field { return &s.water.porosity; }},
 };
 
@@ -142,13 +145,13 @@ constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dime
 constexpr const char *manual_head =
 R"(# Scene reference of the biaxial block
 
-A scene is one TOML file that says all about a run of `biaxial`. This page is generated from the table in
+A scene is one TOML file that describes a run of `biaxial`. This page is generated from the table in
 `apps/biaxial/scene.cpp` (`biaxial_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/biaxial`.
 
 - Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, is an
   error. What has no dimension is a plain number.
 - Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Compression is positive; x points across, z up.
+- An unknown key is an error, and so is a repeated key. Compression is positive; x points across, z up.
 - `--set key=value` on the command line overrides the file: `--set test.steps=100`.
 
 )";
@@ -157,10 +160,9 @@ A scene is one TOML file that says all about a run of `biaxial`. This page is ge
 void check_undrained(const SceneDocument &document, const BiaxialMesh &mesh)
 {
   if (mesh.degree != 2)
-    document.refuse("mesh.degree",
-                    fmt::format("must be 2 in an undrained block, beside a pore pressure of degree 1, and "
-                                "is {}. Give degree = 2 and points = 3.",
-                                mesh.degree));
+    document.refuse("mesh.degree", fmt::format("must be 2 in an undrained block, with a pore pressure of degree 1, and "
+                                               "is {}. Give degree = 2 and points = 3.",
+                                               mesh.degree));
   if (mesh.points < 3)
     document.refuse("mesh.points", fmt::format("must be 3 or 4 in an undrained block, and is {}: with fewer, elements "
                                                "have modes that soil of constant volume does not resist. Give points = "
@@ -190,12 +192,12 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
                     "it.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements "
                                 "across. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_across));
   if (scene.weak.row + scene.weak.cells > scene.mesh.cells_up)
     document.refuse("weak.row",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements "
                                 "up. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_up));
 }

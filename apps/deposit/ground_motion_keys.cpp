@@ -38,8 +38,8 @@ constexpr Key keys[] = {
            "header is refused.",
    .field = [](ColumnMotion &m) -> Field { return &m.unit; }},
   {.path = "baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
-   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
-           "drift of the displacement.",
+   .text = "What is subtracted from the accelerations: nothing, their mean, or the quadratic in time that minimises "
+           "the drift of the displacement.",
    .field = [](ColumnMotion &m) -> Field { return &m.baseline; }},
   {.path = "factor", .value = "1", .kinds = record, .group = "scale",
    .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
@@ -71,7 +71,7 @@ constexpr Key keys[] = {
   {.path = "interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "1 ms", .range = {Motion::shortest_interval, Motion::longest_interval},
    .reason = "because ground does not shake as fast or as slowly", .kinds = harmonic | ricker,
-   .text = "Time between samples, straight in between; left out: 1 / (500 frequency), and 1e-5 s at least.",
+   .text = "Time between samples, linear in between; left out: 1 / (500 frequency), and 1e-5 s at least.",
    .field = [](ColumnMotion &m) -> Field { return &m.interval; }},
   {.path = "again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::optional, .value = "20 s", .range = positive,

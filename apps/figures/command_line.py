@@ -6,10 +6,10 @@ import difflib
 import sys
 
 
-def meant(word, known, else_say=""):
-    """"Did you mean damping?", or what is said where nothing is alike."""
+def meant(word, known, otherwise=""):
+    """"Did you mean damping?", or the other text where nothing is alike."""
     near = difflib.get_close_matches(word, known, 1)
-    return f"Did you mean {near[0]}?" if near else else_say
+    return f"Did you mean {near[0]}?" if near else otherwise
 
 
 class CommandLine(argparse.ArgumentParser):

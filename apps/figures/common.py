@@ -20,7 +20,7 @@ TURNS = 1.5  # path over range of the strain from which a test counts as turning
 MEDIAN_ROWS = 21
 UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "%": 1e-2}
 
-# Colours that colour-blind readers can tell apart (Okabe and Ito).
+# Colours that colour-blind readers can distinguish (Okabe and Ito).
 BLACK, ORANGE, BLUE, GREEN, RED, GREY = "#1a1a1a", "#e69f00", "#0072b2", "#009e73", "#d55e00", "#7f7f7f"
 
 STYLE = {
@@ -49,7 +49,7 @@ STYLE = {
 
 
 def use_style():
-    """Ours alone: a matplotlibrc of the user or, where Python started, of a stranger does not count."""
+    """Ours alone: a matplotlibrc of the user, or one where Python started, does not count."""
     plt.rcdefaults()
     plt.rcParams.update(STYLE)
 
@@ -362,14 +362,14 @@ def draw_path(run, axes, x, y):
 
 
 def legend_below(figure, axes, height, ncols=None, **more):
-    """Of one panel or several that share it, in the lowest `height` of the figure; in one row unless told otherwise."""
+    """Of one panel or several that share it, in the lowest `height` of the figure; in one row by default."""
     handles, labels = axes.get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
     figure.legend(handles, labels, loc="lower center", ncols=ncols or len(labels), **more)
 
 
 def legend_of_path(run, figure, axes):
-    """Without liquefaction there is nothing to tell apart."""
+    """Without liquefaction it would have a single entry."""
     if run.onset is not None:
         legend_below(figure, axes, 0.07)
 

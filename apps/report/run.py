@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report of a run: verdicts, summary, figures, scene, provenance, how to go on and how to cite, on one page."""
+"""The report of a run: verdicts, summary, figures, scene, provenance, how to continue and how to cite, on one page."""
 import importlib
 import json
 import re
@@ -13,8 +13,8 @@ from .quantities import converted, named, shown
 
 REPORT = "report.html"
 SENTENCE = 20  # letters of a row from which it is one
-KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command goes on with what is missing
-RESUMED = ("element_test", "soil_column")  # --resume goes on from a checkpoint
+KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
+RESUMED = ("element_test", "soil_column")  # --resume continues from a checkpoint
 
 
 def title_of(name):
@@ -24,7 +24,7 @@ def title_of(name):
 
 
 def summary_parts(results, said):
-    """The rows of the summary, but for sentences that verdicts have `said` in the same words. Where its file has none,
+    """The rows of the summary without sentences that verdicts have `said` in the same words. Where its file has none,
     as those of campaigns and of older runs, its text as it is; without a text the numbers."""
     numbers = results.numbers or {}
     if "rows" in numbers:
@@ -37,7 +37,7 @@ def summary_parts(results, said):
 
 
 def calls(results):
-    """How to go on with the run, and how to run its scene again: as it was started, from a shell or from Python."""
+    """How to continue with the run, and how to run its scene again: as it was started, from a shell or from Python."""
     function = results.command.split()[0]
     if function not in IN_PYTHON:
         command = results.command.replace(" --overwrite", "")
@@ -48,14 +48,14 @@ def calls(results):
 
 
 def resume_parts(results):
-    """How to go on and how to repeat the run, as far as its files tell."""
+    """How to continue and how to repeat the run, as far as its files show."""
     program, command = results.program, results.command.replace(" --overwrite", "")
     parts = []
     if not command:
         return parts
     resumed, again = calls(results)
     if program in KEPT:
-        parts += [html.paragraph("What has been computed is kept. The same command goes on with what is missing:"),
+        parts += [html.paragraph("What has been computed is kept. The same command continues with what is missing:"),
                   html.text_block(command, "command")]
     elif program in RESUMED and results.has_checkpoint:
         ended = "" if results.numbers is None else " The run has ended; this repeats what came after that checkpoint."

@@ -32,8 +32,8 @@ double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assem
     return *rate.fixed;
   if (!(p0 > 0))
     throw RunFailure(
-        fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
-                    "number goes with its root. Consolidate it first, or give motion.strain_rate.",
+        fmt::format("the specimen cannot be sheared: it carries p' = {:.3g} Pa, and the rate of an inertial number "
+                    "goes with its root. Consolidate it first, or give motion.strain_rate.",
                     p0));
   return rate.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }

@@ -14,7 +14,7 @@ struct StageRate
 };
 
 /// What holds where motion and stage both may say it: the fixed rate of the stage, else of the motion; the inertial
-/// number of the motion, else of the stage, of no effect beside a fixed rate.
+/// number of the motion, else of the stage, ignored with a fixed rate.
 StageRate rate_in_force(const MotionSpec &motion, const StageRate &stage);
 
 /// Strain rate in force, 1/s: the fixed one, else that of the inertial number,

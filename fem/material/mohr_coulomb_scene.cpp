@@ -18,21 +18,22 @@ constexpr Key mohr_coulomb_in_scenes[] = {
    .text = "Mean effective stress p_r at which the stiffness is given.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.reference_pressure; }},
   {.path = "exponent", .value = "0", .range = {0, 1}, .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",
-   .text = "n of the shear modulus G (p'/p_r)^n of a point at its mean effective stress of the start; it stays constant. 0: G everywhere.",
+   .text = "n of the shear modulus G (p'/p_r)^n at the initial mean effective stress of a point; it stays constant. "
+           "0: G everywhere.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.exponent; }},
   {.path = "friction_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "40 deg",
    .range = right_angle, .reason = because_tan, .text = "Angle of friction phi; 0 deg: Tresca's law (undrained clay).",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.friction; }},
   {.path = "cohesion", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "1 kPa",
-   .range = not_negative, .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular. "
-                                  "Above 0 kPa without friction.",
+   .range = not_negative, .text = "Cohesion c. Soil at a free surface has no other strength; a few kPa keep its "
+                                  "stiffness regular. Above 0 kPa without friction.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.cohesion; }},
   {.path = "dilatancy_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "10 deg",
    .range = right_angle, .reason = because_tan, .text = "Angle of dilatancy psi, at most `friction_angle`: equal to it the flow is associated.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.dilatancy; }},
   {.path = "softening_strain", .value = "0", .range = {0, 10}, .reason = "because strains are small",
-   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), c, tan(psi); 0: none falls. "
-           "Above 0 with a residual value, and only then.",
+   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), "
+           "c, tan(psi); 0: no softening. Above 0 with a residual value, and only then.",
    .field = [](MohrCoulombParameters &p) -> Field { return &p.softening_strain; }},
   {.path = "residual_friction_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
    .presence = Presence::optional, .value = "33 deg", .range = right_angle, .reason = because_tan,

@@ -13,20 +13,21 @@ using namespace ranges;
 // clang-format off
 constexpr Key keys[] = {
   {.path = "tolerance", .value = "1e-6", .range = fraction, .reason = "because it is a part of the forces",
-   .text = "Of the residual over the force scale, the largest force so far. Grains need one above their noise, some 5e-3.",
+   .text = "Tolerance of the residual over the force scale, the largest force so far. Grains need one above their "
+           "noise, about 5e-3.",
    .field = [](NewtonSettings &n) -> Field { return &n.tolerance; }},
   {.path = "max_iterations", .kind = Kind::integer, .value = "25",
-   .text = "Of Newton's method in a sub-step; 0: relaxation alone, for packings and past a peak.",
+   .text = "Iterations of Newton's method in a sub-step; 0: relaxation alone, for packings and past a peak.",
    .field = [](NewtonSettings &n) -> Field { return &n.max_iterations; }},
   {.path = "iterations_per_tangent", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "1: Newton; more: the tangent is kept for so many iterations of a sub-step.",
+   .text = "Iterations of a sub-step that share a tangent; 1: Newton's method.",
    .field = [](NewtonSettings &n) -> Field { return &n.iterations_per_tangent; }},
   {.path = "relaxation_iterations", .kind = Kind::integer, .value = "0",
-   .text = "Of relaxation, which takes over a sub-step that Newton's method has not solved; 0: none. Then the "
-           "sub-step is halved.",
+   .text = "Iterations of relaxation, which takes over a sub-step that Newton's method has not solved; 0: none. An "
+           "unsolved sub-step is halved.",
    .field = [](NewtonSettings &n) -> Field { return &n.relaxation_iterations; }},
   {.path = "max_halvings", .kind = Kind::integer, .value = "8", .range = {0, 40}, .reason = "because smaller parts are below round-off",
-   .text = "The smallest sub-step is the step times 2 to the power of minus this.",
+   .text = "The smallest sub-step is the step divided by 2 to the power of this.",
    .field = [](NewtonSettings &n) -> Field { return &n.max_halvings; }},
 };
 // clang-format on

@@ -17,9 +17,9 @@ constexpr Key of_water[] = {
            "fluid N times as viscous as water (docs/theory_column.md).",
    .field = [](Water &w) -> Field { return &w.relative_viscosity; }},
   {.path = "air", .kind = Kind::choice, .value = "constant", .choices = air_names,
-   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at the "
-           "pressure of the moment, stiffer and at last dissolved when the pressure rises, softer when it falls "
-           "(cavitation). A consolidation takes constant alone. boyle needs air, by `layer.saturation` or `henry`.",
+   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at "
+           "the current pressure, stiffer and finally dissolved as the pressure rises, softer as it falls "
+           "(cavitation). A consolidation takes only constant. boyle needs air, by `layer.saturation` or `henry`.",
    .field = [](Water &w) -> Field { return &w.air; }},
   {.path = "henry", .value = "0", .range = {0, 0.1},
    .reason = "because water dissolves no less than nothing, and of air 0.02 at 20 C",
@@ -30,7 +30,7 @@ constexpr Key of_water[] = {
    .field = [](Water &w) -> Field { return &w.henry; }},
   {.path = "atmospheric_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
    .value = "101.325 kPa", .range = {5000, infinity}, .reason = "because water boils at 2.3 kPa",
-   .text = "Absolute pressure at the water table, which air in the pores feels beside that of the water below it. On a "
+   .text = "Absolute pressure at the water table, which acts on air in the pores in addition to that of the water below it. On a "
            "submerged slope add the weight of the water above the surface.",
    .field = [](Water &w) -> Field { return &w.atmospheric_pressure; }},
 };

@@ -125,10 +125,10 @@ constexpr Key others[] = {
    .presence = Presence::optional, .value = "60 kPa", .kinds = of_path, .text = "Load at which it turns downwards.",
    .field = InPart<&Path::turn, &PathTurn::high>{}},
   {.path = "until", .kind = Kind::table, .presence = Presence::optional, .value = "{ strain = 0.05 }", .kinds = of_path,
-   .text = "When the stage ends: at whichever of its conditions comes first. A stage that drives nothing ends by itself, where "
-           "its path does. One that turns needs `until.cycles` or `max_steps`; without `until.strain` and "
-           "`max_steps` all but turns at a strain fail at 100 % of strain. A stress that is within 0.1 % of p' of its value when the stage begins ends "
-           "the stage at once, with a warning.",
+   .text = "The stage ends at whichever of its conditions comes first. A stage that drives nothing ends by itself, "
+           "where its path does. One that turns needs `until.cycles` or `max_steps`; without `until.strain` and "
+           "`max_steps` all but turns at a strain fail at 100 % of strain. A stress that is within 0.1 % of p' of its "
+           "value when the stage begins ends the stage at once, with a warning.",
    .field = Nowhere{}},
   {.path = "until.strain", .presence = Presence::optional, .value = "0.05", .range = ranges::to_ten,
    .reason = "because this is a strain, not percent", .kinds = of_path, .text = "Driven strain of the stage, its amount.",
@@ -146,7 +146,7 @@ constexpr Key others[] = {
    .reason = "because q/p' lies there without tension", .kinds = of_path,
    .text = "When q/p' passes this, from either side.", .field = InPart<&Path::end, &PathEnd::stress_ratio>{}},
   {.path = "until.cycles", .kind = Kind::integer, .presence = Presence::optional, .value = "10", .range = {1, 1e9},
-   .kinds = of_path, .text = "After so many cycles of this stage.", .field = InPart<&Path::end, &PathEnd::cycles>{}},
+   .kinds = of_path, .text = "After this many cycles of this stage.", .field = InPart<&Path::end, &PathEnd::cycles>{}},
 };
 // clang-format on
 

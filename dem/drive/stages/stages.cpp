@@ -33,19 +33,19 @@ constexpr Key keys[] = {
   of<&ShearStage::strain_end, UndrainedMonotonic, ServoedShear>(
     {.path = "strain", .presence = Presence::required, .value = "0.05", .range = ranges::to_one,
      .reason = "because this is a strain, not percent; the sign comes from direction",
-     .text = "Axial strain (logarithmic, its amount) at which the stage ends."}),
+     .text = "Amount of the axial strain (logarithmic) at which the stage ends."}),
   of<&ShearStage::strain_end, UndrainedSimpleShear>(
     {.path = "strain", .presence = Presence::required, .value = "0.2", .range = ranges::to_ten,
      .reason = "because this is a shear strain, not percent: 1 is 100 percent",
-     .text = "Shear strain gamma_xy (its amount) at which the stage ends."}),
+     .text = "Amount of the shear strain gamma_xy at which the stage ends."}),
   of<&UndrainedCyclic::deviator_amplitude>(
     {.path = "deviator_amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
      .value = "60 kPa", .range = ranges::positive, .text = "q_amp: loading turns at deviator_average + q_amp and at deviator_average - q_amp."}),
   of<&UndrainedCyclic::deviator_average>(
     {.path = "deviator_average", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
      .value = "0 kPa",
-     .text = "q_av, the static bias: the middle of the two deviators between which the stage turns. q must lie between "
-             "them when it begins, which takes anisotropic consolidation where 0 does not."}),
+     .text = "q_av, the static bias: the middle of the two deviators between which the stage turns. q must lie "
+             "between them when the stage begins; where 0 does not, consolidate anisotropically first."}),
   of<&UndrainedCyclicSimpleShear::stress_ratio>(
     {.path = "stress_ratio", .value = "0.15", .range = ranges::to_one,
      .reason = "because this is a ratio of stresses that friction has to carry",
@@ -61,14 +61,14 @@ constexpr Key keys[] = {
      .text = "p'/p0' below which the specimen counts as liquefied."}),
   {.path = "until", .kind = Kind::table, .presence = Presence::optional,
    .value = "{ reversals_after_liquefaction = 10 }", .kinds = kinds_in<Cyclic>,
-   .text = "When the stage ends: at whichever of its conditions comes first.",
+   .text = "The stage ends at whichever of its conditions comes first.",
    .field = [](StageBehaviour &) -> Field { return {}; }},
   of<&Cyclic::max_cycles>(
     {.path = "until.cycles", .kind = Kind::integer, .value = "200", .range = {1, 1e9},
-     .text = "After so many cycles."}),
+     .text = "After this many cycles."}),
   of<&Cyclic::reversals_after_liquefaction>(
     {.path = "until.reversals_after_liquefaction", .kind = Kind::integer, .value = "10",
-     .text = "After so many reversals of loading since p'/p0' first fell below `liquefaction_ratio`."}),
+     .text = "After this many reversals of loading since p'/p0' first fell below `liquefaction_ratio`."}),
   of<&Cyclic::max_strain, UndrainedCyclic>(
     {.path = "until.strain", .value = "0.15", .range = ranges::to_one,
      .reason = "because this is a strain, not percent",
@@ -84,11 +84,11 @@ constexpr Key keys[] = {
              "says."}),
   of<&SteppedStage::max_steps>(
     {.path = "max_steps", .kind = Kind::integer, .value = "0",
-     .text = "Ends the stage after so many time steps; 0: no limit. A stage that has not met its own conditions by then is warned "
-             "of, with what was reached."}),
+     .text = "Ends the stage after this many time steps; 0: no limit. A warning names a stage that has not met its own conditions "
+             "by then, and what was reached."}),
   of<&Repeat::stages>(
     {.path = "stages", .kind = Kind::integer, .value = "1", .range = {1, 1e3},
-     .text = "So many stages before this one are done again, in their order; a repeat among them counts as one. "
+     .text = "This many stages before this one are done again, in their order; a repeat among them counts as one. "
              "At most as many as there are."}),
   of<&Repeat::times>(
     {.path = "times", .kind = Kind::integer, .presence = Presence::required, .value = "10", .range = {1, 1e6},
