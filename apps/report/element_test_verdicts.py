@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the files of an element test show: by what each stage ended, liquefaction, rate, density, reversals."""
+import re
+
 import numpy as np
 
 from figures.column_results import quantity
@@ -11,11 +13,12 @@ FAST_INERTIA, FAST_INDICATOR = 1e-3, 0.2
 
 
 def endings(results):
-    """A line for each stage that shears, and for each other that its limit of steps ended, as the summary says it."""
+    """A line for each stage that shears, and for each other that its limit of steps ended: the first words of the
+    summary on it."""
     stages = results.scene.get("stage", [])
     for end in results.numbers.get("ended", []):
         if end["early"] or stages[end["stage"]]["kind"] not in NOT_SHEARED:
-            name, _, text = end["text"].partition(": ")
+            name, text, *_ = re.split(r": |, before |; ", end["text"])
             yield f"{name[0].upper()}{name[1:]}:", f"{text}.", "attention" if end["early"] else "good"
 
 

@@ -12,7 +12,6 @@ from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named, shown
 
 REPORT = "report.html"
-SENTENCE = 20  # letters of a row from which it is one
 KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
 RESUMED = ("element_test", "soil_column")  # --resume continues from a checkpoint
 
@@ -23,13 +22,12 @@ def title_of(name):
     return re.sub(r"\bru\b", "r_u", words[0].upper() + words[1:], flags=re.I)
 
 
-def summary_parts(results, said):
-    """The rows of the summary without sentences that verdicts have `said` in the same words. Where its file has none,
-    as those of campaigns and of older runs, its text as it is; without a text the numbers."""
+def summary_parts(results):
+    """The rows of the summary. Where its file has none, as those of campaigns and of older runs, its text as it is;
+    without a text the numbers."""
     numbers = results.numbers or {}
     if "rows" in numbers:
-        said = said.lower()
-        return [html.properties(row for row in numbers["rows"] if len(row[1]) < SENTENCE or row[1].lower() not in said)]
+        return [html.properties(numbers["rows"])]
     if results.summary.strip():
         return [html.text_block(results.summary, "summary")]
     return [html.properties((named(results.program, key), shown(converted(results.program, key, value)))
@@ -90,7 +88,7 @@ class Page:
         missing = html.paragraph(f"No figures: {reason}") if reason else ""
         sections = [
             html.section("How it went", f'<ul class="verdicts">\n{items}\n</ul>' if items else "", name="verdicts"),
-            html.section("Summary", *summary_parts(r, " ".join(f"{v.name} {v.text}" for v in found)), name="summary"),
+            html.section("Summary", *summary_parts(r), name="summary"),
             html.section("Figures", html.figures(self.figures), missing, name="figures"),
             html.section("Going on, and repeating it", *resume_parts(r), name="resume"),
             html.section("Scene", html.text_block(r.scene_text, "scene") if r.scene_text else "", name="scene"),

@@ -61,7 +61,8 @@ class Captions(unittest.TestCase):
     def test_every_figure_has_one(self):
         for program in PROGRAMS:
             drawing = importlib.import_module(f"figures.{program}").DRAWING
-            self.assertEqual(list(drawing.captions), list(drawing.figures), program)
+            for draw in drawing.all:
+                self.assertTrue(draw.__doc__ or draw.parts, draw.name)
 
 
 class Narrow(unittest.TestCase):

@@ -86,6 +86,7 @@ class Studies(AppTest):
         listed = self.study()
         self.assert_done(listed)
         self.assertEqual([line.split()[0] for line in listed.stdout.splitlines()[2:]], names)
+        self.assertIn("--dry-run", self.study("--help").stdout)
 
     def test_it_runs_what_is_missing(self):
         self.tiny()

@@ -82,6 +82,11 @@ class StudiesOfColumns(AppTest):
             study.do_runs(module, options, executor)
         self.assertEqual(called, ["runs", "prepare", "runs", []])
 
+    def test_interrupted_runs_are_estimated_by_what_is_missing(self):
+        runs = [types.SimpleNamespace(spent=spent, estimated_seconds=lambda: 10) for spent in (20, 15, 0)]
+        store = types.SimpleNamespace(is_done=lambda run: run is runs[0], cpu_seconds=lambda run: run.spent)
+        self.assertEqual(study.what_is_left(store, runs), (runs[1:], 5 + 20), "at the speed of the first")
+
     def test_shared_packings(self):
         """A packing in situ has the name that soil_column looks for where grains move otherwise."""
         source, target = (self.folder / name for name in ("in_situ.h5", "other.h5"))
