@@ -23,7 +23,7 @@ CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by smal
              "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
-         "animate": "RESULTS [-o FILE.gif]: packings and their forces as the run proceeds, also as .mp4",
+         "animate": "RESULTS [-o FILE.gif]: packings and their forces during the run, also as .mp4",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
